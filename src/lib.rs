@@ -1,0 +1,1 @@
+//! A scene renderer that follows the light backwards.

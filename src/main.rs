@@ -1,0 +1,2 @@
+//! The `envers` command.
+fn main() {}
