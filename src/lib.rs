@@ -1,1 +1,6 @@
 //! A scene renderer that follows the light backwards.
+
+pub mod error;
+pub mod geometry;
+pub mod load;
+pub mod scene;

@@ -1,0 +1,202 @@
+//! The one error type: what went wrong, in which file, where in it, and the way out.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// What an [`Error`] is about; it decides the command's exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The input or the request is wrong: a file, a key, a flag, an output that cannot be written.
+    Input,
+    /// The request was fine and the work failed: Embree, the disk, memory.
+    Failed,
+}
+
+/// Where in a file an error stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A place in a text file.
+    Text {
+        /// Line, counted from 1.
+        line: usize,
+        /// Column, counted from 1, in characters.
+        column: usize,
+        /// How many characters are meant, at least 1.
+        length: usize,
+        /// The line itself, without its line break.
+        quote: String,
+    },
+    /// A line of a text file that is not quoted, counted from 1.
+    Line(usize),
+    /// A JSON path such as `meshes[3].primitives[0].attributes.POSITION`.
+    Json(String),
+}
+
+impl Place {
+    /// The place of the bytes `span` in `text`; a span past the end means the end.
+    pub fn in_text(text: &str, span: std::ops::Range<usize>) -> Self {
+        let floor = |mut at: usize| {
+            at = at.min(text.len());
+            while !text.is_char_boundary(at) {
+                at -= 1;
+            }
+            at
+        };
+        let (start, end) = (floor(span.start), floor(span.end));
+        let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        let quote = text[line_start..line_end].trim_end_matches('\r');
+        Place::Text {
+            line: text[..line_start].matches('\n').count() + 1,
+            column: text[line_start..start].chars().count() + 1,
+            length: text[start..end.clamp(start, line_end)].chars().count().max(1),
+            quote: quote.to_owned(),
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Text { line, column, .. } => write!(f, "{line}:{column}"),
+            Place::Line(line) => write!(f, "{line}"),
+            Place::Json(path) => f.write_str(path),
+        }
+    }
+}
+
+/// What went wrong, in which file, where in it, and what would be right.
+#[derive(Debug, thiserror::Error)]
+pub struct Error(Box<Details>);
+
+#[derive(Debug)]
+struct Details {
+    kind: ErrorKind,
+    path: Option<PathBuf>,
+    place: Option<Place>,
+    message: String,
+    help: Option<String>,
+}
+
+/// A result whose error is [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl Error {
+    /// The input is wrong; `message` says what was found.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Input, message)
+    }
+
+    /// The work failed although the input was fine.
+    pub fn failed(message: impl Into<String>) -> Self {
+        Self::new(ErrorKind::Failed, message)
+    }
+
+    /// A file that cannot be read or written; `doing` is "read", "write", "create" …
+    pub fn io(doing: &str, path: &Path, error: &std::io::Error) -> Self {
+        Self::input(format!("cannot {doing} it: {error}")).at(path)
+    }
+
+    fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Self(Box::new(Details {
+            kind,
+            path: None,
+            place: None,
+            message: message.into(),
+            help: None,
+        }))
+    }
+
+    /// Adds the file, unless one is named already.
+    #[must_use]
+    pub fn at(mut self, path: &Path) -> Self {
+        self.0.path.get_or_insert_with(|| path.to_owned());
+        self
+    }
+
+    /// Adds the place in the file, unless one is named already.
+    #[must_use]
+    pub fn place(mut self, place: Place) -> Self {
+        self.0.place.get_or_insert(place);
+        self
+    }
+
+    /// Adds what would be right.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.0.help.get_or_insert(help.into());
+        self
+    }
+
+    /// Whether the input or the work is at fault.
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The file, where there is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.0.path.as_deref()
+    }
+
+    /// The place in the file, where it is known.
+    pub fn place_in_file(&self) -> Option<&Place> {
+        self.0.place.as_ref()
+    }
+
+    /// What was found, without file and place.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// What would be right, where there is advice.
+    pub fn advice(&self) -> Option<&str> {
+        self.0.help.as_deref()
+    }
+}
+
+/// `FILE:line:column: message (advice)`, with whatever of it is known.
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(path) = &self.0.path {
+            write!(f, "{}:", path.display())?;
+        }
+        if let Some(place) = &self.0.place {
+            write!(f, "{place}:")?;
+        }
+        if self.0.path.is_some() || self.0.place.is_some() {
+            f.write_str(" ")?;
+        }
+        f.write_str(&self.0.message)?;
+        if let Some(help) = &self.0.help {
+            write!(f, " ({help})")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn place_counts_lines_and_characters_from_one() {
+        let text = "a = 1\né = \"x\"\r\n";
+        let start = text.find('"').unwrap();
+        let place = Place::in_text(text, start..start + 3);
+        assert_eq!(place, Place::Text { line: 2, column: 5, length: 3, quote: "é = \"x\"".into() });
+    }
+
+    #[test]
+    fn place_past_the_end_is_the_end() {
+        assert_eq!(Place::in_text("ab", 9..12).to_string(), "1:3");
+    }
+
+    #[test]
+    fn display_names_file_place_message_and_advice() {
+        let error = Error::input("unknown key `centre`")
+            .at(Path::new("s.toml"))
+            .place(Place::Line(3))
+            .help("did you mean `center`?");
+        assert_eq!(error.to_string(), "s.toml:3: unknown key `centre` (did you mean `center`?)");
+    }
+}

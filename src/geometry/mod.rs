@@ -1,0 +1,16 @@
+//! Intersection mathematics: pure functions in f64 that trace, load and shade nothing.
+//!
+//! Both backends call these functions, so that a hit is the same number whoever found its
+//! primitive. None of them uses a fused multiply-add: the results must not depend on whether the
+//! compiler vectorised the caller.
+
+mod bounds;
+mod hit;
+pub mod plane;
+mod ray;
+pub mod sphere;
+pub mod triangle;
+
+pub use bounds::Bounds;
+pub use hit::{Geometry, Hit, PrimitiveId};
+pub use ray::{Departure, Ray, Side};

@@ -1,0 +1,75 @@
+//! From a path to a [`Scene`]: the only parsers.
+//!
+//! A model file (`.gltf`, `.glb`, `.obj`) loads as a scene of its own; a scene file (`.toml`)
+//! places such scenes within another one. What leaves this module is resolved and checked:
+//! nothing downstream parses, guesses or repairs.
+
+mod framing;
+mod gltf;
+mod obj;
+mod picture;
+mod place;
+mod scene_file;
+
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+pub use scene_file::schema;
+
+/// Samples per pixel of a bare model file, which has no setting of its own.
+pub const BARE_MODEL_SPP: u32 = 16;
+
+/// Loads a scene file or a bare model file, by its extension.
+///
+/// A bare model gets a camera that frames it and default lights where it has none of its own, and
+/// [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does not name.
+///
+/// # Errors
+/// When a file cannot be read, or is not what it should be; the error names file and place.
+pub fn load(path: &Path) -> Result<Scene> {
+    let scene = if extension(path) == "toml" {
+        scene_file::load(path)?
+    } else {
+        let mut scene = model(path)?;
+        scene.film.spp = BARE_MODEL_SPP;
+        framing::complete(&mut scene);
+        scene
+    };
+    scene.check().map_err(|e| e.at(path))?;
+    Ok(scene)
+}
+
+/// Loads a model file as it is: with its own cameras and lights, or none.
+fn model(path: &Path) -> Result<Scene> {
+    match extension(path).as_str() {
+        "gltf" | "glb" => gltf::load(path),
+        "obj" => obj::load(path),
+        other => Err(Error::input(match other {
+            "" => "the file has no extension that tells what it is".to_owned(),
+            _ => format!("files that end in .{other} are not read"),
+        })
+        .at(path)
+        .help("a scene file ends in .toml, a model in .gltf, .glb or .obj")),
+    }
+}
+
+/// The extension in lower case, or nothing.
+fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// Reads a whole regular file.
+///
+/// # Errors
+/// When it is missing, unreadable, or no regular file (a folder, a pipe, a device), which could
+/// keep the program waiting for ever.
+fn read(path: &Path) -> Result<Vec<u8>> {
+    let metadata = std::fs::metadata(path).map_err(|e| Error::io("read", path, &e))?;
+    if !metadata.is_file() {
+        let what = if metadata.is_dir() { "a folder" } else { "a pipe or a device" };
+        return Err(Error::input(format!("this is {what}, not a file")).at(path));
+    }
+    std::fs::read(path).map_err(|e| Error::io("read", path, &e))
+}

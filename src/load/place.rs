@@ -1,0 +1,1 @@
+//! Placing a model's scene within another one.

@@ -1,0 +1,169 @@
+//! The eye.
+
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::geometry::Ray;
+
+/// How much a camera sees; exactly one of the ways to say it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// The angle between the lower and the upper edge, in radians, in (0, π).
+    FovY(f64),
+    /// The angle between the left and the right edge, in radians, in (0, π).
+    FovX(f64),
+    /// The tutorial's D: the distance to the picture in pixels of a picture `width` wide. A
+    /// picture of another width has its distance scaled with it, so that it sees as much.
+    FocalPx {
+        /// The distance, above 0, in pixels.
+        focal: f64,
+        /// The width that it refers to, in pixels.
+        width: u32,
+    },
+    /// Parallel rays; the height of what is seen, above 0, in world units.
+    OrthoHeight(f64),
+}
+
+/// A pinhole or orthographic camera.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Its name, or nothing.
+    pub name: String,
+    /// Where it stands, in world space.
+    pub position: DVec3,
+    /// Where it looks, of length 1.
+    pub forward: DVec3,
+    /// The picture's right, of length 1 and orthogonal to `forward`.
+    pub right: DVec3,
+    /// The picture's up, `right × forward`.
+    pub up: DVec3,
+    /// How much it sees.
+    pub lens: Lens,
+}
+
+impl Camera {
+    /// A camera at `position` that looks at `target` with `up` as upward as can be.
+    ///
+    /// # Errors
+    /// When `target` is the position, or `up` is zero or points along the view.
+    pub fn look_at(position: DVec3, target: DVec3, up: DVec3, lens: Lens) -> Result<Self> {
+        let forward = (target - position).try_normalize().ok_or_else(|| {
+            Error::input("the camera looks at the point where it stands")
+                .help("`look_at` must differ from `position`")
+        })?;
+        let right = forward.cross(up.normalize_or_zero());
+        if right.length() < 1e-9 {
+            return Err(Error::input("the camera's `up` points along its view, or is zero")
+                .help("choose an `up` across the view, such as [0, 1, 0] or [0, 0, 1]"));
+        }
+        let right = right.normalize();
+        let up = right.cross(forward);
+        Ok(Self { name: String::new(), position, forward, right, up, lens })
+    }
+
+    /// The rays of a picture of `size` pixels.
+    pub fn rays(&self, size: [u32; 2]) -> RayMaker {
+        let [width, height] = size.map(f64::from);
+        let focal = match self.lens {
+            Lens::FovY(angle) => height * 0.5 / (angle * 0.5).tan(),
+            Lens::FovX(angle) => width * 0.5 / (angle * 0.5).tan(),
+            Lens::FocalPx { focal, width: of } => focal * width / f64::from(of),
+            Lens::OrthoHeight(world) => {
+                return RayMaker {
+                    origin: self.position,
+                    per_pixel: [self.right, -self.up].map(|axis| axis * (world / height)),
+                    forward: self.forward,
+                    middle: [width * 0.5, height * 0.5],
+                    parallel: true,
+                };
+            }
+        };
+        RayMaker {
+            origin: self.position,
+            per_pixel: [self.right, -self.up],
+            forward: self.forward * focal,
+            middle: [width * 0.5, height * 0.5],
+            parallel: false,
+        }
+    }
+}
+
+/// The rays of one picture: from the eye through each point of it.
+///
+/// The direction of a perspective ray is measured in pixels, as the tutorial's `direction(x, y)`:
+/// (x − width/2, y − height/2, D) in the camera's own axes, and not of length 1.
+#[derive(Clone, Copy, Debug)]
+pub struct RayMaker {
+    origin: DVec3,
+    per_pixel: [DVec3; 2],
+    forward: DVec3,
+    middle: [f64; 2],
+    parallel: bool,
+}
+
+impl RayMaker {
+    /// The ray through (x, y), in pixels from the upper left corner of the picture.
+    #[inline]
+    pub fn through(&self, x: f64, y: f64) -> Ray {
+        let offset =
+            self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
+        if self.parallel {
+            Ray::new(self.origin + offset, self.forward)
+        } else {
+            Ray::new(self.origin, offset + self.forward)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn tutorial_camera_gives_the_tutorials_directions() {
+        let lens = Lens::FocalPx { focal: 500.0, width: 1000 };
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, lens).unwrap();
+        let ray = camera.rays([1000, 500]).through(3.0, 7.0);
+        assert_eq!(ray.direction, DVec3::new(3.0 - 500.0, 7.0 - 250.0, 500.0));
+    }
+
+    #[test]
+    fn right_of_the_picture_is_plus_x_when_looking_down_minus_z() {
+        let camera =
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::FovY(FRAC_PI_2)).unwrap();
+        assert_eq!((camera.right, camera.up), (DVec3::X, DVec3::Y));
+    }
+
+    #[test]
+    fn ninety_degrees_see_as_far_up_as_ahead() {
+        let camera =
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::FovY(FRAC_PI_2)).unwrap();
+        let top = camera.rays([200, 100]).through(100.0, 0.0).direction.normalize();
+        assert!((top.y + top.z).abs() < 1e-15, "{top}");
+    }
+
+    #[test]
+    fn focal_length_scales_with_the_width() {
+        let lens = Lens::FocalPx { focal: 500.0, width: 1000 };
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::Y, lens).unwrap();
+        let corner = |w: u32| camera.rays([w, w / 2]).through(0.0, 0.0).direction.normalize();
+        assert!((corner(1000) - corner(250)).length() < 1e-15);
+    }
+
+    #[test]
+    fn orthographic_rays_are_parallel() {
+        let camera =
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::OrthoHeight(2.0)).unwrap();
+        let rays = camera.rays([100, 100]);
+        let (a, b) = (rays.through(0.0, 0.0), rays.through(100.0, 50.0));
+        assert_eq!(a.direction, b.direction);
+        assert_eq!((a.origin, b.origin), (DVec3::new(-1.0, 1.0, 0.0), DVec3::X));
+    }
+
+    #[test]
+    fn up_along_the_view_is_an_error() {
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::Y, DVec3::Y, Lens::FovY(1.0));
+        assert!(camera.unwrap_err().message().contains("up"));
+    }
+}

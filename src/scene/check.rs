@@ -1,0 +1,210 @@
+//! What makes a scene valid, whoever built it.
+
+use glam::{DVec3, Vec3};
+
+use crate::error::{Error, Result};
+use crate::scene::{Camera, Lens, LightKind, Mesh, Scene, Texture};
+
+/// The largest picture, in pixels: 2³⁰, as many as four bytes a pixel fill 4 GiB.
+pub const MAX_PIXELS: u64 = 1 << 30;
+/// The most samples a pixel can have.
+pub const MAX_SPP: u32 = 1 << 16;
+/// The greatest absolute coordinate in world space; Embree ignores what lies beyond 1.8e18, and
+/// f32 products of coordinates must stay finite.
+pub const MAX_COORDINATE: f64 = 1e15;
+
+impl Scene {
+    /// Checks what the rest of the program takes for granted: numbers are finite and in range,
+    /// indices point at something.
+    ///
+    /// # Errors
+    /// The first thing that is not so, with the object's index.
+    pub fn check(&self) -> Result<()> {
+        check_size(self.film.size)?;
+        check_spp(self.film.spp)?;
+        color("the background", self.film.background)?;
+        for (i, material) in self.materials.iter().enumerate() {
+            let what = format!("material {i} (`{}`)", material.name);
+            color(&format!("{what}: diffuse"), material.diffuse)?;
+            color(&format!("{what}: specular"), material.specular)?;
+            color(&format!("{what}: emission"), material.emission)?;
+            require(material.shininess > 0.0 && material.shininess.is_finite(), || {
+                format!("{what}: shininess must be above 0, found {}", material.shininess)
+            })?;
+            for map in [material.diffuse_map, material.emission_map].into_iter().flatten() {
+                index(&what, "texture", map.0, self.textures.len())?;
+            }
+        }
+        for (i, texture) in self.textures.iter().enumerate() {
+            check_texture(i, texture)?;
+        }
+        for (i, sphere) in self.spheres.iter().enumerate() {
+            let what = format!("sphere {i}");
+            position(&format!("{what}: center"), sphere.center)?;
+            require(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE, || {
+                format!(
+                    "{what}: radius must be above 0 (and at most 1e15), found {}",
+                    sphere.radius
+                )
+            })?;
+            index(&what, "material", sphere.material.0, self.materials.len())?;
+        }
+        for (i, plane) in self.planes.iter().enumerate() {
+            let what = format!("plane {i}");
+            position(&format!("{what}: point"), plane.point)?;
+            unit(&format!("{what}: normal"), plane.normal)?;
+            index(&what, "material", plane.material.0, self.materials.len())?;
+            if let Some(checker) = plane.checker {
+                checker.colors.iter().try_for_each(|&c| color(&format!("{what}: checker"), c))?;
+                require(checker.size > 0.0 && checker.size.is_finite(), || {
+                    format!("{what}: the checker's size must be above 0, found {}", checker.size)
+                })?;
+            }
+        }
+        for (i, mesh) in self.meshes.iter().enumerate() {
+            check_mesh(i, mesh)?;
+        }
+        for (i, instance) in self.instances.iter().enumerate() {
+            let what = format!("instance {i}");
+            index(&what, "mesh", instance.mesh.0, self.meshes.len())?;
+            index(&what, "material", instance.material.0, self.materials.len())?;
+            let t = &instance.transform;
+            let determinant = t.matrix3.determinant();
+            require(t.is_finite() && determinant != 0.0 && determinant.is_finite(), || {
+                format!("{what}: its transform cannot be inverted (a scale of 0?)")
+            })?;
+        }
+        let extent = self.bounds().max_abs();
+        require(extent <= MAX_COORDINATE, || {
+            format!("the scene reaches out to {extent:e}, beyond the {MAX_COORDINATE:e} supported")
+        })?;
+        self.lights.iter().enumerate().try_for_each(|(i, l)| {
+            color(&format!("light {i}: intensity"), l.intensity)?;
+            check_light(i, &l.kind)
+        })?;
+        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))
+    }
+}
+
+/// Checks the size of a picture.
+///
+/// # Errors
+/// When a side is 0 or the picture has more than [`MAX_PIXELS`].
+pub fn check_size(size: [u32; 2]) -> Result<()> {
+    let [width, height] = size.map(u64::from);
+    require(width > 0 && height > 0 && width * height <= MAX_PIXELS, || {
+        format!("a picture of {width}x{height} pixels cannot be made")
+    })
+    .map_err(|e| e.help(format!("each side at least 1, and at most {MAX_PIXELS} pixels in all")))
+}
+
+/// Checks the samples per pixel.
+///
+/// # Errors
+/// When there are none or more than [`MAX_SPP`].
+pub fn check_spp(spp: u32) -> Result<()> {
+    require((1..=MAX_SPP).contains(&spp), || {
+        format!("samples per pixel must be from 1 to {MAX_SPP}, found {spp}")
+    })
+}
+
+fn check_texture(i: usize, texture: &Texture) -> Result<()> {
+    let image = &texture.image;
+    let pixels = u64::from(image.width) * u64::from(image.height);
+    require(pixels > 0 && pixels == image.texels.len() as u64, || {
+        format!(
+            "texture {i} (`{}`): {}x{} pixels declared, {} there",
+            image.name,
+            image.width,
+            image.height,
+            image.texels.len()
+        )
+    })
+}
+
+fn check_mesh(i: usize, mesh: &Mesh) -> Result<()> {
+    let what = format!("mesh {i} (`{}`)", mesh.name);
+    let count = mesh.positions.len();
+    require(mesh.positions.as_flattened().iter().all(|x| x.is_finite()), || {
+        format!("{what}: a vertex is not finite")
+    })?;
+    require(mesh.triangles.as_flattened().iter().all(|&v| (v as usize) < count), || {
+        format!("{what}: a triangle names a vertex that is not there ({count} vertices)")
+    })?;
+    for (name, length) in
+        [("normals", mesh.normals.len()), ("uvs", mesh.uvs.len()), ("colors", mesh.colors.len())]
+    {
+        require(length == 0 || length == count, || {
+            format!("{what}: {length} {name} for {count} vertices")
+        })?;
+    }
+    Ok(())
+}
+
+fn check_light(i: usize, kind: &LightKind) -> Result<()> {
+    let what = format!("light {i}");
+    match *kind {
+        LightKind::Ambient => Ok(()),
+        LightKind::Directional { direction } => unit(&format!("{what}: direction"), direction),
+        LightKind::Point { position: p, range, .. } => {
+            position(&format!("{what}: position"), p)?;
+            require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))
+        }
+        LightKind::Spot { position: p, direction, range, inner_angle, outer_angle, .. } => {
+            position(&format!("{what}: position"), p)?;
+            unit(&format!("{what}: direction"), direction)?;
+            require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))?;
+            let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
+            let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;
+            require(ordered && outer_angle <= right_angle, || {
+                format!(
+                    "{what}: 0 <= inner_angle < outer_angle <= 90 degrees, found {} and {}",
+                    inner_angle.to_degrees(),
+                    outer_angle.to_degrees()
+                )
+            })
+        }
+    }
+}
+
+fn check_camera(i: usize, camera: &Camera) -> Result<()> {
+    let what = format!("camera {i} (`{}`)", camera.name);
+    position(&format!("{what}: position"), camera.position)?;
+    unit(&format!("{what}: forward"), camera.forward)?;
+    unit(&format!("{what}: right"), camera.right)?;
+    unit(&format!("{what}: up"), camera.up)?;
+    let (value, in_range) = match camera.lens {
+        Lens::FovY(a) | Lens::FovX(a) => (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI),
+        Lens::FocalPx { focal, width } => (focal, focal > 0.0 && focal.is_finite() && width > 0),
+        Lens::OrthoHeight(h) => (h, h > 0.0 && h.is_finite()),
+    };
+    require(in_range, || {
+        format!("{what}: its field of view, focal length or height is out of range: {value}")
+    })
+}
+
+fn require(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::input(message())) }
+}
+
+fn position(what: &str, p: DVec3) -> Result<()> {
+    require(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE, || {
+        format!("{what}: must be finite and within 1e15 of the origin, found {p}")
+    })
+}
+
+fn unit(what: &str, v: DVec3) -> Result<()> {
+    require((v.length() - 1.0).abs() < 1e-6, || format!("{what}: must have length 1, found {v}"))
+}
+
+fn color(what: &str, c: Vec3) -> Result<()> {
+    require(c.is_finite() && c.min_element() >= 0.0, || {
+        format!("{what}: must be finite and not negative, found {c}")
+    })
+}
+
+fn index(what: &str, kind: &str, index: u32, count: usize) -> Result<()> {
+    require((index as usize) < count, || {
+        format!("{what}: there is no {kind} {index}, only {count} of them")
+    })
+}

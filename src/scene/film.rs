@@ -1,0 +1,110 @@
+//! What the picture is to be: size, samples, background, transfer.
+
+use glam::Vec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+/// How linear radiance becomes the bytes of a PNG.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Transfer {
+    /// The sRGB curve (IEC 61966-2-1).
+    #[default]
+    Srgb,
+    /// None: a byte is 255 times the value, as in the tutorial.
+    None,
+}
+
+impl Transfer {
+    /// The encoded value, in \[0, 1\], of a linear one; what lies outside is clamped.
+    pub fn encode(self, linear: f32) -> f32 {
+        // `max` before `min`, so that a NaN becomes 0 rather than NaN.
+        let x = linear.max(0.0).min(1.0);
+        match self {
+            Transfer::None => x,
+            Transfer::Srgb if x <= 0.003_130_8 => 12.92 * x,
+            Transfer::Srgb => 1.055 * x.powf(1.0 / 2.4) - 0.055,
+        }
+    }
+
+    /// The linear value of an encoded one in \[0, 1\]: the inverse of [`Transfer::encode`].
+    pub fn decode(self, encoded: f32) -> f32 {
+        match self {
+            Transfer::None => encoded,
+            Transfer::Srgb if encoded <= 0.040_45 => encoded / 12.92,
+            Transfer::Srgb => ((encoded + 0.055) / 1.055).powf(2.4),
+        }
+    }
+}
+
+/// Where in its square a pixel's samples are centred.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum SamplePosition {
+    /// At the middle of the pixel, (x + ½, y + ½).
+    #[default]
+    Center,
+    /// At its upper left corner, (x, y), as in the tutorial.
+    Corner,
+}
+
+impl SamplePosition {
+    /// The offset from (x, y), in pixels, on both axes.
+    pub fn offset(self) -> f64 {
+        match self {
+            SamplePosition::Center => 0.5,
+            SamplePosition::Corner => 0.0,
+        }
+    }
+}
+
+/// What the picture is to be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmSettings {
+    /// Width and height in pixels, each at least 1.
+    pub size: [u32; 2],
+    /// Samples per pixel, at least 1.
+    pub spp: u32,
+    /// How the PNG encodes radiance.
+    pub transfer: Transfer,
+    /// Radiance where a ray meets nothing, linear Rec. 709.
+    pub background: Vec3,
+    /// Where in the pixel the samples are centred.
+    pub sample_position: SamplePosition,
+}
+
+impl Default for FilmSettings {
+    fn default() -> Self {
+        Self {
+            size: [1280, 720],
+            spp: 1,
+            transfer: Transfer::Srgb,
+            background: Vec3::ZERO,
+            sample_position: SamplePosition::Center,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn srgb_decodes_every_byte_it_encodes() {
+        for byte in 0..=255u8 {
+            let value = byte as f32 / 255.0;
+            let back = Transfer::Srgb.encode(Transfer::Srgb.decode(value));
+            assert_eq!((back * 255.0).round() as u8, byte);
+        }
+    }
+
+    #[test]
+    fn srgb_of_middle_grey() {
+        assert!((Transfer::Srgb.encode(0.214_041_14) - 0.5).abs() < 1e-6);
+    }
+
+    #[test]
+    fn encoding_clamps_and_turns_nan_black() {
+        assert_eq!([-1.0, 7.0, f32::NAN].map(|x| Transfer::None.encode(x)), [0.0, 1.0, 0.0]);
+    }
+}

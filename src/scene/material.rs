@@ -1,0 +1,54 @@
+//! What surfaces are made of.
+
+use glam::Vec3;
+
+use crate::scene::TextureId;
+
+/// The index of a material in `Scene::materials`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct MaterialId(pub u32);
+
+/// A Lambert and Phong material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name, unique in a scene file; model files may repeat names.
+    pub name: String,
+    /// Share of light scattered to all sides, linear Rec. 709; without Lambert's 1/π, as in the
+    /// tutorial.
+    pub diffuse: Vec3,
+    /// Colours multiplied with `diffuse`, by the surface's texture coordinates.
+    pub diffuse_map: Option<TextureId>,
+    /// Share of light in the highlight, linear Rec. 709.
+    pub specular: Vec3,
+    /// The tutorial's α, above 0: the greater, the smaller the highlight.
+    pub shininess: f32,
+    /// Radiance of its own, linear Rec. 709; it lights nothing else.
+    pub emission: Vec3,
+    /// Colours multiplied with `emission`, by the surface's texture coordinates.
+    pub emission_map: Option<TextureId>,
+    /// Whether a sphere is lit on its inside too. Planes and meshes always are, on the side that
+    /// the viewer sees.
+    pub double_sided: bool,
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            diffuse: Vec3::splat(0.8),
+            diffuse_map: None,
+            specular: Vec3::ZERO,
+            shininess: 50.0,
+            emission: Vec3::ZERO,
+            emission_map: None,
+            double_sided: false,
+        }
+    }
+}
+
+impl Material {
+    /// Whether shading it needs texture coordinates.
+    pub fn is_textured(&self) -> bool {
+        self.diffuse_map.is_some() || self.emission_map.is_some()
+    }
+}

@@ -1,0 +1,121 @@
+//! The scene: plain, validated data with typed indices, and nothing that parses or traces.
+
+mod camera;
+pub mod check;
+mod film;
+mod light;
+mod material;
+mod mesh;
+mod object;
+mod texture;
+
+pub use camera::{Camera, Lens, RayMaker};
+pub use film::{FilmSettings, SamplePosition, Transfer};
+pub use light::{Arrival, Falloff, Light, LightKind};
+pub use material::{Material, MaterialId};
+pub use mesh::{Mesh, MeshId};
+pub use object::{Checker, Instance, Plane, Sphere};
+pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
+
+use crate::geometry::{Bounds, Geometry, PrimitiveId};
+
+/// Everything that determines the picture.
+///
+/// What `load` returns is complete and checked. A scene built by hand is checked when a renderer
+/// is made of it.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// Size, samples, background and transfer of the picture.
+    pub film: FilmSettings,
+    /// The cameras; the first one is used unless another is asked for.
+    pub cameras: Vec<Camera>,
+    /// The materials that objects refer to.
+    pub materials: Vec<Material>,
+    /// The textures that materials refer to.
+    pub textures: Vec<Texture>,
+    /// The analytic spheres.
+    pub spheres: Vec<Sphere>,
+    /// The infinite planes.
+    pub planes: Vec<Plane>,
+    /// The meshes, each stored once.
+    pub meshes: Vec<Mesh>,
+    /// Where the meshes stand.
+    pub instances: Vec<Instance>,
+    /// The lights.
+    pub lights: Vec<Light>,
+    /// What the loader could not do as the files ask, or found odd; one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Adds a material.
+    pub fn add_material(&mut self, material: Material) -> MaterialId {
+        self.materials.push(material);
+        MaterialId(self.materials.len() as u32 - 1)
+    }
+
+    /// Adds a texture.
+    pub fn add_texture(&mut self, texture: Texture) -> TextureId {
+        self.textures.push(texture);
+        TextureId(self.textures.len() as u32 - 1)
+    }
+
+    /// Adds a mesh; it is seen only where an [`Instance`] of it stands.
+    pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
+        self.meshes.push(mesh);
+        MeshId(self.meshes.len() as u32 - 1)
+    }
+
+    /// The material of a primitive.
+    ///
+    /// # Panics
+    /// When the primitive is not one of this scene.
+    #[inline]
+    pub fn material_of(&self, id: PrimitiveId) -> MaterialId {
+        match id.geometry {
+            Geometry::Spheres => self.spheres[id.primitive as usize].material,
+            Geometry::Planes => self.planes[id.primitive as usize].material,
+            Geometry::Mesh(_) => self.instances[id.instance as usize].material,
+        }
+    }
+
+    /// Whether a primitive keeps light from what lies behind it.
+    ///
+    /// # Panics
+    /// When the primitive is not one of this scene.
+    #[inline]
+    pub fn casts_shadow(&self, id: PrimitiveId) -> bool {
+        match id.geometry {
+            Geometry::Spheres => self.spheres[id.primitive as usize].casts_shadow,
+            Geometry::Planes => self.planes[id.primitive as usize].casts_shadow,
+            Geometry::Mesh(_) => self.instances[id.instance as usize].casts_shadow,
+        }
+    }
+
+    /// The corners, in world space, of the triangle that `id` names.
+    ///
+    /// This is the one function that bakes vertices: whoever tests a triangle in f64 tests these.
+    ///
+    /// # Panics
+    /// When `id` is not a triangle of this scene.
+    #[inline]
+    pub fn triangle(&self, id: PrimitiveId) -> [glam::DVec3; 3] {
+        let instance = &self.instances[id.instance as usize];
+        let mesh = &self.meshes[instance.mesh.0 as usize];
+        mesh.corners(id.primitive).map(|p| instance.bake(p))
+    }
+
+    /// The box around all that is finite: spheres and instances, not planes.
+    pub fn bounds(&self) -> Bounds {
+        let spheres = self.spheres.iter().map(Sphere::bounds);
+        let mesh_bounds: Vec<Bounds> = self.meshes.iter().map(Mesh::bounds).collect();
+        let instances =
+            self.instances.iter().map(|i| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform));
+        spheres.chain(instances).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// How many triangles a ray can meet, counting each instance of a mesh.
+    pub fn triangle_count(&self) -> u64 {
+        self.instances.iter().map(|i| self.meshes[i.mesh.0 as usize].triangles.len() as u64).sum()
+    }
+}
