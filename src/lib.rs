@@ -2,5 +2,6 @@
 
 pub mod error;
 pub mod geometry;
+pub mod intersect;
 pub mod load;
 pub mod scene;
