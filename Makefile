@@ -21,8 +21,7 @@ demo: setup ## build, and render and validate the demo scenes into out/
 	$(CARGO) build --release --locked
 	$(CARGO) run --release --locked --quiet --example demo
 
-# The compiler's caches of the two feature sets differ only in this crate, so all share one target
-# directory. Doctests and the documentation come with both sets too: each has its own public items.
+# One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
 	$(CARGO) fmt --check
 	$(CARGO) clippy --locked --all-targets -- -D warnings
@@ -41,10 +40,11 @@ check: ## the inner loop: format, lints and unit tests, default features, no set
 # Embree goes along only if set-up fetched it: a system's own is found where it stands.
 install: setup ## build and install under PREFIX (default: ~/.local), with Embree if it was fetched
 	$(CARGO) install --path . --locked --no-track --force --root '$(DESTDIR)$(PREFIX)'
-	rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
-	if [ -z "$$EMBREE_DIR" ] && [ -f .deps/embree/stamp ]; then \
+	@rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
+	@if [ -z "$$EMBREE_DIR" ] && [ -f .deps/embree/stamp ]; then \
 	    mkdir -p '$(DESTDIR)$(PREFIX)/lib/envers' && \
-	    cp .deps/embree/lib*.so.* '$(DESTDIR)$(PREFIX)/lib/envers/'; \
+	    cp .deps/embree/lib*.so.* '$(DESTDIR)$(PREFIX)/lib/envers/' && \
+	    echo 'Embree is in $(DESTDIR)$(PREFIX)/lib/envers'; \
 	fi
 
 uninstall: ## remove what `make install` put under PREFIX
