@@ -137,7 +137,12 @@ impl<'a> Buffers<'a> {
 /// An element of one of the root's lists, or the error that `by` names none.
 pub fn get<'r, T>(list: &'r [T], index: usize, kind: &str, by: &str) -> Result<&'r T> {
     list.get(index).ok_or_else(|| {
-        Error::input(format!("there is no {kind} {index}, only {} of them", list.len()))
+        let found = match list.len() {
+            0 => "the file has none".to_owned(),
+            1 => "the file has one, number 0".to_owned(),
+            n => format!("the file has {n}, from 0 to {}", n - 1),
+        };
+        Error::input(format!("there is no {kind} {index}: {found}"))
             .place(Place::Json(by.to_owned()))
     })
 }

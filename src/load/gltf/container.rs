@@ -96,8 +96,8 @@ pub fn parse(bytes: &[u8]) -> Result<json::Root> {
     Ok(root)
 }
 
-/// The second try at a file that the crate's types refuse: they demand a scene's `nodes`, which
-/// the standard does not, and cannot say that a file is glTF 1.0.
+/// The second try at a file that the crate's types refuse. They demand more than the standard
+/// does, also of what is never used here, and cannot say that a file is glTF 1.0.
 fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
     let refused = || syntax(bytes, error);
     let mut value: Value = json::deserialize::from_slice(bytes).map_err(|_| refused())?;
@@ -106,13 +106,17 @@ fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
         Some(Value::String(version)) => {
             return Err(wrong_version(version).place(Place::Json("asset.version".to_owned())));
         }
+        // Some files of glTF 1.0 have a number.
         Some(other) => {
-            return Err(Error::input(format!("the version is {other}, not a string"))
-                .place(Place::Json("asset.version".to_owned()))
-                .help("`\"version\": \"2.0\"`"));
+            return Err(
+                wrong_version(&other.to_string()).place(Place::Json("asset.version".to_owned()))
+            );
         }
         // The first glTF 1.0 files had no `asset`, but objects where 2.0 has arrays.
-        None if value.get("meshes").is_some_and(Value::is_object) => {
+        None if ["meshes", "techniques"]
+            .iter()
+            .any(|k| value.get(k).is_some_and(Value::is_object)) =>
+        {
             return Err(wrong_version("1.0"));
         }
         None => {
@@ -125,7 +129,38 @@ fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
             scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
         }
     }
+    // That there are animations is all that is asked of them.
+    for one in value.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
+        for list in ["channels", "samplers"] {
+            if let Some(Value::Array(list)) = one.get_mut(list) {
+                list.clear();
+            }
+        }
+    }
+    soften(&mut value);
     json::deserialize::from_value(value).map_err(|_| refused())
+}
+
+/// Drops `extras`, which may be anything, and writes 1.0 as 1, which may stand where an integer
+/// belongs.
+fn soften(value: &mut Value) {
+    let mut open = vec![value];
+    while let Some(value) = open.pop() {
+        match value {
+            Value::Object(map) => {
+                map.remove("extras");
+                open.extend(map.values_mut());
+            }
+            Value::Array(items) => open.extend(items),
+            Value::Number(n) => {
+                let whole = n.as_f64().filter(|x| n.is_f64() && *x >= 0.0 && x.fract() == 0.0);
+                if let Some(whole) = whole.filter(|&x| x < 2f64.powi(53)) {
+                    *n = (whole as u64).into();
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 fn syntax(bytes: &[u8], error: &json::Error) -> Error {
@@ -239,6 +274,19 @@ mod tests {
     fn scene_without_nodes_is_valid() {
         let root = parse(br#"{"asset":{"version":"2.0"},"scenes":[{}]}"#).unwrap();
         assert_eq!(root.scenes.len(), 1);
+    }
+
+    #[test]
+    fn integer_written_as_float_is_valid() {
+        let root = parse(br#"{"asset":{"version":"2.0"},"nodes":[{"mesh":1.0}]}"#).unwrap();
+        assert_eq!(root.nodes[0].mesh.unwrap().value(), 1);
+    }
+
+    #[test]
+    fn extras_and_animations_may_be_anything() {
+        let file = br#"{"asset":{"version":"2.0","extras":42},
+            "animations":[{"channels":[{"sampler":0,"target":{}}],"samplers":[]}]}"#;
+        assert_eq!(parse(file).unwrap().animations.len(), 1);
     }
 
     #[test]

@@ -50,7 +50,7 @@ fn remedy(name: &str) -> &'static str {
         "EXT_mesh_gpu_instancing" => {
             "export it without GPU instancing, so that every instance is a node"
         }
-        "KHR_techniques_webgl" => "export it with glTF's own materials",
+        "KHR_techniques_webgl" | "KHR_technique_webgl" => "export it with glTF's own materials",
         _ => {
             "export it without the extension; `npx @gltf-transform/cli inspect IN.glb` lists what \
              uses it"

@@ -44,9 +44,7 @@ pub fn read(
     });
     mesh.normals = reader.normals(mesh.positions.len(), tally)?;
     mesh.colors = reader.colors(mesh.positions.len(), tally)?;
-    if let Some(uv) = uv {
-        mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
-    }
+    mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
     repair(&mut mesh, tally, at);
     Ok((!mesh.triangles.is_empty()).then_some(mesh))
 }
@@ -114,10 +112,15 @@ impl Reader<'_> {
         Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
     }
 
-    fn uvs(&self, uv: &UvMap, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
+    /// Without a texture that asks for them the first set is kept, for who lays another material
+    /// on the model.
+    fn uvs(&self, uv: Option<&UvMap>, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
+        let is_needed = uv.is_some();
+        let first = UvMap::default();
+        let uv = uv.unwrap_or(&first);
         let semantic = Semantic::TexCoords(uv.set);
         let Some(index) = self.fitting(&semantic, count, tally) else {
-            if self.index(semantic.clone()).is_none() {
+            if is_needed && self.index(semantic.clone()).is_none() {
                 let reason = "{} primitives have a texture but lack its texture coordinates";
                 tally.add(reason, 1, || self.place(&semantic));
             }
