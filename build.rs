@@ -36,10 +36,7 @@ struct Target {
 impl Target {
     fn of_this_build() -> Self {
         let get = |name| env::var(name).expect("cargo sets it");
-        Self {
-            os: get("CARGO_CFG_TARGET_OS"),
-            arch: get("CARGO_CFG_TARGET_ARCH"),
-        }
+        Self { os: get("CARGO_CFG_TARGET_OS"), arch: get("CARGO_CFG_TARGET_ARCH") }
     }
 
     /// The file that a linker looks for under the name `embree4`.
@@ -55,13 +52,9 @@ impl Target {
     fn searched_anyway(&self) -> Vec<PathBuf> {
         match self.os.as_str() {
             "windows" | "macos" => vec![],
-            _ => [
-                &format!("/usr/lib/{}-linux-gnu", self.arch),
-                "/usr/lib64",
-                "/usr/lib",
-            ]
-            .map(PathBuf::from)
-            .into(),
+            _ => [&format!("/usr/lib/{}-linux-gnu", self.arch), "/usr/lib64", "/usr/lib"]
+                .map(PathBuf::from)
+                .into(),
         }
     }
 
@@ -88,19 +81,14 @@ fn find_embree(target: &Target, root: &Path) -> Result<PathBuf, String> {
     if let Some(named) = env::var_os("EMBREE_DIR").filter(|value| !value.is_empty()) {
         let named = PathBuf::from(named);
         // An explicit wish is not silently replaced by what happens to stand elsewhere.
-        return [
-            "",
-            "lib",
-            "lib64",
-            &format!("lib/{}-linux-gnu", target.arch),
-        ]
-        .iter()
-        .map(|below| named.join(below))
-        .find(|folder| folder.join(library).exists())
-        .ok_or_else(|| {
-            let named = named.display();
-            format!("EMBREE_DIR is {named}, and neither it nor its lib or lib64 has {library}")
-        });
+        return ["", "lib", "lib64", &format!("lib/{}-linux-gnu", target.arch)]
+            .iter()
+            .map(|below| named.join(below))
+            .find(|folder| folder.join(library).exists())
+            .ok_or_else(|| {
+                let named = named.display();
+                format!("EMBREE_DIR is {named}, and neither it nor its lib or lib64 has {library}")
+            });
     }
     let mut folders = vec![root.join(".deps/embree")];
     folders.extend(target.searched_anyway());
@@ -116,15 +104,8 @@ fn find_embree(target: &Target, root: &Path) -> Result<PathBuf, String> {
 
 /// Links with the library in `folder`, such that programs, tests and doctests find it again.
 fn link(target: &Target, folder: &Path) {
-    println!(
-        "cargo::rerun-if-changed={}",
-        folder.join(target.library()).display()
-    );
-    if target
-        .searched_anyway()
-        .iter()
-        .any(|searched| searched == folder)
-    {
+    println!("cargo::rerun-if-changed={}", folder.join(target.library()).display());
+    if target.searched_anyway().iter().any(|searched| searched == folder) {
         println!("cargo::rustc-link-search=native={}", folder.display());
         return;
     }
@@ -180,24 +161,10 @@ fn warn_without_libclang(root: &Path) {
         let apple = "Library/Developer/CommandLineTools/usr/lib";
         let xcode = "Applications/Xcode.app/Contents/Developer/Toolchains";
         folders.push(Path::new("/").join(apple));
-        folders.push(
-            Path::new("/")
-                .join(xcode)
-                .join("XcodeDefault.xctoolchain/usr/lib"),
-        );
-        folders.extend(
-            below(Path::new("/usr/local/opt"))
-                .into_iter()
-                .map(|f| f.join("lib")),
-        );
+        folders.push(Path::new("/").join(xcode).join("XcodeDefault.xctoolchain/usr/lib"));
+        folders.extend(below(Path::new("/usr/local/opt")).into_iter().map(|f| f.join("lib")));
     }
-    for top in [
-        "/usr/lib",
-        "/usr/lib32",
-        "/usr/lib64",
-        "/usr/local/lib",
-        "/usr/local/lib64",
-    ] {
+    for top in ["/usr/lib", "/usr/lib32", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"] {
         for folder in below(Path::new(top)) {
             // /usr/lib/llvm-19/lib
             folders.push(folder.join("lib"));
@@ -210,10 +177,7 @@ fn warn_without_libclang(root: &Path) {
         return;
     }
     // The file that set-up will write: not being there, it has this looked at again each time.
-    println!(
-        "cargo::rerun-if-changed={}",
-        root.join(".cargo/config.toml").display()
-    );
+    println!("cargo::rerun-if-changed={}", root.join(".cargo/config.toml").display());
     println!(
         "cargo::warning=libclang seems to be missing, and bindgen will panic without it: run \
          `make setup`, or `sudo apt install libclang-dev` (Fedora: clang-devel, Arch: clang, \
@@ -228,16 +192,12 @@ fn has_libclang(folder: &Path) -> bool {
         let named = name.starts_with("libclang.") || name.starts_with("libclang-");
         shared && named && !name.starts_with("libclang-cpp")
     };
-    below(folder)
-        .iter()
-        .any(|path| path.file_name().and_then(|n| n.to_str()).is_some_and(is))
+    below(folder).iter().any(|path| path.file_name().and_then(|n| n.to_str()).is_some_and(is))
 }
 
 fn below(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten();
-    entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .collect()
+    entries.filter_map(|entry| Some(entry.ok()?.path())).collect()
 }
 
 fn how_to_get_embree(why: &str) -> String {

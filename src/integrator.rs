@@ -10,7 +10,7 @@ use glam::Vec3;
 use crate::film::{Pixel, View};
 use crate::geometry::{Geometry, Hit, Ray};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{LightKind, RayMaker, Scene};
+use crate::scene::{FilmSettings, LightKind, RayMaker, Scene};
 use crate::shading::{self, Reflectance};
 use crate::surface::Surface;
 
@@ -96,8 +96,7 @@ impl<'a> Integrator<'a> {
     ) -> Self {
         // Debug views are not averages: one sample.
         let spp = if view == View::Beauty { scene.film.spp } else { 1 };
-        let offset = scene.film.sample_position.offset();
-        let samples = sample_offsets(spp).map(|[x, y]| [x + offset, y + offset]).collect();
+        let samples = sample_positions(&FilmSettings { spp, ..scene.film.clone() });
         Self { scene, intersector, rays, view, samples }
     }
 
@@ -267,6 +266,12 @@ impl<'a> Integrator<'a> {
             }
         }
     }
+}
+
+/// Where the samples of a pixel lie, as offsets from its upper left corner.
+pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
+    let offset = film.sample_position.offset();
+    sample_offsets(film.spp).map(|[x, y]| [x + offset, y + offset]).collect()
 }
 
 /// Where the samples of a pixel lie, relative to its sample position; their mean is 0 and they

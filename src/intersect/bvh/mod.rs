@@ -161,8 +161,8 @@ mod tests {
 
     #[test]
     fn equal_distances_go_to_the_lesser_primitive() {
-        let mut scene = Scene::default();
-        scene.spheres = vec![Sphere::new(DVec3::Z * 5.0, 1.0, MaterialId(0)); 9];
+        let spheres = vec![Sphere::new(DVec3::Z * 5.0, 1.0, MaterialId(0)); 9];
+        let scene = Scene { spheres, ..Scene::default() };
         let mut hits = [None];
         let ray = [Ray::new(DVec3::ZERO, DVec3::Z)];
         Bvh::build(&scene).closest(&ray, Coherence::Coherent, &mut hits);

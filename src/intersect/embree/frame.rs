@@ -59,17 +59,22 @@ impl Frame {
 
     /// A box of user geometry, recentred, widened and rounded outward.
     pub fn padded(&self, bounds: &Bounds) -> ([f32; 3], [f32; 3]) {
-        let pad = PAD * self.extent;
+        let pad = self.margin();
         let lower = (bounds.lower - self.center - pad).as_vec3().to_array();
         let upper = (bounds.upper - self.center + pad).as_vec3().to_array();
         (lower.map(f32::next_down), upper.map(f32::next_up))
+    }
+
+    /// How far an f32 ray may be from the exact one, and then some; see the head of this file.
+    pub fn margin(&self) -> f64 {
+        PAD * self.extent
     }
 
     /// Distance, in units of an f32 ray's direction, within which its t says nothing about which
     /// side of a surface it starts on: the errors above, with the direction at least 1 long and
     /// a triangle seen at a grazing angle allowed for.
     pub fn doubt(&self) -> f32 {
-        (1024.0 * PAD * self.extent) as f32
+        (1024.0 * self.margin()) as f32
     }
 }
 
@@ -130,7 +135,7 @@ impl<const W: usize> Exact<W> {
     ///
     /// Returns which lanes need tracing: those whose ray comes into the scene's box at all.
     #[inline(always)]
-    pub fn to_f32(
+    pub fn set_up(
         &mut self,
         frame: &Frame,
         org: &mut [[f32; W]; 3],
@@ -141,7 +146,7 @@ impl<const W: usize> Exact<W> {
         let mut far = false;
         for i in 0..W {
             let p = (self.line(i).0 - frame.center).abs();
-            far |= !(p.max_element() <= REACH * frame.extent);
+            far |= p.max_element() > REACH * frame.extent;
         }
         self.start = [0.0; W];
         if far {
@@ -219,7 +224,7 @@ mod tests {
         let mut exact = Exact::<1>::new();
         exact.load(&[ray]);
         let (mut org, mut dir, mut tfar) = ([[0.0]; 3], [[0.0]; 3], [0.0]);
-        let inside = exact.to_f32(frame, &mut org, &mut dir, &mut tfar)[0];
+        let inside = exact.set_up(frame, &mut org, &mut dir, &mut tfar)[0];
         (exact, org.map(|a| a[0]), dir.map(|a| a[0]), tfar[0], inside)
     }
 

@@ -88,6 +88,13 @@ impl<'s> Embree<'s> {
         Ok(Self { scene, frame, width, instance_of, committed, version, _spheres: spheres })
     }
 
+    /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
+    /// `fast` cannot tell apart. Within an instance it may be magnified by the instance's own
+    /// space.
+    pub fn margin(&self) -> f64 {
+        self.frame.margin()
+    }
+
     fn target(&self) -> query::Target<'_> {
         query::Target {
             handle: scene_handle(&self.committed.scene),

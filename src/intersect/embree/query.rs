@@ -105,7 +105,7 @@ fn closest<const W: usize>(
     let mut record = RayHit::<W>::new();
     for (rays, hits) in rays.chunks(W).zip(hits.chunks_mut(W)) {
         exact.load(rays);
-        let inside = exact.to_f32(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
         record.geom = [INVALID; W];
         record.inst = [INVALID; W];
         let valid = lanes(rays.len(), inside);
@@ -177,7 +177,7 @@ fn occluded<const W: usize>(
     let mut record = RayHit::<W>::new();
     for (rays, blocked) in rays.chunks(W).zip(blocked.chunks_mut(W)) {
         exact.load(rays);
-        let inside = exact.to_f32(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
         let valid = lanes(rays.len(), inside);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());

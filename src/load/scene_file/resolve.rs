@@ -16,7 +16,7 @@ use super::spanned::{At, Table};
 use super::suggest;
 use super::tables::{FilmTable, MaterialTable, PlaneTable, SceneTable, SphereTable};
 use crate::error::Result;
-use crate::load::{framing, picture};
+use crate::load::picture;
 use crate::scene::check::{self, MAX_COORDINATE};
 use crate::scene::{
     Checker, FilmSettings, Filter, Material, MaterialId, Plane, Scene, Sphere, Texture, TextureId,
@@ -50,8 +50,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable) -> Result<Scene> {
     }
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
-    let mut scene = resolver.scene;
-    framing::frame(&mut scene);
+    let scene = resolver.scene;
     Ok(scene)
 }
 
