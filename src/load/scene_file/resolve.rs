@@ -138,7 +138,8 @@ impl Resolver<'_> {
             return Ok(Some(texture));
         }
         let image = picture::read(&path).map_err(|e| {
-            self.source.error(span, format!("the picture {}: {}", path.display(), e.message()))
+            let message = format!("the picture {}: {}", path.display(), e.message());
+            self.source.error(span, message).help("a path is relative to the scene file's folder")
         })?;
         let texture = Texture {
             image: Arc::new(image),
