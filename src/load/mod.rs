@@ -9,7 +9,9 @@ mod gltf;
 mod obj;
 mod picture;
 mod place;
+mod repair;
 mod scene_file;
+mod tally;
 
 use std::path::Path;
 

@@ -1,0 +1,291 @@
+//! Accessors: typed arrays within buffers. The crate's own readers take a valid file for granted;
+//! these check every offset and every index.
+
+use std::cell::Cell;
+
+use gltf::json;
+use gltf::json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
+use gltf::json::validation::Checked;
+
+use super::buffers::{Buffers, get, range};
+use crate::error::{Error, Place, Result};
+
+/// The most elements that all accessors of a file together can ask for: about 3 GiB of positions.
+/// It bounds what a small file with sparse or repeated accessors can make us store.
+pub const MAX_ELEMENTS: u64 = 1 << 28;
+/// The most elements of an accessor without a buffer view, which costs its file nothing.
+pub const MAX_VIRTUAL_ELEMENTS: u64 = 1 << 24;
+
+/// Reads accessors.
+pub struct Accessors<'a> {
+    root: &'a json::Root,
+    buffers: &'a Buffers<'a>,
+    left: Cell<u64>,
+}
+
+/// A number within a buffer: what it is and how it reads.
+#[derive(Clone, Copy)]
+struct Number {
+    kind: ComponentType,
+    normalized: bool,
+}
+
+impl<'a> Accessors<'a> {
+    /// The accessors of a file.
+    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>) -> Self {
+        Self { root, buffers, left: Cell::new(MAX_ELEMENTS) }
+    }
+
+    /// How many elements an accessor has, 0 if there is no such accessor.
+    pub fn count(&self, index: usize) -> u64 {
+        self.root.accessors.get(index).map_or(0, |a| a.count.0)
+    }
+
+    /// How many numbers an element has, 0 if there is no such accessor.
+    pub fn width(&self, index: usize) -> usize {
+        match self.root.accessors.get(index).map(|a| a.type_) {
+            Some(Checked::Valid(t)) => t.multiplicity(),
+            _ => 0,
+        }
+    }
+
+    /// Elements of `N` floats; integers are normalised where the accessor says so.
+    /// `by` is the place of what refers to the accessor.
+    pub fn floats<const N: usize>(&self, index: usize, by: &str) -> Result<Vec<[f32; N]>> {
+        self.read(index, by, Number::float)
+    }
+
+    /// Elements of `N` floats, with integers normalised whatever the accessor says: colours mean
+    /// nothing otherwise.
+    pub fn colors<const N: usize>(&self, index: usize, by: &str) -> Result<Vec<[f32; N]>> {
+        self.read(index, by, |number, bytes| Number { normalized: true, ..number }.float(bytes))
+    }
+
+    /// Vertex indices.
+    pub fn indices(&self, index: usize, by: &str) -> Result<Vec<u32>> {
+        let accessor = get(&self.root.accessors, index, "accessor", by)?;
+        let kind = component(accessor, index)?;
+        if !matches!(kind, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
+            let place = Place::Json(format!("accessors[{index}].componentType"));
+            return Err(Error::input(format!("indices cannot be {}", name(kind)))
+                .place(place)
+                .help("unsigned byte (5121), short (5123) or int (5125)"));
+        }
+        Ok(self.read::<u32, 1>(index, by, Number::integer)?.into_iter().map(|[i]| i).collect())
+    }
+
+    fn read<T: Copy + Default, const N: usize>(
+        &self,
+        index: usize,
+        by: &str,
+        decode: impl Fn(Number, &[u8]) -> T,
+    ) -> Result<Vec<[T; N]>> {
+        let accessor = get(&self.root.accessors, index, "accessor", by)?;
+        let at = format!("accessors[{index}]");
+        let number = Number { kind: component(accessor, index)?, normalized: accessor.normalized };
+        self.check_type::<N>(accessor, &at, by)?;
+        let count = self.check_count(accessor, &at)?;
+        let mut elements = Vec::new();
+        let decode_element = |bytes: &[u8]| {
+            let mut element = [T::default(); N];
+            for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(number.kind.size())) {
+                *value = decode(number, bytes);
+            }
+            element
+        };
+        match accessor.buffer_view {
+            Some(view) => {
+                let offset = accessor.byte_offset.map_or(0, |o| o.0);
+                let stride = self.stride(view.value());
+                let place = format!("{at}.bufferView");
+                let bytes = self.buffers.view(view.value(), &place)?;
+                let size = N * number.kind.size();
+                let rows = Rows::new(bytes, offset, stride.unwrap_or(size), size, count)
+                    .ok_or_else(|| past_the_view(&at, count, view.value(), bytes.len()))?;
+                elements.extend(rows.map(decode_element));
+            }
+            // Without a view all is zero, save what a sparse part replaces.
+            None => elements.resize(count, [T::default(); N]),
+        }
+        if let Some(sparse) = &accessor.sparse {
+            let size = N * number.kind.size();
+            for (target, bytes) in self.sparse(sparse, &at, count, size)? {
+                if let Some(element) = elements.get_mut(target) {
+                    *element = decode_element(bytes);
+                }
+            }
+        }
+        Ok(elements)
+    }
+
+    fn check_type<const N: usize>(&self, accessor: &Accessor, at: &str, by: &str) -> Result<()> {
+        let found = match accessor.type_ {
+            Checked::Valid(t) => t,
+            Checked::Invalid => {
+                return Err(Error::input("this is no known type")
+                    .place(Place::Json(format!("{at}.type")))
+                    .help("`SCALAR`, `VEC2`, `VEC3` or `VEC4`"));
+            }
+        };
+        let right = match N {
+            1 => Type::Scalar,
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            _ => Type::Vec4,
+        };
+        if found == right {
+            return Ok(());
+        }
+        Err(Error::input(format!("the type is {found:?} where {by} needs {right:?}"))
+            .place(Place::Json(format!("{at}.type"))))
+    }
+
+    fn check_count(&self, accessor: &Accessor, at: &str) -> Result<usize> {
+        let count = accessor.count.0;
+        let limit = match accessor.buffer_view {
+            Some(_) => MAX_ELEMENTS,
+            None => MAX_VIRTUAL_ELEMENTS,
+        };
+        let left = self.left.get();
+        if count > limit || count > left {
+            return Err(Error::input(format!("{count} elements are too many"))
+                .place(Place::Json(format!("{at}.count")))
+                .help(format!("at most {limit} in one accessor, {MAX_ELEMENTS} in a file")));
+        }
+        self.left.set(left - count);
+        Ok(count as usize)
+    }
+
+    /// The distance between elements, where the view gives one.
+    fn stride(&self, view: usize) -> Option<usize> {
+        self.root.buffer_views.get(view)?.byte_stride.map(|s| s.0).filter(|&s| s > 0)
+    }
+
+    /// The elements that a sparse accessor replaces: which, and by what bytes.
+    fn sparse(
+        &self,
+        sparse: &Sparse,
+        at: &str,
+        total: usize,
+        size: usize,
+    ) -> Result<impl Iterator<Item = (usize, &[u8])>> {
+        let place = |what: &str| format!("{at}.sparse.{what}");
+        let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
+        if count > total {
+            return Err(Error::input(format!("{count} of {total} elements are replaced"))
+                .place(Place::Json(place("count"))));
+        }
+        let Checked::Valid(kind) = sparse.indices.component_type else {
+            return Err(Error::input("this is no type for indices")
+                .place(Place::Json(place("indices.componentType")))
+                .help("unsigned byte (5121), short (5123) or int (5125)"));
+        };
+        let index = Number { kind: kind.0, normalized: false };
+        let rows = |view: usize, offset: u64, size: usize, what: &str| {
+            let bytes = self.buffers.view(view, &place(&format!("{what}.bufferView")))?;
+            Rows::new(bytes, offset, size, size, count)
+                .ok_or_else(|| past_the_view(&place(what), count, view, bytes.len()))
+        };
+        let (indices, values) = (&sparse.indices, &sparse.values);
+        let targets =
+            rows(indices.buffer_view.value(), indices.byte_offset.0, kind.0.size(), "indices")?;
+        let values = rows(values.buffer_view.value(), values.byte_offset.0, size, "values")?;
+        let targets: Vec<usize> = targets.map(|bytes| index.integer(bytes) as usize).collect();
+        if let Some(bad) = targets.iter().find(|&&t| t >= total) {
+            return Err(Error::input(format!("element {bad} is replaced, of {total}"))
+                .place(Place::Json(place("indices"))));
+        }
+        Ok(targets.into_iter().zip(values))
+    }
+}
+
+fn component(accessor: &Accessor, index: usize) -> Result<ComponentType> {
+    match accessor.component_type {
+        Checked::Valid(kind) => Ok(kind.0),
+        Checked::Invalid => Err(Error::input("this is no known component type")
+            .place(Place::Json(format!("accessors[{index}].componentType")))
+            .help("5120 to 5123, 5125 or 5126")),
+    }
+}
+
+fn past_the_view(at: &str, count: usize, view: usize, length: usize) -> Error {
+    Error::input(format!(
+        "its {count} elements do not fit in the {length} bytes of bufferViews[{view}]"
+    ))
+    .place(Place::Json(at.to_owned()))
+    .help("the file is damaged or was written wrong; export it again")
+}
+
+fn name(kind: ComponentType) -> &'static str {
+    match kind {
+        ComponentType::I8 => "signed bytes",
+        ComponentType::U8 => "unsigned bytes",
+        ComponentType::I16 => "signed shorts",
+        ComponentType::U16 => "unsigned shorts",
+        ComponentType::U32 => "unsigned ints",
+        ComponentType::F32 => "floats",
+    }
+}
+
+/// Elements of `size` bytes, `stride` bytes apart, known to lie within their bytes.
+struct Rows<'a> {
+    bytes: &'a [u8],
+    stride: usize,
+    size: usize,
+    left: usize,
+}
+
+impl<'a> Rows<'a> {
+    fn new(bytes: &'a [u8], offset: u64, stride: usize, size: usize, count: usize) -> Option<Self> {
+        if count == 0 {
+            return Some(Self { bytes: &[], stride, size, left: 0 });
+        }
+        let length = (count as u64 - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
+        Some(Self { bytes: range(bytes, offset, length)?, stride, size, left: count })
+    }
+}
+
+impl<'a> Iterator for Rows<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        self.left = self.left.checked_sub(1)?;
+        let row = self.bytes.get(..self.size)?;
+        self.bytes = self.bytes.get(self.stride..).unwrap_or_default();
+        Some(row)
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl Number {
+    /// The value as a float. Normalised integers map as the standard's part 3.6.2.2 says.
+    fn float(self, bytes: &[u8]) -> f32 {
+        let scale = |value: f32, greatest: f32| {
+            if self.normalized { (value / greatest).max(-1.0) } else { value }
+        };
+        match *bytes {
+            [a] if self.kind == ComponentType::I8 => scale(f32::from(a as i8), 127.0),
+            [a] => scale(f32::from(a), 255.0),
+            [a, b] if self.kind == ComponentType::I16 => {
+                scale(f32::from(i16::from_le_bytes([a, b])), 32767.0)
+            }
+            [a, b] => scale(f32::from(u16::from_le_bytes([a, b])), 65535.0),
+            [a, b, c, d] if self.kind == ComponentType::F32 => f32::from_le_bytes([a, b, c, d]),
+            [a, b, c, d] => scale(u32::from_le_bytes([a, b, c, d]) as f32, u32::MAX as f32),
+            _ => 0.0,
+        }
+    }
+
+    /// The value as an unsigned integer.
+    fn integer(self, bytes: &[u8]) -> u32 {
+        match *bytes {
+            [a] => u32::from(a),
+            [a, b] => u32::from(u16::from_le_bytes([a, b])),
+            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
+            _ => 0,
+        }
+    }
+}

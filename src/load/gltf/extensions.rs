@@ -1,0 +1,59 @@
+//! Which extensions are read, and what to do about the others.
+
+use gltf::json;
+
+use crate::error::{Error, Place, Result};
+use crate::load::tally::Tally;
+
+/// The extensions that are read, or that change nothing which is.
+const READ: [&str; 9] = [
+    "EXT_texture_webp",
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+];
+
+/// Refuses a file that cannot be shown without an extension that isn't read, and warns of
+/// extensions that a file uses but can do without.
+pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
+    let is_read = |name: &str| READ.contains(&name);
+    for (i, name) in root.extensions_required.iter().enumerate() {
+        if !is_read(name) {
+            return Err(Error::input(format!("the file requires {name}, which is not read"))
+                .place(Place::Json(format!("extensionsRequired[{i}]")))
+                .help(remedy(name)));
+        }
+    }
+    for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
+        tally.say(format!("the extension {name} is not read"));
+    }
+    Ok(())
+}
+
+/// What a user can do about an extension.
+fn remedy(name: &str) -> &'static str {
+    match name {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"
+        }
+        "KHR_texture_basisu" => {
+            "`npx @gltf-transform/cli ktxdecompress IN.glb OUT.glb` turns its pictures into PNG"
+        }
+        "EXT_texture_avif" => {
+            "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its pictures into PNG"
+        }
+        "EXT_mesh_gpu_instancing" => {
+            "export it without GPU instancing, so that every instance is a node"
+        }
+        "KHR_techniques_webgl" | "KHR_technique_webgl" => "export it with glTF's own materials",
+        _ => {
+            "export it without the extension; `npx @gltf-transform/cli inspect IN.glb` lists what \
+             uses it"
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! From a primitive to a mesh.
+
+use gltf::json;
+use gltf::json::mesh::{Mode, Primitive, Semantic};
+use gltf::json::validation::Checked;
+
+use super::accessor::Accessors;
+use super::texture::UvMap;
+use super::topology::triangles;
+use crate::error::{Error, Place, Result};
+use crate::load::repair::repair;
+use crate::load::tally::Tally;
+use crate::scene::Mesh;
+
+/// Reads a primitive, with the texture coordinates that `uv` chooses; nothing where there is no
+/// triangle in it.
+pub fn read(
+    primitive: &Primitive,
+    accessors: &Accessors,
+    uv: Option<&UvMap>,
+    tally: &mut Tally,
+    at: &str,
+) -> Result<Option<Mesh>> {
+    let Some(mode) = mode(primitive, tally, at)? else { return Ok(None) };
+    let reader = Reader { primitive, accessors, at };
+    let Some(positions) = reader.index(Semantic::Positions) else {
+        // The standard allows it, for extensions that bring positions of their own.
+        tally.add("{} primitives without positions are not drawn", 1, || at.to_owned());
+        return Ok(None);
+    };
+    let positions: Vec<[f32; 3]> =
+        accessors.floats(positions, &reader.place(&Semantic::Positions))?;
+    let vertices = match primitive.indices {
+        Some(indices) => accessors.indices(indices.value(), &format!("{at}.indices"))?,
+        None => (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect(),
+    };
+    let mut mesh = Mesh { triangles: triangles(mode, &vertices), positions, ..Mesh::default() };
+    let left_over = match mode {
+        Mode::Triangles => vertices.len() % 3,
+        _ => 0,
+    };
+    tally.add("{} corners are left out: they do not fill a triangle", left_over as u64, || {
+        at.to_owned()
+    });
+    mesh.normals = reader.normals(mesh.positions.len(), tally)?;
+    mesh.colors = reader.colors(mesh.positions.len(), tally)?;
+    mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
+    repair(&mut mesh, tally, at);
+    Ok((!mesh.triangles.is_empty()).then_some(mesh))
+}
+
+fn mode(primitive: &Primitive, tally: &mut Tally, at: &str) -> Result<Option<Mode>> {
+    match primitive.mode {
+        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
+            Ok(Some(mode))
+        }
+        Checked::Valid(_) => {
+            tally.add("{} primitives are points or lines and not drawn", 1, || at.to_owned());
+            Ok(None)
+        }
+        Checked::Invalid => Err(Error::input("this is no known mode")
+            .place(Place::Json(format!("{at}.mode")))
+            .help("0 to 6; 4 is triangles")),
+    }
+}
+
+struct Reader<'a> {
+    primitive: &'a Primitive,
+    accessors: &'a Accessors<'a>,
+    at: &'a str,
+}
+
+impl Reader<'_> {
+    fn index(&self, semantic: Semantic) -> Option<usize> {
+        self.primitive.attributes.get(&Checked::Valid(semantic)).map(json::Index::value)
+    }
+
+    fn place(&self, semantic: &Semantic) -> String {
+        format!("{}.attributes.{}", self.at, semantic.to_string())
+    }
+
+    /// The accessor of an attribute that a mesh can do without, when it fits the positions.
+    fn fitting(&self, semantic: &Semantic, count: usize, tally: &mut Tally) -> Option<usize> {
+        let index = self.index(semantic.clone())?;
+        let found = self.accessors.count(index);
+        if found == count as u64 {
+            return Some(index);
+        }
+        let reason = "{} vertex attributes are ignored: they have more or fewer values than there \
+                      are positions";
+        tally.add(reason, 1, || format!("{} ({found} for {count} vertices)", self.place(semantic)));
+        None
+    }
+
+    fn normals(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 3]>> {
+        let semantic = Semantic::Normals;
+        match self.fitting(&semantic, count, tally) {
+            Some(index) => self.accessors.floats(index, &self.place(&semantic)),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    fn colors(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 3]>> {
+        let semantic = Semantic::Colors(0);
+        let Some(index) = self.fitting(&semantic, count, tally) else { return Ok(Vec::new()) };
+        let place = self.place(&semantic);
+        if self.accessors.width(index) != 4 {
+            return self.accessors.colors(index, &place);
+        }
+        // The fourth is alpha, which is not drawn yet.
+        let colors = self.accessors.colors::<4>(index, &place)?;
+        Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+    }
+
+    /// Without a texture that asks for them the first set is kept, for who lays another material
+    /// on the model.
+    fn uvs(&self, uv: Option<&UvMap>, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
+        let is_needed = uv.is_some();
+        let first = UvMap::default();
+        let uv = uv.unwrap_or(&first);
+        let semantic = Semantic::TexCoords(uv.set);
+        let Some(index) = self.fitting(&semantic, count, tally) else {
+            if is_needed && self.index(semantic.clone()).is_none() {
+                let reason = "{} primitives have a texture but lack its texture coordinates";
+                tally.add(reason, 1, || self.place(&semantic));
+            }
+            return Ok(Vec::new());
+        };
+        let mut uvs = self.accessors.floats(index, &self.place(&semantic))?;
+        uvs.iter_mut().for_each(|x| *x = uv.apply(*x));
+        Ok(uvs)
+    }
+}

@@ -1,0 +1,52 @@
+//! From a primitive's mode and indices to triangles.
+
+use gltf::json::mesh::Mode;
+
+/// The triangles that `vertices`, in the order in which a primitive names them, make up.
+///
+/// Strips and fans wind as part 3.7.2.1 of the standard says. What doesn't fill a last triangle is
+/// left out, as are all of the points and lines.
+pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+        Mode::Triangles => vertices.as_chunks().0.to_vec(),
+        Mode::TriangleStrip => {
+            // Every other triangle has its last two corners swapped, so that all wind alike.
+            let wind = |(i, t): (usize, [u32; 3])| match i % 2 {
+                0 => t,
+                _ => [t[0], t[2], t[1]],
+            };
+            let windows = vertices.windows(3).map(|w| [w[0], w[1], w[2]]);
+            windows.enumerate().map(wind).collect()
+        }
+        Mode::TriangleFan => match vertices {
+            [first, rest @ ..] => rest.windows(2).map(|w| [w[0], w[1], *first]).collect(),
+            [] => Vec::new(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strip_turns_every_other_triangle() {
+        let made = triangles(Mode::TriangleStrip, &[0, 1, 2, 3, 4]);
+        assert_eq!(made, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+    }
+
+    #[test]
+    fn fan_goes_around_its_first_vertex() {
+        assert_eq!(triangles(Mode::TriangleFan, &[7, 1, 2, 3]), [[1, 2, 7], [2, 3, 7]]);
+    }
+
+    #[test]
+    fn too_few_vertices_make_no_triangle() {
+        for mode in [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan] {
+            for vertices in [&[][..], &[0], &[0, 1]] {
+                assert!(triangles(mode, vertices).is_empty());
+            }
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! MTL files: the materials of an OBJ file.
+//!
+//! Whatever is wrong with them is a warning: the shape can still be shown.
+
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::lines::{decode, statements};
+use super::map::Map;
+use crate::load::picture;
+use crate::load::tally::Tally;
+use crate::scene::{Filter, Material, MaterialId, Scene, Texture, TextureId, Transfer, Wrap};
+
+/// The name, for tobj, of a material whose name is empty.
+const UNNAMED: &str = "(unnamed)";
+/// The range of shininess that is drawn.
+const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
+
+/// The materials that an OBJ file can name, each made when a face first uses it.
+#[derive(Default)]
+pub struct Library {
+    sources: HashMap<String, (tobj::Material, PathBuf)>,
+    made: HashMap<String, MaterialId>,
+    textures: HashMap<(PathBuf, bool), TextureId>,
+}
+
+impl Library {
+    /// Reads the files that an OBJ file's `mtllib` lines name, beside it in `folder`.
+    pub fn read(names: &[String], folder: &Path, tally: &mut Tally) -> Self {
+        let mut library = Self::default();
+        for name in names {
+            // A name may hold spaces, and a line several names.
+            let whole = find(folder, name);
+            let files = match whole.exists() || !name.contains(' ') {
+                true => vec![whole],
+                false => name.split_whitespace().map(|n| find(folder, n)).collect(),
+            };
+            files.iter().for_each(|file| library.add(file, tally));
+        }
+        library
+    }
+
+    fn add(&mut self, path: &Path, tally: &mut Tally) {
+        let bytes = match crate::load::read(path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                tally.say(format!("the materials are missing and drawn grey: {error}"));
+                return;
+            }
+        };
+        let materials = decode(&bytes).and_then(|text| {
+            let clean = clean(&text, path, tally);
+            tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| {
+                crate::error::Error::input(format!("the materials cannot be read: {e}"))
+            })
+        });
+        let folder = path.parent().unwrap_or(Path::new(""));
+        match materials {
+            Ok((materials, _)) => {
+                let named = materials.into_iter().map(|m| {
+                    let name = if m.name == UNNAMED { String::new() } else { m.name.clone() };
+                    (name, (m, folder.to_owned()))
+                });
+                self.sources.extend(named);
+            }
+            Err(error) => tally.say(error.at(path).to_string()),
+        }
+    }
+
+    /// The material of a name, made if it is new; a neutral grey if there is none of the name.
+    pub fn get(&mut self, name: &str, scene: &mut Scene, tally: &mut Tally) -> MaterialId {
+        if let Some(&id) = self.made.get(name) {
+            return id;
+        }
+        let material = match self.sources.remove(name) {
+            Some((source, folder)) => self.make(&source, &folder, scene, tally),
+            None => {
+                if !name.is_empty() {
+                    let reason = "{} materials are in no MTL file and drawn grey";
+                    tally.add(reason, 1, || format!("`{name}`"));
+                }
+                Material { name: name.to_owned(), ..Material::default() }
+            }
+        };
+        let id = scene.add_material(material);
+        self.made.insert(name.to_owned(), id);
+        id
+    }
+
+    fn make(
+        &mut self,
+        source: &tobj::Material,
+        folder: &Path,
+        scene: &mut Scene,
+        tally: &mut Tally,
+    ) -> Material {
+        let name = || format!("`{}`", source.name);
+        let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
+        let diffuse_map = source.diffuse_texture.as_deref();
+        let emission_map = other("map_Ke").or(other("map_ke"));
+        let mut material = Material { name: source.name.clone(), ..Material::default() };
+        if let Some(diffuse) = source.diffuse {
+            material.diffuse = Vec3::from(diffuse);
+        } else if diffuse_map.is_some() {
+            material.diffuse = Vec3::ONE;
+        }
+        material.diffuse_map = diffuse_map.and_then(|m| self.texture(m, folder, scene, tally));
+        // Models 0 and 1 are those without a highlight.
+        if source.illumination_model.is_none_or(|model| model > 1) {
+            material.specular = source.specular.map_or(Vec3::ZERO, Vec3::from);
+        }
+        if let Some(shininess) = source.shininess {
+            material.shininess = shininess.clamp(*SHININESS.start(), *SHININESS.end());
+        }
+        material.emission = source.emissive.map_or(Vec3::ZERO, Vec3::from);
+        if let Some(map) = emission_map {
+            if source.emissive.is_none() {
+                material.emission = Vec3::ONE;
+            }
+            material.emission_map = self.texture(map, folder, scene, tally);
+        }
+        let opacity = source.dissolve.unwrap_or(1.0);
+        let transparency = other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
+        if opacity < 1.0 || transparency > 0.0 || source.dissolve_texture.is_some() {
+            tally.add("{} see-through materials are drawn opaque", 1, name);
+        }
+        let textures =
+            [&source.specular_texture, &source.normal_texture, &source.shininess_texture]
+                .into_iter()
+                .flatten()
+                .count();
+        let reason = "{} textures of highlights and bumps are not read";
+        tally.add(reason, textures as u64, name);
+        if matches!(source.illumination_model, Some(3..=9)) {
+            let reason = "{} materials that mirror or refract are drawn without it";
+            tally.add(reason, 1, name);
+        }
+        material
+    }
+
+    fn texture(
+        &mut self,
+        value: &str,
+        folder: &Path,
+        scene: &mut Scene,
+        tally: &mut Tally,
+    ) -> Option<TextureId> {
+        let map = Map::parse(value)?;
+        if map.ignored {
+            let reason = "{} textures have options (scale, offset, gain …) that are not read";
+            tally.add(reason, 1, || format!("`{value}`"));
+        }
+        let path = find(folder, map.file);
+        let key = (path, map.clamp);
+        if let Some(&id) = self.textures.get(&key) {
+            return Some(id);
+        }
+        let image = picture::read(&key.0).unwrap_or_else(|error| {
+            tally.say(format!("{error}; a magenta checker takes its place"));
+            picture::placeholder(map.file)
+        });
+        let id = scene.add_texture(Texture {
+            image: Arc::new(image),
+            transfer: Transfer::Srgb,
+            wrap: [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2],
+            filter: Filter::Linear,
+        });
+        self.textures.insert(key, id);
+        Some(id)
+    }
+}
+
+/// A file named in a model: as it stands, or as written on Windows, or beside the model when the
+/// folder it was in is on another machine.
+fn find(folder: &Path, name: &str) -> PathBuf {
+    let first = folder.join(name);
+    if first.exists() {
+        return first;
+    }
+    let slashes = name.replace('\\', "/");
+    let last = slashes.rsplit('/').next().unwrap_or_default().to_owned();
+    [slashes, last].iter().map(|n| folder.join(n)).find(|p| p.is_file()).unwrap_or(first)
+}
+
+/// The statements that tobj is to read, in the form it takes. It panics at a colour of fewer than
+/// three numbers, and drops the whole file at a number it cannot read.
+fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
+    let mut out = String::with_capacity(text.len());
+    for s in statements(text) {
+        let bad = |tally: &mut Tally| {
+            let reason = "{} lines of the MTL file are not understood and ignored";
+            tally.add(reason, 1, || format!("{}:{}", path.display(), s.line));
+        };
+        let finite = |w: &str| w.parse::<f32>().ok().filter(|x| x.is_finite() && *x >= 0.0);
+        let rest = s.rest.as_ref();
+        let _ = match s.keyword.to_ascii_lowercase().as_str() {
+            "newmtl" if rest.is_empty() => writeln!(out, "newmtl {UNNAMED}"),
+            "newmtl" => writeln!(out, "newmtl {rest}"),
+            key @ ("ka" | "kd" | "ks" | "ke") => {
+                let numbers: Option<Vec<f32>> = rest.split_whitespace().map(finite).collect();
+                let key = key.replacen('k', "K", 1);
+                match numbers.as_deref() {
+                    // One number is a grey, as the format says.
+                    Some([grey]) => writeln!(out, "{key} {grey} {grey} {grey}"),
+                    Some([r, g, b, ..]) => writeln!(out, "{key} {r} {g} {b}"),
+                    _ => {
+                        bad(tally);
+                        Ok(())
+                    }
+                }
+            }
+            key @ ("ns" | "d" | "tr") => {
+                // `d -halo 0.5` has its number last.
+                match rest.split_whitespace().next_back().and_then(finite) {
+                    Some(number) => match key {
+                        "ns" => writeln!(out, "Ns {number}"),
+                        "d" => writeln!(out, "d {number}"),
+                        _ => writeln!(out, "Tr {number}"),
+                    },
+                    None => {
+                        bad(tally);
+                        Ok(())
+                    }
+                }
+            }
+            "illum" => match rest.parse::<f32>() {
+                Ok(model) if (0.0..=10.0).contains(&model) => {
+                    writeln!(out, "illum {}", model as u8)
+                }
+                _ => {
+                    bad(tally);
+                    Ok(())
+                }
+            },
+            "map_kd" if !rest.is_empty() => writeln!(out, "map_Kd {rest}"),
+            "map_ks" if !rest.is_empty() => writeln!(out, "map_Ks {rest}"),
+            "map_ke" if !rest.is_empty() => writeln!(out, "map_Ke {rest}"),
+            "map_ns" if !rest.is_empty() => writeln!(out, "map_Ns {rest}"),
+            "map_d" if !rest.is_empty() => writeln!(out, "map_d {rest}"),
+            "map_bump" | "bump" | "norm" if !rest.is_empty() => writeln!(out, "bump {rest}"),
+            _ => Ok(()),
+        };
+    }
+    out
+}

@@ -1,0 +1,132 @@
+//! Wavefront OBJ files with their MTL.
+//!
+//! [`rewrite`] checks a file and puts it in the form that tobj takes, tobj makes vertices of its
+//! separate indices, and this module makes meshes of them. What is read, and how, stands in
+//! docs/formats.md.
+
+mod library;
+mod lines;
+mod map;
+mod polygon;
+mod rewrite;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use glam::{DAffine3, DVec3};
+
+use self::library::Library;
+use self::rewrite::Part;
+use crate::error::{Error, Result};
+use crate::load::repair::repair;
+use crate::load::tally::Tally;
+use crate::scene::{Instance, Mesh, Scene, Transfer};
+
+/// Loads an `.obj` file.
+///
+/// # Errors
+/// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
+/// line.
+pub fn load(path: &Path) -> Result<Scene> {
+    let bytes = super::read(path)?;
+    import(path, &bytes).map_err(|e| e.at(path))
+}
+
+fn import(path: &Path, bytes: &[u8]) -> Result<Scene> {
+    let mut tally = Tally::default();
+    let text = lines::decode(bytes)?;
+    let made = rewrite::rewrite(&text, &mut tally)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut library = Library::read(&made.libraries, folder, &mut tally);
+    let mut scene = Scene::default();
+    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+    // No `mtllib` is left in the text.
+    let no_library = |_: &Path| Err(tobj::LoadError::GenericFailure);
+    let (models, _) = tobj::load_obj_buf(&mut made.text.as_bytes(), &options, no_library)
+        .map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
+    for model in models {
+        let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
+            continue;
+        };
+        let Some(mesh) = mesh(&model.mesh, part, &mut tally) else { continue };
+        let material = library.get(&part.material, &mut scene, &mut tally);
+        let mesh = scene.add_mesh(mesh);
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+    }
+    if scene.instances.is_empty() {
+        tally.say("there is no face in the file");
+    }
+    scene.warnings = tally.sentences(path);
+    Ok(scene)
+}
+
+/// The mesh of a part; nothing where it has no triangle.
+fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
+    let place = if part.name.is_empty() { "the object without a name" } else { &part.name };
+    let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
+    let count = positions.len();
+    // OBJ's v runs up the picture, ours runs down.
+    let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
+    let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
+    // As on a screen: programs that write vertex colours mean them so.
+    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x));
+    let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
+    let mut mesh = Mesh {
+        name: part.name.clone(),
+        triangles: triangles(source, &positions),
+        normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
+        uvs: per_vertex(uvs, count),
+        colors: per_vertex(colors, count),
+        positions,
+    };
+    if mesh.normals.is_empty() && part.smoothing != 0 {
+        mesh.normals = smooth_normals(&mesh);
+    }
+    repair(&mut mesh, tally, place);
+    (!mesh.triangles.is_empty()).then_some(mesh)
+}
+
+/// An attribute, if every vertex has it.
+fn per_vertex<T>(values: Vec<T>, count: usize) -> Vec<T> {
+    if values.len() == count { values } else { Vec::new() }
+}
+
+fn triangles(source: &tobj::Mesh, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
+    // tobj leaves the arities out where all are 3.
+    if source.face_arities.is_empty() {
+        return source.indices.as_chunks().0.to_vec();
+    }
+    let mut rest = source.indices.as_slice();
+    let mut triangles = Vec::with_capacity(source.indices.len());
+    for &arity in &source.face_arities {
+        let Some((face, after)) = rest.split_at_checked(arity as usize) else { break };
+        rest = after;
+        let corners: Vec<DVec3> = face.iter().map(|&i| position(positions, i)).collect();
+        let made = polygon::triangulate(&corners);
+        let vertex = |i: usize| face.get(i).copied().unwrap_or(u32::MAX);
+        triangles.extend(made.into_iter().map(|t| t.map(vertex)));
+    }
+    triangles
+}
+
+/// The normals of a smoothing group: at each place the mean of the triangles that meet there,
+/// weighted by their areas, however many vertices stand there for the sake of textures.
+fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
+    let key = |p: &[f32; 3]| p.map(|x| (x + 0.0).to_bits());
+    let mut sums: HashMap<[u32; 3], DVec3> = HashMap::new();
+    for triangle in &mesh.triangles {
+        let [a, b, c] = triangle.map(|i| position(&mesh.positions, i));
+        let normal = (b - a).cross(c - a);
+        for &i in triangle {
+            if let Some(p) = mesh.positions.get(i as usize) {
+                *sums.entry(key(p)).or_default() += normal;
+            }
+        }
+    }
+    let normal = |p: &[f32; 3]| sums.get(&key(p)).copied().unwrap_or_default();
+    mesh.positions.iter().map(|p| normal(p).normalize_or_zero().as_vec3().to_array()).collect()
+}
+
+fn position(positions: &[[f32; 3]], index: u32) -> DVec3 {
+    DVec3::from(positions.get(index as usize).copied().unwrap_or_default().map(f64::from))
+}
