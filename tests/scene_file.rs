@@ -6,6 +6,8 @@ mod bad;
 mod docs;
 #[path = "scene_file/good.rs"]
 mod good;
+#[path = "scene_file/models.rs"]
+mod models;
 #[path = "scene_file/random.rs"]
 mod random;
 

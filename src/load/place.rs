@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use crate::geometry::Bounds;
 use crate::scene::{
     Camera, Instance, Lens, Light, LightKind, MaterialId, MeshId, Scene, TextureId,
 };
@@ -13,6 +14,8 @@ pub struct Part {
     instances: Vec<Instance>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
+    /// Around all of it, its lights and cameras too, before it is placed.
+    bounds: Bounds,
 }
 
 /// How a model is to stand.
@@ -34,6 +37,7 @@ impl Part {
     /// The model's film and warnings are dropped, and so are spheres and planes, which no model
     /// file has.
     pub fn add(scene: &mut Scene, model: Scene) -> Self {
+        let bounds = bounds(&model);
         let first_texture = scene.textures.len() as u32;
         let first_material = scene.materials.len() as u32;
         let first_mesh = scene.meshes.len() as u32;
@@ -50,7 +54,12 @@ impl Part {
             instance.mesh = MeshId(instance.mesh.0 + first_mesh);
             instance.material = MaterialId(instance.material.0 + first_material);
         }
-        Self { instances, lights: model.lights, cameras: model.cameras }
+        Self { instances, lights: model.lights, cameras: model.cameras, bounds }
+    }
+
+    /// How far from the origin something of it may be once it is placed.
+    pub fn reach(&self, transform: &DAffine3) -> f64 {
+        self.bounds.transformed(transform).max_abs()
     }
 
     /// Places the model in the scene that it was added to.
@@ -75,6 +84,15 @@ impl Part {
             }
         }
     }
+}
+
+fn bounds(model: &Scene) -> Bounds {
+    let lights = model.lights.iter().filter_map(|light| match light.kind {
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => Some(position),
+        LightKind::Ambient | LightKind::Directional { .. } => None,
+    });
+    let cameras = model.cameras.iter().map(|camera| camera.position);
+    model.bounds().union(Bounds::of(lights.chain(cameras)))
 }
 
 /// Moves and turns a light. Its intensity and its range stay as they are under any scale, as

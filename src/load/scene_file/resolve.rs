@@ -109,10 +109,10 @@ impl Resolver<'_> {
         if let Some(At { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
         {
-            let line = self.source.line(span);
             self.scene.warnings.push(format!(
-                "line {line}: the material `{name}` scatters more light than it gets (numbers in \
-                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")"
+                "{}: the material `{name}` scatters more light than it gets (numbers in \
+                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
+                self.source.shown(span)
             ));
         }
         let id = self.scene.add_material(material);
