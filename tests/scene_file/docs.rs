@@ -158,3 +158,16 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
     let needed = "kind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]";
     assert_same(written_out("[[light]]", "light", needed), camera);
 }
+
+#[test]
+fn the_examples_in_the_documents_load_without_a_warning() {
+    let text = std::fs::read_to_string(docs_folder().join("scene.md")).unwrap();
+    let examples: Vec<&str> = text.split("```toml\n").skip(1).collect();
+    assert_eq!(examples.len(), 2);
+    for example in examples {
+        let file = super::File::new(example.split("```").next().unwrap());
+        std::fs::write(file.beside("room.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+        let scene = file.load().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(scene.warnings, Vec::<String>::new());
+    }
+}

@@ -96,7 +96,8 @@ impl Report<'_> {
                 )
             }
             _ if expected == "a boolean" => Some(self.wrong_value(found, "true or false")),
-            _ => Some(self.wrong_value(found, expected)),
+            "type" | "value" => Some(self.wrong_value(found, expected)),
+            _ => None,
         }
     }
 
