@@ -6,6 +6,7 @@
 
 mod accessor;
 mod buffers;
+mod compact;
 mod container;
 mod extensions;
 mod lights;
