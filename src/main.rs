@@ -1,2 +1,7 @@
 //! The `envers` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    envers::cli::run()
+}

@@ -2,6 +2,7 @@
 //!
 //! The triangle counts were worked out from the files themselves, not with this importer.
 
+#[path = "import_common/mod.rs"]
 mod common;
 
 use std::collections::BTreeMap;

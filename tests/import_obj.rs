@@ -1,5 +1,6 @@
 //! What OBJ and MTL files become: each test one feature or one fault.
 
+#[path = "import_common/mod.rs"]
 mod common;
 
 use common::{Folder, assert_warns, png};

@@ -8,9 +8,8 @@ use crate::scene::{Camera, Lens, Light, LightKind, Scene};
 /// Half the vertical field of view of the framing camera, in radians: 35° in all.
 const HALF_FOV: f64 = 17.5 * std::f64::consts::PI / 180.0;
 
-/// Gives a scene a camera that frames it and default lights, where it has none.
-pub fn complete(scene: &mut Scene) {
-    frame(scene);
+/// Gives a scene default lights, when it has none.
+pub fn light(scene: &mut Scene) {
     if scene.lights.is_empty() {
         scene.lights = default_lights();
     }
@@ -89,9 +88,11 @@ mod tests {
     #[test]
     fn a_files_own_camera_and_lights_are_kept() {
         let mut scene = Scene::default();
-        complete(&mut scene);
+        frame(&mut scene);
+        light(&mut scene);
         let (camera, lights) = (scene.cameras.clone(), scene.lights.clone());
-        complete(&mut scene);
+        frame(&mut scene);
+        light(&mut scene);
         assert_eq!((camera, lights), (scene.cameras, scene.lights));
     }
 }

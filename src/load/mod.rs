@@ -31,14 +31,25 @@ pub const BARE_MODEL_SPP: u32 = 16;
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
 pub fn load(path: &Path) -> Result<Scene> {
-    let scene = if extension(path) == "toml" {
-        scene_file::load(path)?
-    } else {
-        let mut scene = model(path)?;
+    load_for(path, None)
+}
+
+/// Loads as [`load`] does, for a picture of another size than the file asks for; a camera that
+/// frames the scene is placed for that size.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
+    let from_file = extension(path) == "toml";
+    let mut scene = if from_file { scene_file::load(path)? } else { model(path)? };
+    if let Some(size) = size {
+        scene.film.size = size;
+    }
+    framing::frame(&mut scene);
+    if !from_file {
         scene.film.spp = BARE_MODEL_SPP;
-        framing::complete(&mut scene);
-        scene
-    };
+        framing::light(&mut scene);
+    }
     scene.check().map_err(|e| e.at(path))?;
     Ok(scene)
 }

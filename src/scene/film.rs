@@ -18,8 +18,8 @@ pub enum Transfer {
 impl Transfer {
     /// The encoded value, in \[0, 1\], of a linear one; what lies outside is clamped.
     pub fn encode(self, linear: f32) -> f32 {
-        // `max` before `min`, so that a NaN becomes 0 rather than NaN.
-        let x = linear.max(0.0).min(1.0);
+        // A NaN fails the comparison and becomes 0.
+        let x = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
         match self {
             Transfer::None => x,
             Transfer::Srgb if x <= 0.003_130_8 => 12.92 * x,

@@ -1,7 +1,7 @@
 //! What glTF files become, each test one feature, and what is said of damaged and hostile ones,
 //! each test one fault.
 
-#[path = "../common/mod.rs"]
+#[path = "../import_common/mod.rs"]
 mod common;
 
 mod damaged_data;

@@ -1,0 +1,56 @@
+# `make` lists what there is. Everything here is a plain cargo command as well, after `make setup`.
+
+# Where `make install` puts things: $(DESTDIR)$(PREFIX)/bin and lib. Most shells pass on the ~ of
+# PREFIX=~/.local as it is.
+PREFIX ?= $(HOME)/.local
+override PREFIX := $(patsubst ~/%,$(HOME)/%,$(PREFIX))
+CARGO ?= cargo
+
+# The other build that must always work: no Embree, no libclang.
+PURE_RUST = --no-default-features --features cli
+
+.PHONY: help setup demo test check install uninstall clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
+
+setup: ## find or fetch Embree and libclang (the others call it where they need it)
+	@scripts/setup
+
+demo: setup ## build, and render and validate the demo scenes into out/
+	$(CARGO) build --release --locked
+	$(CARGO) run --release --locked --quiet --example demo
+
+# One target directory serves both feature sets: most dependencies are compiled once for the two.
+test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
+	$(CARGO) fmt --check
+	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) clippy --locked --all-targets $(PURE_RUST) -- -D warnings
+	$(CARGO) clippy --locked --lib --no-default-features -- -D warnings
+	$(CARGO) test --locked
+	$(CARGO) test --locked $(PURE_RUST)
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps
+	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps $(PURE_RUST)
+
+check: ## the inner loop: format, lints and unit tests, default features, no set-up
+	$(CARGO) fmt --check
+	$(CARGO) clippy --all-targets -- -D warnings
+	$(CARGO) test --lib --bins
+
+# Embree goes along only if set-up fetched it: a system's own is found where it stands.
+install: setup ## build and install under PREFIX (default: ~/.local), with Embree if it was fetched
+	$(CARGO) install --path . --locked --no-track --force --root '$(DESTDIR)$(PREFIX)'
+	@rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
+	@if [ -z "$$EMBREE_DIR" ] && [ -f .deps/embree/stamp ]; then \
+	    mkdir -p '$(DESTDIR)$(PREFIX)/lib/envers' && \
+	    cp .deps/embree/lib*.so.* '$(DESTDIR)$(PREFIX)/lib/envers/' && \
+	    echo 'Embree is in $(DESTDIR)$(PREFIX)/lib/envers'; \
+	fi
+
+uninstall: ## remove what `make install` put under PREFIX
+	rm -f '$(DESTDIR)$(PREFIX)/bin/envers'
+	rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
+
+clean: ## remove what was built and rendered (what was fetched stays in .deps)
+	$(CARGO) clean
+	rm -rf out

@@ -1,0 +1,242 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::error::{Error, Result};
+use crate::film::View;
+use crate::intersect::Backend;
+use crate::scene::Scene;
+
+/// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
+#[derive(Parser)]
+#[command(name = "envers", disable_version_flag = true, after_help = EXAMPLES)]
+pub struct Arguments {
+    /// Print the versions of envers and Embree
+    #[arg(short = 'V', long)]
+    pub version: bool,
+    #[command(subcommand)]
+    pub command: Option<Command>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  envers render model.glb -o out.png
+  envers render scene.toml -o out.png -o out.exr --spp 16
+  envers validate scene.toml
+  envers diff a.exr b.exr --tolerance 0.004
+
+Exit status: 0 done, 1 a check or the work failed, 2 the command line or the input is wrong.";
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Render a scene to PNG or EXR
+    Render(Render),
+    /// Hold Embree against the pure-Rust intersector, hit by hit and pixel by pixel
+    Validate(Validate),
+    /// Say what is in a scene, and what will be skipped
+    Info(Info),
+    /// Compare two pictures: exit status 0 when they are equal, 1 when they differ
+    Diff(Diff),
+}
+
+/// What to render and how; shared by the commands that trace rays.
+#[derive(Args)]
+pub struct Tracing {
+    /// A scene file (.toml) or a model (.gltf, .glb, .obj)
+    pub scene: PathBuf,
+    /// Size of the picture in pixels, such as 1920x1080 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Samples per pixel [default: the scene's; bare models 16]
+    #[arg(long, value_name = "N")]
+    pub spp: Option<u32>,
+    /// Camera, by name or by index from 0 [default: the first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// Threads [default: all there are]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print no progress and no warnings
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  envers render model.glb -o out.png
+  envers render scene.toml -o out.png -o out.exr --size 1920x1080 --spp 16
+  envers render scene.toml -o depth.exr --view depth --stats -")]
+pub struct Render {
+    #[command(flatten)]
+    pub tracing: Tracing,
+    /// Output file, .png or .exr; may be given several times [default: NAME.png in this folder]
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Vec<PathBuf>,
+    /// Who finds the hits [default: embree where it is built in]
+    #[arg(long, value_enum)]
+    pub backend: Option<BackendName>,
+    /// What the picture shows; normal, depth and id are raw values in EXR, colours in PNG
+    #[arg(long, value_enum, default_value = "beauty")]
+    pub view: ViewName,
+    /// Brighten the PNG by 2 to the power of EV; an EXR is never changed
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub exposure: f32,
+    /// Store 16-bit floats in the EXR rather than 32-bit ones
+    #[arg(long)]
+    pub half: bool,
+    /// Write what was counted and timed as JSON; - is standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Validate {
+    #[command(flatten)]
+    pub tracing: Tracing,
+    /// Write the result as JSON; - is standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Write a picture of where the hits differ
+    #[arg(long, value_name = "FILE.png")]
+    pub heatmap: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Info {
+    /// A scene file (.toml) or a model (.gltf, .glb, .obj)
+    pub scene: PathBuf,
+    /// Write it as JSON; - is standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct Diff {
+    /// A picture, .png or .exr
+    pub a: PathBuf,
+    /// Another one of the same kind and size
+    pub b: PathBuf,
+    /// Largest difference of two values that still counts as equal; a PNG's values are n/255
+    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    pub tolerance: f32,
+    /// Write the result as JSON; - is standard output
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+    /// Write a picture of the differences: black where equal, white where the largest
+    #[arg(long, value_name = "FILE.png")]
+    pub heatmap: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BackendName {
+    Embree,
+    Rust,
+}
+
+impl BackendName {
+    /// # Errors
+    /// When Embree is asked for and not built in.
+    pub fn backend(self) -> Result<Backend> {
+        match self {
+            BackendName::Rust => Ok(Backend::Rust),
+            #[cfg(feature = "embree")]
+            BackendName::Embree => Ok(Backend::Embree),
+            #[cfg(not(feature = "embree"))]
+            BackendName::Embree => Err(Error::input("this envers was built without Embree")
+                .help("use `--backend rust`, or build with the feature `embree`")),
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ViewName {
+    Beauty,
+    Normal,
+    Depth,
+    Id,
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> View {
+        match name {
+            ViewName::Beauty => View::Beauty,
+            ViewName::Normal => View::Normal,
+            ViewName::Depth => View::Depth,
+            ViewName::Id => View::Id,
+        }
+    }
+}
+
+fn size(text: &str) -> std::result::Result<[u32; 2], String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X', '×'])?;
+        Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+    };
+    let size = parse().ok_or("expected WIDTHxHEIGHT in pixels, such as 1920x1080")?;
+    crate::scene::check::check_size(size)
+        .map_err(|e| format!("{} ({})", e.message(), e.advice().unwrap_or_default()))?;
+    Ok(size)
+}
+
+impl Tracing {
+    /// Loads the scene and applies the flags; says which camera is asked for.
+    ///
+    /// # Errors
+    /// When the scene cannot be loaded, or the flags do not fit it.
+    pub fn load(&self) -> Result<(Scene, usize)> {
+        if let Some(spp) = self.spp {
+            crate::scene::check::check_spp(spp)?;
+        }
+        let mut scene = crate::load::load_for(&self.scene, self.size)?;
+        if let Some(spp) = self.spp {
+            scene.film.spp = spp;
+        }
+        let camera = match &self.camera {
+            None => 0,
+            Some(wanted) => find_camera(&scene, wanted)?,
+        };
+        Ok((scene, camera))
+    }
+
+    /// The number of threads; 0 means all.
+    pub fn threads(&self) -> usize {
+        self.threads.map_or(0, usize::from)
+    }
+}
+
+fn find_camera(scene: &Scene, wanted: &str) -> Result<usize> {
+    if let Some(index) = scene.cameras.iter().position(|c| c.name == wanted) {
+        return Ok(index);
+    }
+    match wanted.parse::<usize>() {
+        Ok(index) if index < scene.cameras.len() => Ok(index),
+        _ => {
+            let names: Vec<String> =
+                (0..).zip(&scene.cameras).map(|(i, c)| format!("{i} `{}`", c.name)).collect();
+            Err(Error::input(format!("there is no camera `{wanted}`"))
+                .help(format!("the scene has {}", names.join(", "))))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn command_line_is_consistent() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn size_is_two_numbers_with_an_x() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for bad in ["640", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! `envers info`.
+
+use serde::Serialize;
+
+use crate::cli::args::Info;
+use crate::cli::json::Geometry;
+use crate::cli::{Outcome, Verdict, output, report};
+use crate::load;
+use crate::scene::{Lens, LightKind, Scene};
+
+/// `info --json`.
+#[derive(Serialize)]
+struct Summary {
+    size: [u32; 2],
+    spp: u32,
+    geometry: Geometry,
+    /// Stored triangles: each mesh once, however often it stands.
+    mesh_triangles: usize,
+    meshes: usize,
+    materials: usize,
+    textures: usize,
+    lights: Vec<String>,
+    cameras: Vec<String>,
+    /// The corners of the box around all that is finite; null when nothing is.
+    bounds: Option<[[f64; 3]; 2]>,
+    /// What the scene does not need, and so is not done.
+    skipped: Vec<&'static str>,
+    warnings: Vec<String>,
+}
+
+pub fn run(arguments: &Info) -> Outcome {
+    output::check_json(arguments.json.as_ref())?;
+    let scene = load::load(&arguments.scene)?;
+    let summary = summarize(&scene);
+    if output::stdout_is_free(arguments.json.as_ref()) {
+        print(&summary);
+        summary.warnings.iter().for_each(|w| report::warning(w));
+    }
+    if let Some(path) = &arguments.json {
+        output::write_json(path, &summary)?;
+    }
+    Ok(Verdict::Good)
+}
+
+fn summarize(scene: &Scene) -> Summary {
+    let bounds = scene.bounds();
+    Summary {
+        size: scene.film.size,
+        spp: scene.film.spp,
+        geometry: Geometry::of(scene),
+        mesh_triangles: scene.meshes.iter().map(|m| m.triangles.len()).sum(),
+        meshes: scene.meshes.len(),
+        materials: scene.materials.len(),
+        textures: scene.textures.len(),
+        lights: scene.lights.iter().map(|l| named(light_kind(&l.kind), &l.name)).collect(),
+        cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
+        bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
+        skipped: skipped(scene),
+        warnings: scene.warnings.clone(),
+    }
+}
+
+/// What of the work the scene has no need of.
+fn skipped(scene: &Scene) -> Vec<&'static str> {
+    let mut uses = vec![0u32; scene.meshes.len()];
+    scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
+    let textured = scene.materials.iter().any(|m| m.is_textured());
+    let shadows = scene.lights.iter().any(|l| l.casts_shadow && l.kind != LightKind::Ambient);
+    [
+        (scene.spheres.is_empty(), "user geometry: there are no spheres"),
+        (uses.iter().all(|&n| n <= 1), "instance level: no mesh stands twice"),
+        (scene.planes.is_empty(), "plane tests: there are no planes"),
+        (!textured, "texture coordinates: no material has a texture"),
+        (!shadows, "shadow rays: no light casts a shadow"),
+    ]
+    .into_iter()
+    .filter_map(|(skip, what)| skip.then_some(what))
+    .collect()
+}
+
+fn named(what: impl std::fmt::Display, name: &str) -> String {
+    if name.is_empty() { what.to_string() } else { format!("{what} `{name}`") }
+}
+
+fn light_kind(kind: &LightKind) -> &'static str {
+    match kind {
+        LightKind::Ambient => "ambient",
+        LightKind::Directional { .. } => "directional",
+        LightKind::Point { .. } => "point",
+        LightKind::Spot { .. } => "spot",
+    }
+}
+
+fn lens(lens: &Lens) -> String {
+    match lens {
+        Lens::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
+        Lens::FovX(angle) => format!("fov_x {:.4}", angle.to_degrees()),
+        Lens::FocalPx { focal, .. } => format!("focal_px {focal}"),
+        Lens::OrthoHeight(height) => format!("ortho_height {height}"),
+    }
+}
+
+fn print(summary: &Summary) {
+    let [width, height] = summary.size;
+    let g = &summary.geometry;
+    println!("picture    {width}x{height}, {} samples per pixel", summary.spp);
+    println!("spheres    {}", g.spheres);
+    println!("planes     {}", g.planes);
+    println!(
+        "triangles  {} in {} instances of {} meshes ({} stored)",
+        g.triangles, g.instances, summary.meshes, summary.mesh_triangles
+    );
+    println!("materials  {}, textures {}", summary.materials, summary.textures);
+    println!("lights     {}", or_none(&summary.lights));
+    println!("cameras    {}", or_none(&summary.cameras));
+    match summary.bounds {
+        Some([a, b]) => println!("bounds     {a:?} to {b:?}"),
+        None => println!("bounds     nothing finite"),
+    }
+    summary.skipped.iter().for_each(|what| println!("skips      {what}"));
+}
+
+fn or_none(list: &[String]) -> String {
+    if list.is_empty() { "none".to_owned() } else { list.join(", ") }
+}

@@ -1,0 +1,108 @@
+//! The shapes of the command's JSON.
+
+use serde::Serialize;
+
+use crate::integrator::RayCounts;
+use crate::render::Statistics;
+use crate::scene::Scene;
+
+/// `render --stats`.
+#[derive(Serialize)]
+pub struct Stats {
+    pub backend: Backend,
+    pub precision: &'static str,
+    pub threads: usize,
+    pub size: [u32; 2],
+    pub spp: u32,
+    pub geometry: Geometry,
+    pub rays: Rays,
+    pub seconds: Seconds,
+    /// All rays over the seconds of rendering.
+    pub mrays_per_second: f64,
+    /// The most memory the process had at any time; null where the system does not tell.
+    pub peak_memory_bytes: Option<u64>,
+    pub warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+pub struct Backend {
+    pub name: &'static str,
+    pub version: String,
+}
+
+#[derive(Serialize)]
+pub struct Geometry {
+    pub spheres: usize,
+    /// Counting each instance of a mesh.
+    pub triangles: u64,
+    pub planes: usize,
+    pub instances: usize,
+}
+
+impl Geometry {
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            spheres: scene.spheres.len(),
+            triangles: scene.triangle_count(),
+            planes: scene.planes.len(),
+            instances: scene.instances.len(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+pub struct Rays {
+    pub primary: u64,
+    pub shadow: u64,
+    pub reflection: u64,
+    pub refraction: u64,
+}
+
+impl From<RayCounts> for Rays {
+    fn from(counts: RayCounts) -> Self {
+        let RayCounts { primary, shadow, reflection, refraction } = counts;
+        Self { primary, shadow, reflection, refraction }
+    }
+}
+
+#[derive(Serialize)]
+pub struct Seconds {
+    pub load: f64,
+    pub build: f64,
+    pub render: f64,
+    pub write: f64,
+    pub total: f64,
+}
+
+impl Stats {
+    pub fn new(
+        scene: &Scene,
+        statistics: &Statistics,
+        [load, write, total]: [f64; 3],
+        warnings: Vec<String>,
+    ) -> Self {
+        let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
+        let (name, version) = statistics.backend.clone();
+        let rays = statistics.counts.rays;
+        Self {
+            backend: Backend { name, version },
+            precision: "fast",
+            threads: statistics.threads,
+            size: scene.film.size,
+            spp: scene.film.spp,
+            geometry: Geometry::of(scene),
+            rays: rays.into(),
+            seconds: Seconds { load, build, render, write, total },
+            mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
+            peak_memory_bytes: peak_memory(),
+            warnings,
+        }
+    }
+}
+
+/// The process's peak memory, as Linux tells it.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
+}

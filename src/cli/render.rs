@@ -1,0 +1,168 @@
+//! `envers render`.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::cli::args::Render;
+use crate::cli::json::Stats;
+use crate::cli::{Outcome, Verdict, output, report};
+use crate::error::{Error, Result};
+use crate::film::{Film, View};
+use crate::integrator::Counts;
+use crate::render::{self, Options};
+use crate::scene::{Scene, Transfer};
+use crate::write::{self, Format, Settings};
+
+pub fn run(arguments: &Render) -> Outcome {
+    let start = Instant::now();
+    let outputs = outputs(arguments)?;
+    let backend = match arguments.backend {
+        Some(name) => name.backend()?,
+        None => Default::default(),
+    };
+    output::check_json(arguments.stats.as_ref())?;
+    let (scene, camera) = arguments.tracing.load()?;
+    let loaded = start.elapsed();
+
+    let view = View::from(arguments.view);
+    let threads = arguments.tracing.threads();
+    let options = Options { backend, threads, camera, view };
+    let progress = progress_bar(arguments.tracing.quiet);
+    let rendering =
+        render::render(&scene, &options, &|share| progress.set_position((share * 1000.0) as u64))?;
+    progress.finish_and_clear();
+
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(oddities(&scene, &rendering.film, &rendering.statistics.counts));
+    if !arguments.tracing.quiet {
+        warnings.iter().for_each(|w| report::warning(w));
+    }
+
+    let before_write = Instant::now();
+    let settings = Settings {
+        transfer: scene.film.transfer,
+        exposure: arguments.exposure,
+        half: arguments.half,
+        metadata: metadata(&scene, camera, view),
+    };
+    for path in &outputs {
+        write::write(&rendering.film, path, &settings)?;
+    }
+    let write = before_write.elapsed();
+    let total = start.elapsed();
+
+    if !arguments.tracing.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
+        for path in &outputs {
+            println!("{} ({:.2} s)", path.display(), total.as_secs_f64());
+        }
+    }
+    if let Some(path) = &arguments.stats {
+        let seconds = [loaded, write, total].map(|d| d.as_secs_f64());
+        let stats = Stats::new(&scene, &rendering.statistics, seconds, warnings);
+        output::write_json(path, &stats)?;
+    }
+    Ok(Verdict::Good)
+}
+
+/// The output files, checked: named, distinct, of a known format, and writable.
+fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
+    let mut outputs = arguments.output.clone();
+    if outputs.is_empty() {
+        let name = arguments.tracing.scene.file_stem().unwrap_or("out".as_ref());
+        let mut name = PathBuf::from(name);
+        name.as_mut_os_string().push(".png");
+        outputs.push(name);
+    }
+    for (i, path) in outputs.iter().enumerate() {
+        write::check(path)?;
+        if outputs[..i].contains(path) {
+            return Err(Error::input("this output is named twice").at(path));
+        }
+    }
+    let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
+    if arguments.half && !formats.contains(&Format::Exr) {
+        return Err(Error::input("--half is about EXR, and no .exr is asked for"));
+    }
+    if arguments.exposure != 0.0 && !formats.contains(&Format::Png) {
+        return Err(Error::input("--exposure is about PNG, and no .png is asked for")
+            .help("an EXR always holds the radiance itself"));
+    }
+    if !arguments.exposure.is_finite() {
+        return Err(Error::input(format!("--exposure {} is not a number", arguments.exposure)));
+    }
+    Ok(outputs)
+}
+
+fn progress_bar(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// What in a picture is probably not what was meant, with the likely cause.
+fn oddities(scene: &Scene, film: &Film, counts: &Counts) -> Vec<String> {
+    let mut found = Vec::new();
+    if counts.not_finite > 0 {
+        found.push(format!(
+            "{} samples had a radiance that is not finite and were left out",
+            counts.not_finite
+        ));
+    }
+    if counts.hits == 0 {
+        let bounds = scene.bounds();
+        found.push(if bounds.is_empty() && scene.planes.is_empty() {
+            "the picture is empty: nothing stands in the scene".to_owned()
+        } else {
+            format!(
+                "the picture is empty: the camera at {} sees none of the scene, which is about {}",
+                scene.cameras[0].position,
+                bounds.center()
+            )
+        });
+    } else if film.view == View::Beauty {
+        let emits = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
+        if scene.lights.is_empty() && !emits {
+            found.push(
+                "the scene has no light: what is hit stays black (add a [[light]], or `emission` \
+                 to a material)"
+                    .to_owned(),
+            );
+        } else if film.pixels.iter().all(|p| p.iter().all(|&x| x <= 0.5 / 255.0)) {
+            found.push(
+                "the picture is wholly black: the lights may be behind the surfaces, in their \
+                 shadow, or too weak at this distance (try `--exposure 4`)"
+                    .to_owned(),
+            );
+        }
+    }
+    found
+}
+
+/// What determines the picture; never the time, the host, the threads or the backend.
+fn metadata(scene: &Scene, camera: usize, view: View) -> Vec<(String, String)> {
+    let [width, height] = scene.film.size;
+    let samples = if view == View::Beauty { scene.film.spp } else { 1 };
+    let transfer = match scene.film.transfer {
+        Transfer::Srgb => "srgb",
+        Transfer::None => "none",
+    };
+    [
+        ("envers:version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("envers:size", format!("{width}x{height}")),
+        ("envers:spp", samples.to_string()),
+        ("envers:camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
+        ("envers:view", format!("{view:?}").to_lowercase()),
+        ("envers:precision", "fast".to_owned()),
+        ("envers:png_transfer", transfer.to_owned()),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into()
+}

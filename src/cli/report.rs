@@ -1,0 +1,59 @@
+//! Messages to a person, on stderr.
+
+use crate::error::{Error, Place};
+
+/// Prints an error: file, place and message; the line in question; the way out.
+pub fn error(error: &Error) {
+    eprint!("{}", format(error));
+}
+
+/// Prints a warning.
+pub fn warning(text: &str) {
+    eprintln!("warning: {text}");
+}
+
+fn format(error: &Error) -> String {
+    let mut text = String::from("error: ");
+    if let Some(path) = error.path() {
+        text += &format!("{}:", path.display());
+    }
+    if let Some(place) = error.place_in_file() {
+        text += &format!("{place}:");
+    }
+    if error.path().is_some() || error.place_in_file().is_some() {
+        text.push(' ');
+    }
+    text += error.message();
+    text.push('\n');
+    if let Some(Place::Text { line, column, length, quote }) = error.place_in_file() {
+        let number = line.to_string();
+        let margin = " ".repeat(number.len());
+        // Tabs stay tabs, so that the mark stands under what it means.
+        let lead: String =
+            quote.chars().take(column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
+        let mark = "^".repeat(*length);
+        text += &format!("{margin} |\n{number} | {quote}\n{margin} | {lead}{mark}\n");
+    }
+    if let Some(help) = error.advice() {
+        text += &format!("help: {help}\n");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn error_quotes_the_line_and_marks_the_place() {
+        let source = "[[sphere]]\n\tcentre = [0, 0, 0]\n";
+        let error = Error::input("unknown key `centre`")
+            .at(Path::new("s.toml"))
+            .place(Place::in_text(source, 12..18))
+            .help("did you mean `center`?");
+        let expected = "error: s.toml:2:2: unknown key `centre`\n  |\n2 | \tcentre = [0, 0, 0]\n  \
+                        | \t^^^^^^\nhelp: did you mean `center`?\n";
+        assert_eq!(format(&error), expected);
+    }
+}

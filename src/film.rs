@@ -1,0 +1,60 @@
+//! The picture while it is made: linear f32 pixels.
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// Radiance, linear Rec. 709.
+    #[default]
+    Beauty,
+    /// The shading normal in world space; 0 where nothing is hit.
+    Normal,
+    /// The distance from the eye to the hit in world units, in the first channel; infinite where
+    /// nothing is hit.
+    Depth,
+    /// What is hit: 0 for nothing, 1 for a sphere, 2 for a plane, 3 + i for mesh i; the
+    /// primitive's index; the instance's index. Exact below 2²⁴.
+    Id,
+}
+
+impl View {
+    /// The names of its channels in an EXR file.
+    pub fn channels(self) -> &'static [&'static str] {
+        match self {
+            View::Beauty => &["R", "G", "B"],
+            View::Normal => &["N.X", "N.Y", "N.Z"],
+            View::Depth => &["Z"],
+            View::Id => &["id.geometry", "id.primitive", "id.instance"],
+        }
+    }
+}
+
+/// One pixel: three values, whose meaning the [`View`] tells.
+pub type Pixel = [f32; 3];
+
+/// A picture in linear f32, row by row from the upper left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// What it shows.
+    pub view: View,
+    /// `width · height` pixels.
+    pub pixels: Vec<Pixel>,
+}
+
+impl Film {
+    /// A black picture.
+    pub fn new(size: [u32; 2], view: View) -> Self {
+        let count = size[0] as usize * size[1] as usize;
+        Self { size, view, pixels: vec![[0.0; 3]; count] }
+    }
+
+    /// The pixel in column `x` and row `y`.
+    ///
+    /// # Panics
+    /// When there is none.
+    pub fn pixel(&self, x: u32, y: u32) -> Pixel {
+        assert!(x < self.size[0], "column {x} of {}", self.size[0]);
+        self.pixels[y as usize * self.size[0] as usize + x as usize]
+    }
+}

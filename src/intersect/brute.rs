@@ -1,0 +1,59 @@
+//! Every ray against every primitive: slow, and with nothing to go wrong.
+
+use crate::geometry::{Hit, PrimitiveId, Ray};
+use crate::intersect::{Coherence, Intersector, primitive};
+use crate::scene::Scene;
+
+/// The intersector that tries everything; for tests.
+pub struct BruteForce<'s> {
+    scene: &'s Scene,
+}
+
+impl<'s> BruteForce<'s> {
+    /// An intersector of a checked scene.
+    pub fn new(scene: &'s Scene) -> Self {
+        Self { scene }
+    }
+
+    /// Every hit of the ray, in no particular order.
+    pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+        let (scene, ray) = (self.scene, *ray);
+        let inverse = 1.0 / ray.direction.length_squared();
+        let spheres = (0..scene.spheres.len() as u32)
+            .filter_map(move |i| primitive::meet_sphere(scene, i, &ray, inverse));
+        let planes = (0..scene.planes.len() as u32)
+            .filter_map(move |i| primitive::meet_plane(scene, i, &ray));
+        let triangles = (0..scene.instances.len() as u32).flat_map(move |instance| {
+            let mesh = scene.instances[instance as usize].mesh.0;
+            (0..scene.meshes[mesh as usize].triangles.len() as u32).filter_map(move |t| {
+                primitive::meet_triangle(scene, PrimitiveId::triangle(mesh, t, instance), &ray)
+            })
+        });
+        spheres.chain(planes).chain(triangles)
+    }
+}
+
+impl Intersector for BruteForce<'_> {
+    fn name(&self) -> &'static str {
+        "brute"
+    }
+
+    fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").to_owned()
+    }
+
+    fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
+        for (ray, best) in rays.iter().zip(hits) {
+            *best = None;
+            self.all(ray).for_each(|hit| Hit::keep_first(best, hit));
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
+        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = self.all(ray).any(|hit| self.scene.casts_shadow(hit.id));
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! Building a tree by the surface-area heuristic, in bins.
+//!
+//! Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007): the centres are
+//! sorted into bins along the widest axis, and the split between two bins that costs least is
+//! taken. Large halves are built in parallel; the tree is the same whoever builds it.
+
+use glam::DVec3;
+
+use crate::geometry::Bounds;
+use crate::intersect::bvh::tree::{Node, Tree};
+
+const BINS: usize = 16;
+/// The largest leaf that is not split when splitting costs more.
+const MAX_LEAF: usize = 8;
+/// Below this many items a subtree is built by one thread.
+const SERIAL: usize = 4096;
+/// What visiting a node costs, in units of testing an item.
+const VISIT: f64 = 1.0;
+/// No path from the root is longer: beyond half of it nodes are split in the middle, which halves
+/// at most 2³² items 32 times.
+pub const MAX_DEPTH: usize = 96;
+
+#[derive(Clone, Copy)]
+struct Item {
+    bounds: Bounds,
+    center: DVec3,
+    index: u32,
+}
+
+/// Builds the tree over boxes numbered from 0.
+pub fn build(boxes: &[Bounds]) -> Tree {
+    let mut items: Vec<Item> = (0..)
+        .zip(boxes)
+        .map(|(index, &bounds)| Item { bounds, center: bounds.center(), index })
+        .collect();
+    let mut nodes = Vec::new();
+    if !items.is_empty() {
+        nodes = subtree(&mut items, 0, 0);
+    }
+    Tree { nodes, items: items.iter().map(|i| i.index).collect() }
+}
+
+/// The nodes over `items`, which stand at `first` in the whole list; children's indices are
+/// relative to the first node that is returned.
+fn subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
+    let bounds = items.iter().fold(Bounds::EMPTY, |b, i| b.union(i.bounds));
+    let leaf = || vec![Node { bounds, start: first, count: items.len() as u32 }];
+    if items.len() == 1 {
+        return leaf();
+    }
+    let middle = match best_split(items, &bounds) {
+        Split::Leaf => return leaf(),
+        Split::At { axis, bin, of } if depth < MAX_DEPTH / 2 => {
+            let middle = partition(items, |i| of.bin(i.center[axis]) < bin);
+            if middle == 0 || middle == items.len() { halve(items) } else { middle }
+        }
+        _ => halve(items),
+    };
+    let large = items.len() > SERIAL;
+    let (low, high) = items.split_at_mut(middle);
+    let after = first + middle as u32;
+    let left = |low: &mut [Item]| subtree(low, first, depth + 1);
+    let right = |high: &mut [Item]| subtree(high, after, depth + 1);
+    let (left, right) =
+        if large { rayon::join(|| left(low), || right(high)) } else { (left(low), right(high)) };
+    let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
+    let second = 1 + left.len() as u32;
+    nodes.push(Node { bounds, start: second, count: 0 });
+    for (children, offset) in [(left, 1), (right, second)] {
+        nodes.extend(children.into_iter().map(|mut node| {
+            if node.count == 0 {
+                node.start += offset;
+            }
+            node
+        }));
+    }
+    nodes
+}
+
+enum Split {
+    Leaf,
+    Middle,
+    At { axis: usize, bin: usize, of: Bins },
+}
+
+/// Equal bins between two coordinates.
+#[derive(Clone, Copy)]
+struct Bins {
+    lower: f64,
+    scale: f64,
+}
+
+impl Bins {
+    fn bin(&self, x: f64) -> usize {
+        (((x - self.lower) * self.scale) as usize).min(BINS - 1)
+    }
+}
+
+fn best_split(items: &[Item], bounds: &Bounds) -> Split {
+    let centers = Bounds::of(items.iter().map(|i| i.center));
+    let size = centers.size();
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    let of = Bins { lower: centers.lower[axis], scale: BINS as f64 / size[axis] };
+    // All centres in one point, or too close for the reciprocal: no bins to tell them apart.
+    if !of.scale.is_finite() {
+        return if items.len() <= MAX_LEAF { Split::Leaf } else { Split::Middle };
+    }
+    let mut bins = [(Bounds::EMPTY, 0usize); BINS];
+    for item in items {
+        let (bounds, count) = &mut bins[of.bin(item.center[axis])];
+        *bounds = bounds.union(item.bounds);
+        *count += 1;
+    }
+    let mut right = [(0.0, 0usize); BINS];
+    let mut sum = (Bounds::EMPTY, 0);
+    for i in (1..BINS).rev() {
+        sum = (sum.0.union(bins[i].0), sum.1 + bins[i].1);
+        right[i] = (sum.0.half_area(), sum.1);
+    }
+    let mut best = (f64::INFINITY, 0);
+    let mut sum = (Bounds::EMPTY, 0);
+    for i in 1..BINS {
+        sum = (sum.0.union(bins[i - 1].0), sum.1 + bins[i - 1].1);
+        let cost = sum.0.half_area() * sum.1 as f64 + right[i].0 * right[i].1 as f64;
+        if sum.1 > 0 && right[i].1 > 0 && cost < best.0 {
+            best = (cost, i);
+        }
+    }
+    let area = bounds.half_area();
+    if items.len() <= MAX_LEAF && VISIT * area + best.0 >= items.len() as f64 * area {
+        return Split::Leaf;
+    }
+    if best.0.is_finite() { Split::At { axis, bin: best.1, of } } else { Split::Middle }
+}
+
+/// Puts the items for which `low` holds first; says how many there are.
+fn partition(items: &mut [Item], low: impl Fn(&Item) -> bool) -> usize {
+    let mut middle = 0;
+    for i in 0..items.len() {
+        if low(&items[i]) {
+            items.swap(middle, i);
+            middle += 1;
+        }
+    }
+    middle
+}
+
+/// Splits at the median of the widest axis.
+fn halve(items: &mut [Item]) -> usize {
+    let size = Bounds::of(items.iter().map(|i| i.center)).size();
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+    let middle = items.len() / 2;
+    items.select_nth_unstable_by(middle, |a, b| {
+        a.center[axis].total_cmp(&b.center[axis]).then(a.index.cmp(&b.index))
+    });
+    middle
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn depth(nodes: &[Node], index: usize) -> usize {
+        let node = &nodes[index];
+        if node.count > 0 {
+            return 1;
+        }
+        1 + depth(nodes, index + 1).max(depth(nodes, node.start as usize))
+    }
+
+    fn cube(center: DVec3, half: f64) -> Bounds {
+        Bounds { lower: center - half, upper: center + half }
+    }
+
+    #[test]
+    fn every_item_stands_in_exactly_one_leaf() {
+        let boxes: Vec<Bounds> = (0..5000)
+            .map(|i| cube(DVec3::new((i % 17) as f64, (i % 29) as f64, (i % 31) as f64), 0.4))
+            .collect();
+        let mut items = build(&boxes).items;
+        items.sort_unstable();
+        assert_eq!(items, (0..5000).collect::<Vec<u32>>());
+    }
+
+    #[test]
+    fn children_lie_within_their_parents() {
+        let boxes: Vec<Bounds> =
+            (0..500).map(|i| cube(DVec3::splat((i * i % 97) as f64), 1.0)).collect();
+        let tree = build(&boxes);
+        for (i, node) in tree.nodes.iter().enumerate().filter(|(_, n)| n.count == 0) {
+            for child in [i + 1, node.start as usize] {
+                assert_eq!(node.bounds.union(tree.nodes[child].bounds), node.bounds);
+            }
+        }
+    }
+
+    #[test]
+    fn depth_is_bounded_when_the_heuristic_peels_off_one_at_a_time() {
+        // Boxes that double in size and distance: every split by area cuts off the largest.
+        let boxes: Vec<Bounds> = (0..1000)
+            .map(|i| cube(DVec3::X * 1.9f64.powi(i - 500), 1.9f64.powi(i - 502)))
+            .collect();
+        let tree = build(&boxes);
+        assert!(depth(&tree.nodes, 0) <= MAX_DEPTH, "{}", depth(&tree.nodes, 0));
+    }
+
+    #[test]
+    fn equal_boxes_make_a_shallow_tree() {
+        let tree = build(&vec![cube(DVec3::ONE, 1.0); 10_000]);
+        assert!(depth(&tree.nodes, 0) < 20);
+    }
+}

@@ -1,0 +1,172 @@
+//! The pure-Rust intersector: bounding-volume hierarchies in f64.
+//!
+//! One tree over the spheres, one over the instances, and one for each mesh in its own space. A
+//! triangle is tested in world space, by the same function as everywhere, so that the tree only
+//! decides which ones are tried.
+
+mod build;
+mod tree;
+
+use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
+
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
+use crate::intersect::{Coherence, Intersector, primitive};
+use crate::scene::{Mesh, Scene, Sphere};
+use tree::{Line, Tree};
+
+/// The pure-Rust intersector.
+pub struct Bvh<'s> {
+    scene: &'s Scene,
+    spheres: Tree,
+    instances: Tree,
+    /// For each instance, the way into its mesh's space.
+    entries: Vec<Entry>,
+    meshes: Vec<Tree>,
+}
+
+/// The way into an instance.
+struct Entry {
+    inverse: DAffine3,
+    /// ‖M‖·‖M⁻¹‖, by which the rounding of a transformed ray grows.
+    condition: f64,
+}
+
+impl<'s> Bvh<'s> {
+    /// Builds the trees of a checked scene, on the current rayon pool.
+    pub fn build(scene: &'s Scene) -> Self {
+        let meshes: Vec<Tree> =
+            scene.meshes.par_iter().map(|mesh| Tree::build(&triangle_bounds(mesh))).collect();
+        let spheres: Vec<Bounds> = scene.spheres.iter().map(Sphere::bounds).collect();
+        let placed: Vec<Bounds> = scene
+            .instances
+            .iter()
+            .map(|i| {
+                let bounds = meshes[i.mesh.0 as usize].bounds().transformed(&i.transform);
+                // A baked vertex may round to just outside the transformed box.
+                bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
+            })
+            .collect();
+        let entries = scene
+            .instances
+            .iter()
+            .map(|i| {
+                let inverse = i.transform.inverse();
+                let norm = |m: &DAffine3| {
+                    let m = &m.matrix3;
+                    m.x_axis.length() + m.y_axis.length() + m.z_axis.length()
+                };
+                Entry { inverse, condition: norm(&i.transform) * norm(&inverse) }
+            })
+            .collect();
+        let (spheres, instances) = (Tree::build(&spheres), Tree::build(&placed));
+        Self { scene, spheres, instances, entries, meshes }
+    }
+
+    /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
+    /// keeps, until it returns true.
+    fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
+        let inverse = 1.0 / ray.direction.length_squared();
+        let line = Line::new(ray.origin, ray.direction, 1.0);
+        let done = self.spheres.walk(&line, limit, |index, limit| {
+            primitive::meet_sphere(self.scene, index, ray, inverse)
+                .is_some_and(|hit| visit(hit, limit))
+        });
+        if done {
+            return;
+        }
+        self.instances.walk(&line, limit, |instance, limit| {
+            let mesh = self.scene.instances[instance as usize].mesh.0;
+            let entry = &self.entries[instance as usize];
+            let local = Line::new(
+                entry.inverse.transform_point3(ray.origin),
+                entry.inverse.transform_vector3(ray.direction),
+                entry.condition,
+            );
+            self.meshes[mesh as usize].walk(&local, limit, |triangle, limit| {
+                let id = PrimitiveId::triangle(mesh, triangle, instance);
+                primitive::meet_triangle(self.scene, id, ray).is_some_and(|hit| visit(hit, limit))
+            })
+        });
+    }
+}
+
+fn triangle_bounds(mesh: &Mesh) -> Vec<Bounds> {
+    let point = |i: u32| {
+        let [x, y, z] = mesh.positions[i as usize];
+        DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+    };
+    mesh.triangles.par_iter().map(|t| Bounds::of(t.map(point))).collect()
+}
+
+impl Intersector for Bvh<'_> {
+    fn name(&self) -> &'static str {
+        "rust"
+    }
+
+    fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").to_owned()
+    }
+
+    fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
+        for (ray, best) in rays.iter().zip(hits) {
+            *best = None;
+            let mut limit = ray.tmax;
+            self.visit(ray, &mut limit, |hit, limit| {
+                Hit::keep_first(best, hit);
+                *limit = limit.min(hit.t);
+                false
+            });
+            primitive::merge_planes(self.scene, ray, best);
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
+        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = primitive::planes_occlude(self.scene, ray);
+            if !*blocked {
+                let mut limit = ray.tmax;
+                self.visit(ray, &mut limit, |hit, _| {
+                    *blocked = self.scene.casts_shadow(hit.id);
+                    *blocked
+                });
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for Bvh<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let trees = self.meshes.len();
+        f.debug_struct("Bvh").field("meshes", &trees).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Geometry;
+    use crate::scene::MaterialId;
+
+    #[test]
+    fn empty_scene_has_no_hits() {
+        let scene = Scene::default();
+        let mut hits = [None];
+        let ray = [Ray::new(DVec3::ZERO, DVec3::X)];
+        Bvh::build(&scene).closest(&ray, Coherence::Coherent, &mut hits);
+        assert_eq!(hits, [None]);
+    }
+
+    #[test]
+    fn equal_distances_go_to_the_lesser_primitive() {
+        let spheres = vec![Sphere::new(DVec3::Z * 5.0, 1.0, MaterialId(0)); 9];
+        let scene = Scene { spheres, ..Scene::default() };
+        let mut hits = [None];
+        let ray = [Ray::new(DVec3::ZERO, DVec3::Z)];
+        Bvh::build(&scene).closest(&ray, Coherence::Coherent, &mut hits);
+        let hit = hits[0].unwrap();
+        assert_eq!((hit.id.geometry, hit.id.primitive), (Geometry::Spheres, 0));
+    }
+}

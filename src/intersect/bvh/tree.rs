@@ -1,0 +1,136 @@
+//! A binary tree of boxes, and the walk of a line through it.
+
+use glam::DVec3;
+
+use crate::geometry::Bounds;
+use crate::intersect::bvh::build;
+
+/// A binary tree of boxes over numbered items, stored depth first.
+pub struct Tree {
+    pub(super) nodes: Vec<Node>,
+    /// The items, those of a leaf side by side.
+    pub(super) items: Vec<u32>,
+}
+
+/// A box, and what is in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    pub(super) bounds: Bounds,
+    /// A leaf's first item; an inner node's second child (the first one follows the node).
+    pub(super) start: u32,
+    /// How many items a leaf holds; 0 for an inner node.
+    pub(super) count: u32,
+}
+
+/// A line as the walk needs it: with reciprocals, and a margin for what was rounded.
+pub struct Line {
+    inverse: DVec3,
+    /// The origin moved outward by the margin, as the lower and as the upper faces see it.
+    origin: DVec3,
+    /// How far off, relative to the coordinates, origin and direction may be.
+    relative: f64,
+    /// The same for the origin's own coordinates.
+    margin: f64,
+}
+
+impl Line {
+    /// A line whose origin and direction are right to `condition` roundings.
+    ///
+    /// The slab test below is off by a few ulp of |origin| + |box|, and a line that was taken
+    /// into an instance's space by about `condition` times as much: each box is widened by 64
+    /// times that, so that no box is missed whose primitive is hit.
+    pub fn new(origin: DVec3, direction: DVec3, condition: f64) -> Self {
+        let relative = 64.0 * f64::EPSILON * condition;
+        Self {
+            inverse: direction.recip(),
+            origin,
+            relative,
+            margin: relative * origin.abs().max_element(),
+        }
+    }
+
+    /// Where the line enters the box, if it passes through it at some t in \[0, `limit`\].
+    #[inline(always)]
+    fn enters(&self, bounds: &Bounds, margin: f64, limit: f64) -> Option<f64> {
+        let a = (bounds.lower - margin - self.origin) * self.inverse;
+        let b = (bounds.upper + margin - self.origin) * self.inverse;
+        // A component of direction 0 gives infinities of both signs within the slab and of one
+        // outside it; `min` and `max` pass over the NaN of a 0 times infinity on its border.
+        let (near, far) = (a.min(b), a.max(b));
+        let enter = near.x.max(near.y).max(near.z).max(0.0);
+        let leave = far.x.min(far.y).min(far.z).min(limit);
+        // The quotients are off by 2 ulp each (Ize, Robust BVH Ray Traversal, 2013).
+        (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter)
+    }
+}
+
+impl Tree {
+    /// Builds the tree over boxes numbered from 0.
+    pub fn build(boxes: &[Bounds]) -> Self {
+        build::build(boxes)
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> Bounds {
+        self.nodes.first().map_or(Bounds::EMPTY, |root| root.bounds)
+    }
+
+    /// Calls `test` with each item whose leaf the line enters before `limit`, the nearer child
+    /// first, until it returns true; says whether it did. `test` may lower the limit.
+    #[inline]
+    pub fn walk(
+        &self,
+        line: &Line,
+        limit: &mut f64,
+        mut test: impl FnMut(u32, &mut f64) -> bool,
+    ) -> bool {
+        let Some(root) = self.nodes.first() else { return false };
+        let margin = line.margin + line.relative * root.bounds.max_abs();
+        // The builder keeps every path shorter than this.
+        let mut stack = [(0u32, 0.0f64); build::MAX_DEPTH + 1];
+        let mut top = 0;
+        let mut current = line.enters(&root.bounds, margin, *limit).map(|_| 0u32);
+        loop {
+            let Some(index) = current else {
+                // Take the nearest node that was put off and is not behind the best hit by now.
+                current = loop {
+                    if top == 0 {
+                        return false;
+                    }
+                    top -= 1;
+                    let (index, enter) = stack[top];
+                    if enter <= *limit {
+                        break Some(index);
+                    }
+                };
+                continue;
+            };
+            let node = &self.nodes[index as usize];
+            if node.count > 0 {
+                let items = node.start as usize..(node.start + node.count) as usize;
+                for &item in &self.items[items] {
+                    if test(item, limit) {
+                        return true;
+                    }
+                }
+                current = None;
+                continue;
+            }
+            let (left, right) = (index + 1, node.start);
+            let enter =
+                |child: u32| line.enters(&self.nodes[child as usize].bounds, margin, *limit);
+            current = match (enter(left), enter(right)) {
+                (Some(a), Some(b)) => {
+                    let (first, second) =
+                        if a <= b { (left, (right, b)) } else { (right, (left, a)) };
+                    stack[top] = second;
+                    top += 1;
+                    Some(first)
+                }
+                (Some(_), None) => Some(left),
+                (None, Some(_)) => Some(right),
+                (None, None) => None,
+            };
+        }
+    }
+}

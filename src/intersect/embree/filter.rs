@@ -1,0 +1,68 @@
+//! The filter that secondary rays carry: it drops the surface that a ray left, triangles that f64
+//! says are not in its way, and, for shadow rays, what casts no shadow.
+//!
+//! Primary rays carry none.
+#![allow(unsafe_code)]
+
+use embree4_sys as sys;
+
+use crate::geometry::PrimitiveId;
+use crate::intersect::embree::layout::{Context, INVALID};
+use crate::intersect::primitive;
+
+/// The fields of a hit, after `W` of each field of the ray.
+const PRIM: usize = 5;
+const GEOM: usize = 6;
+const INST: usize = 7;
+const TFAR: usize = 8;
+const ID: usize = 10;
+
+/// The filter for packets of `W`; `SHADOW` for occlusion calls.
+pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
+    args: *const sys::RTCFilterFunctionNArguments,
+) {
+    // SAFETY: Embree passes pointers to `N` rays and hits and the context of the call, which
+    // `query` made for packets of this width.
+    unsafe {
+        let args = &*args;
+        let n = args.N as usize;
+        let context = &*args.context.cast::<Context<'_, W>>();
+        let (ray, hit) = (args.ray.cast::<u32>(), args.hit.cast::<u32>());
+        for slot in 0..n {
+            let valid = args.valid.add(slot);
+            if *valid == 0 {
+                continue;
+            }
+            let field = |base: *const u32, field: usize| *base.add(field * n + slot);
+            let lane = field(ray, ID) as usize;
+            let t = f32::from_bits(field(ray, TFAR));
+            let ids = [PRIM, GEOM, INST].map(|f| field(hit, f));
+            if !stands_in_the_way::<W, SHADOW>(context, lane, t, ids) {
+                *valid = 0;
+            }
+        }
+    }
+}
+
+/// Whether the candidate that Embree's f32 arithmetic found at `t` counts for the ray in `lane`.
+fn stands_in_the_way<const W: usize, const SHADOW: bool>(
+    context: &Context<'_, W>,
+    lane: usize,
+    t: f32,
+    [prim, geom, inst]: [u32; 3],
+) -> bool {
+    let Some(ray) = context.rays.get(lane) else { return false };
+    let attached = if inst == INVALID { geom } else { inst };
+    let Some(&instance) = context.instance_of.get(attached as usize) else { return true };
+    let placed = &context.scene.instances[instance as usize];
+    if SHADOW && !placed.casts_shadow {
+        return false;
+    }
+    let id = PrimitiveId::triangle(placed.mesh.0, prim, instance);
+    if ray.from.is_some_and(|from| from.id == id) {
+        return false;
+    }
+    let end = (context.exact.tmax[lane] - context.exact.start[lane]) * context.exact.unit[lane];
+    let sure = t > context.doubt && f64::from(t) < end - f64::from(context.doubt);
+    sure || primitive::meet_triangle(context.scene, id, ray).is_some()
+}

@@ -1,0 +1,125 @@
+//! What Embree reads and writes in our memory.
+//!
+//! The bindings describe Embree 4.2. From 4.3 on the library appends a field to the hit and to the
+//! query context, and so writes past the bindings' own types. The records here are laid out as
+//! the newer library expects and end in spare room; the older one leaves the last field alone.
+//! `canary` proves at start that the library agrees.
+
+use crate::geometry::Ray;
+use crate::intersect::embree::frame::Exact;
+use crate::scene::Scene;
+
+/// What Embree writes where there is no geometry or no instance.
+pub const INVALID: u32 = u32::MAX;
+
+/// A packet of `W` rays and their hits: `RTCRayHit`, `RTCRayHit4`, `8` and `16` in one.
+#[repr(C, align(64))]
+pub struct RayHit<const W: usize> {
+    pub org: [[f32; W]; 3],
+    pub tnear: [f32; W],
+    pub dir: [[f32; W]; 3],
+    pub time: [f32; W],
+    pub tfar: [f32; W],
+    pub mask: [u32; W],
+    pub id: [u32; W],
+    pub flags: [u32; W],
+    pub ng: [[f32; W]; 3],
+    pub u: [f32; W],
+    pub v: [f32; W],
+    pub prim: [u32; W],
+    pub geom: [u32; W],
+    pub inst: [u32; W],
+    /// Written by Embree 4.3 and newer.
+    pub inst_prim: [u32; W],
+    /// Room for what a later library may append.
+    pub spare: [u32; 32],
+}
+
+impl<const W: usize> RayHit<W> {
+    pub fn new() -> Self {
+        Self {
+            org: [[0.0; W]; 3],
+            tnear: [0.0; W],
+            dir: [[0.0; W]; 3],
+            time: [0.0; W],
+            tfar: [0.0; W],
+            mask: [u32::MAX; W],
+            id: std::array::from_fn(|i| i as u32),
+            flags: [0; W],
+            ng: [[0.0; W]; 3],
+            u: [0.0; W],
+            v: [0.0; W],
+            prim: [INVALID; W],
+            geom: [INVALID; W],
+            inst: [INVALID; W],
+            inst_prim: [INVALID; W],
+            spare: [SENTINEL; 32],
+        }
+    }
+}
+
+/// What `spare` holds as long as nobody writes to it.
+pub const SENTINEL: u32 = 0x5afe_5afe;
+
+/// Which rays of a packet are traced: −1 or 0 each, as Embree wants it, 64-aligned.
+#[repr(C, align(64))]
+pub struct Valid<const W: usize>(pub [i32; W]);
+
+/// The query context: Embree's own room first, then what our callbacks need.
+///
+/// Embree hands the callbacks the pointer that it was given, so that they find the rest behind it.
+#[repr(C, align(64))]
+pub struct Context<'a, const W: usize> {
+    /// `RTCRayQueryContext`, larger than any version's; all ones means "in no instance".
+    pub embree: [u32; 16],
+    pub scene: &'a Scene,
+    /// The rays of the packet as they were asked; fewer than `W` in the last one.
+    pub rays: &'a [Ray],
+    /// The same, side by side.
+    pub exact: &'a Exact<W>,
+    /// For each geometry of the Embree scene the instance that stands there.
+    pub instance_of: &'a [u32],
+    /// The nearest sphere of each ray so far: its distance, exactly, or infinity, and its index.
+    pub sphere_t: [f64; W],
+    pub sphere: [u32; W],
+    /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
+    /// tested again in f64.
+    pub doubt: f32,
+    /// Whether any ray of the packet left a sphere.
+    pub leaves_spheres: bool,
+}
+
+impl<'a, const W: usize> Context<'a, W> {
+    pub fn new(
+        scene: &'a Scene,
+        rays: &'a [Ray],
+        exact: &'a Exact<W>,
+        instance_of: &'a [u32],
+        doubt: f32,
+    ) -> Self {
+        Self {
+            embree: [INVALID; 16],
+            scene,
+            rays,
+            exact,
+            instance_of,
+            sphere_t: exact.tmax,
+            sphere: [INVALID; W],
+            doubt,
+            leaves_spheres: false,
+        }
+    }
+}
+
+const _: () = {
+    use std::mem::{offset_of, size_of};
+    // Twelve fields of the ray, then nine of the hit, each as wide as the packet.
+    assert!(offset_of!(RayHit<1>, ng) == 48 && offset_of!(RayHit<1>, inst_prim) == 80);
+    assert!(offset_of!(RayHit<4>, ng) == 192 && offset_of!(RayHit<4>, inst_prim) == 320);
+    assert!(offset_of!(RayHit<8>, ng) == 384 && offset_of!(RayHit<8>, inst_prim) == 640);
+    assert!(offset_of!(RayHit<16>, ng) == 768 && offset_of!(RayHit<16>, inst_prim) == 1280);
+    assert!(offset_of!(RayHit<16>, spare) == 1344 && size_of::<[u32; 32]>() >= 64);
+    assert!(size_of::<embree4_sys::RTCRayHit>() == 80);
+    assert!(size_of::<embree4_sys::RTCRayQueryContext>() <= size_of::<[u32; 16]>());
+    assert!(offset_of!(Context<'static, 16>, embree) == 0);
+};

@@ -1,0 +1,210 @@
+//! The Embree intersector, precision `fast`.
+//!
+//! Embree traverses recentred f32 copies of the rays (`frame`); spheres are one user geometry
+//! whose callbacks compute in f64 from the exact rays (`spheres`); the triangles that Embree
+//! reports are intersected again in f64 (`refine`); planes are merged as for every backend. What
+//! this does not promise is which of two triangles is hit where f32 cannot tell: along edges and
+//! at equal depths.
+//!
+//! embree4-rs owns device, scene, meshes and their lifetimes. Its ray queries are not used: they
+//! take records smaller than the library writes (`layout`).
+
+mod canary;
+mod filter;
+mod frame;
+mod layout;
+mod query;
+mod raw;
+mod refine;
+mod spheres;
+mod width;
+
+use std::sync::OnceLock;
+
+use embree4_rs::geometry::{Geometry, TriangleMeshGeometry};
+use embree4_rs::{CommittedScene, Device, SceneOptions};
+use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
+use glam::DAffine3;
+
+use crate::error::{Error, Result};
+use crate::geometry::{Hit, Ray};
+use crate::intersect::{Coherence, Intersector};
+use crate::scene::{Instance, Mesh, Scene};
+use canary::failed;
+use frame::Frame;
+use raw::{DeviceHandle, InnerScene, InstanceGeometry, scene_handle};
+use spheres::SphereTable;
+use width::Width;
+
+/// The Embree intersector of one scene.
+pub struct Embree<'s> {
+    scene: &'s Scene,
+    frame: Frame,
+    width: Width,
+    /// For each geometry that is attached, the instance that stands there.
+    instance_of: Vec<u32>,
+    committed: CommittedScene,
+    version: String,
+    /// Read by the callbacks; dropped after the scene that calls them.
+    _spheres: Option<Box<SphereTable>>,
+}
+
+// SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
+// scene. Embree lets any thread trace a committed scene, and release it.
+#[allow(unsafe_code)]
+unsafe impl Send for Embree<'_> {}
+#[allow(unsafe_code)]
+unsafe impl Sync for Embree<'_> {}
+
+impl<'s> Embree<'s> {
+    /// Builds a checked scene on `threads` threads (0: all there are).
+    ///
+    /// # Errors
+    /// When the library is not as expected, or runs out of memory.
+    pub fn build(scene: &'s Scene, threads: usize) -> Result<Self> {
+        static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+        CHECKED
+            .get_or_init(|| canary::check().map_err(|e| e.to_string()))
+            .clone()
+            .map_err(Error::failed)?;
+
+        let device = Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?;
+        let options = SceneOptions { build_quality: QUALITY, flags: flags() };
+        let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
+        let device = DeviceHandle::of(&top);
+        let frame = Frame::around(scene.bounds());
+        let width = Width::native(&device);
+
+        let instance_of = attach_meshes(scene, &top, &device, &frame)?;
+        let spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
+        if let Some(table) = &spheres {
+            let geometry = spheres::geometry(&top.device, &device, table, width)?;
+            top.attach_geometry(&geometry).map_err(failed)?;
+        }
+        let committed = top
+            .commit()
+            .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
+        let version = version_of(&device);
+        Ok(Self { scene, frame, width, instance_of, committed, version, _spheres: spheres })
+    }
+
+    /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
+    /// `fast` cannot tell apart. Within an instance it may be magnified by the instance's own
+    /// space.
+    pub fn margin(&self) -> f64 {
+        self.frame.margin()
+    }
+
+    fn target(&self) -> query::Target<'_> {
+        query::Target {
+            handle: scene_handle(&self.committed.scene),
+            scene: self.scene,
+            instance_of: &self.instance_of,
+            frame: &self.frame,
+            width: self.width,
+        }
+    }
+}
+
+const QUALITY: RTCBuildQuality = RTCBuildQuality::MEDIUM;
+
+fn flags() -> RTCSceneFlags {
+    RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS
+}
+
+/// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
+/// stands several times through Embree's instances. Says which instance each geometry is.
+fn attach_meshes(
+    scene: &Scene,
+    top: &embree4_rs::Scene,
+    device: &DeviceHandle,
+    frame: &Frame,
+) -> Result<Vec<u32>> {
+    let mut uses = vec![0u32; scene.meshes.len()];
+    scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
+    let mut inner: Vec<Option<InnerScene>> = scene.meshes.iter().map(|_| None).collect();
+    let mut instance_of = Vec::new();
+    for (index, instance) in scene.instances.iter().enumerate() {
+        let at = instance.mesh.0 as usize;
+        let mesh = &scene.meshes[at];
+        if mesh.triangles.is_empty() {
+            continue;
+        }
+        if uses[at] == 1 {
+            let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
+            attach(top, &geometry)?;
+        } else {
+            if inner[at].is_none() {
+                let geometry = upload(&top.device, mesh, |p| p)?;
+                inner[at] = Some(InnerScene::new(device, QUALITY, flags(), &geometry)?);
+            }
+            if let Some(built) = &inner[at] {
+                attach(top, &InstanceGeometry::new(device, built, &columns(instance, frame))?)?;
+            }
+        }
+        instance_of.push(index as u32);
+    }
+    Ok(instance_of)
+}
+
+fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<()> {
+    top.attach_geometry(geometry).map(|_| ()).map_err(failed)
+}
+
+fn upload(
+    device: &Device,
+    mesh: &Mesh,
+    place: impl Fn([f32; 3]) -> [f32; 3],
+) -> Result<TriangleMeshGeometry> {
+    let vertices: Vec<(f32, f32, f32)> = mesh.positions.iter().map(|&p| place(p).into()).collect();
+    let triangles: Vec<(u32, u32, u32)> = mesh.triangles.iter().map(|&t| t.into()).collect();
+    TriangleMeshGeometry::try_new(device, &vertices, &triangles)
+        .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
+}
+
+/// The matrix from the mesh's space to the recentred world.
+fn columns(instance: &Instance, frame: &Frame) -> [[f32; 3]; 4] {
+    let m = DAffine3::from_translation(-frame.center) * instance.transform;
+    [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
+        .map(|column| column.as_vec3().to_array())
+}
+
+fn version_of(device: &DeviceHandle) -> String {
+    let of = |property| device.property(property);
+    format!(
+        "{}.{}.{}",
+        of(RTCDeviceProperty::VERSION_MAJOR),
+        of(RTCDeviceProperty::VERSION_MINOR),
+        of(RTCDeviceProperty::VERSION_PATCH)
+    )
+}
+
+/// The version of the Embree library, such as `4.4.0`.
+///
+/// # Errors
+/// When the library does not start.
+pub fn version() -> Result<String> {
+    let device = Device::try_new(Some("threads=1\0")).map_err(failed)?;
+    let scene = embree4_rs::Scene::try_new(device, SceneOptions::default()).map_err(failed)?;
+    Ok(version_of(&DeviceHandle::of(&scene)))
+}
+
+impl Intersector for Embree<'_> {
+    fn name(&self) -> &'static str {
+        "embree"
+    }
+
+    fn version(&self) -> String {
+        self.version.clone()
+    }
+
+    fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
+        self.target().closest(rays, coherence, hits);
+    }
+
+    fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
+        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
+        self.target().occluded(rays, coherence, blocked);
+    }
+}

@@ -1,0 +1,224 @@
+//! Tracing a batch through Embree, packet by packet.
+#![allow(unsafe_code)]
+
+use embree4_sys as sys;
+
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
+use crate::intersect::embree::filter::filter;
+use crate::intersect::embree::frame::{Exact, Frame};
+use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
+use crate::intersect::embree::refine::refine;
+use crate::intersect::embree::width::Width;
+use crate::intersect::{Coherence, primitive};
+use crate::scene::Scene;
+
+/// A committed Embree scene and what belongs to it.
+#[derive(Clone, Copy)]
+pub struct Target<'a> {
+    pub handle: sys::RTCScene,
+    pub scene: &'a Scene,
+    pub instance_of: &'a [u32],
+    pub frame: &'a Frame,
+    pub width: Width,
+}
+
+impl Target<'_> {
+    /// The closest hit of each ray.
+    pub fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
+        // SAFETY: the widths with target features are only chosen where the processor has them.
+        match self.width {
+            Width::One => closest::<1>(self, rays, coherence, hits),
+            Width::Four => closest::<4>(self, rays, coherence, hits),
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => unsafe { closest_8(self, rays, coherence, hits) },
+            #[cfg(target_arch = "x86_64")]
+            Width::Sixteen => unsafe { closest_16(self, rays, coherence, hits) },
+        }
+    }
+
+    /// Whether each ray is kept from its end.
+    pub fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
+        // SAFETY: as in `closest`.
+        match self.width {
+            Width::One => occluded::<1>(self, rays, coherence, blocked),
+            Width::Four => occluded::<4>(self, rays, coherence, blocked),
+            #[cfg(target_arch = "x86_64")]
+            Width::Eight => unsafe { occluded_8(self, rays, coherence, blocked) },
+            #[cfg(target_arch = "x86_64")]
+            Width::Sixteen => unsafe { occluded_16(self, rays, coherence, blocked) },
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn closest_8(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
+    closest::<8>(target, rays, c, hits);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+fn closest_16(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
+    closest::<16>(target, rays, c, hits);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn occluded_8(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
+    occluded::<8>(target, rays, c, blocked);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+fn occluded_16(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
+    occluded::<16>(target, rays, c, blocked);
+}
+
+fn query_flags(coherence: Coherence, filtered: bool) -> sys::RTCRayQueryFlags {
+    let flags = match coherence {
+        Coherence::Coherent => sys::RTCRayQueryFlags::COHERENT,
+        Coherence::Incoherent => sys::RTCRayQueryFlags::INCOHERENT,
+    };
+    if filtered { flags | sys::RTCRayQueryFlags::INVOKE_ARGUMENT_FILTER } else { flags }
+}
+
+/// The feature mask of Embree's own default arguments: everything.
+const ALL_FEATURES: sys::RTCFeatureFlags = sys::RTCFeatureFlags(u32::MAX);
+
+#[inline(always)]
+fn lanes<const W: usize>(count: usize, inside: [bool; W]) -> Valid<W> {
+    let mut valid = Valid([0; W]);
+    for i in 0..W {
+        valid.0[i] = if inside[i] & (i < count) { -1 } else { 0 };
+    }
+    valid
+}
+
+#[inline(always)]
+fn closest<const W: usize>(
+    target: &Target<'_>,
+    rays: &[Ray],
+    coherence: Coherence,
+    hits: &mut [Option<Hit>],
+) {
+    let mut exact = Exact::<W>::new();
+    let mut record = RayHit::<W>::new();
+    for (rays, hits) in rays.chunks(W).zip(hits.chunks_mut(W)) {
+        exact.load(rays);
+        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        record.geom = [INVALID; W];
+        record.inst = [INVALID; W];
+        let valid = lanes(rays.len(), inside);
+        let filtered = rays.iter().any(|ray| ray.from.is_some());
+        let mut context =
+            Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
+        context.leaves_spheres = filtered && leaves_spheres(rays);
+        let mut args = sys::RTCIntersectArguments {
+            flags: query_flags(coherence, filtered),
+            feature_mask: ALL_FEATURES,
+            context: std::ptr::from_mut(&mut context).cast(),
+            filter: if filtered { Some(filter::<W, false>) } else { None },
+            intersect: None,
+        };
+        let record_ptr = std::ptr::from_mut(&mut record);
+        // SAFETY: the scene is committed and lives as long as `target`; record, valid and context
+        // are laid out as the library wants them (see `layout` and `canary`), larger than it
+        // needs, and 64-aligned; the callbacks get a pointer to the whole context.
+        unsafe {
+            match W {
+                1 => {
+                    if valid.0[0] != 0 {
+                        sys::rtcIntersect1(target.handle, record_ptr.cast(), &mut args);
+                    }
+                }
+                4 => sys::rtcIntersect4(
+                    valid.0.as_ptr(),
+                    target.handle,
+                    record_ptr.cast(),
+                    &mut args,
+                ),
+                8 => sys::rtcIntersect8(
+                    valid.0.as_ptr(),
+                    target.handle,
+                    record_ptr.cast(),
+                    &mut args,
+                ),
+                _ => sys::rtcIntersect16(
+                    valid.0.as_ptr(),
+                    target.handle,
+                    record_ptr.cast(),
+                    &mut args,
+                ),
+            }
+        }
+        refine(target.scene, target.instance_of, &exact, &record, hits);
+        for (i, hit) in hits.iter_mut().enumerate() {
+            if context.sphere[i] != INVALID {
+                let id = PrimitiveId::sphere(context.sphere[i]);
+                Hit::keep_first(hit, Hit { t: context.sphere_t[i], u: 0.0, v: 0.0, id });
+            }
+        }
+        if !target.scene.planes.is_empty() {
+            for (ray, hit) in rays.iter().zip(hits) {
+                primitive::merge_planes(target.scene, ray, hit);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn occluded<const W: usize>(
+    target: &Target<'_>,
+    rays: &[Ray],
+    coherence: Coherence,
+    blocked: &mut [bool],
+) {
+    let mut exact = Exact::<W>::new();
+    let mut record = RayHit::<W>::new();
+    for (rays, blocked) in rays.chunks(W).zip(blocked.chunks_mut(W)) {
+        exact.load(rays);
+        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let valid = lanes(rays.len(), inside);
+        let mut context =
+            Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
+        context.leaves_spheres = leaves_spheres(rays);
+        let mut args = sys::RTCOccludedArguments {
+            flags: query_flags(coherence, true),
+            feature_mask: ALL_FEATURES,
+            context: std::ptr::from_mut(&mut context).cast(),
+            filter: Some(filter::<W, true>),
+            occluded: None,
+        };
+        let record_ptr = std::ptr::from_mut(&mut record);
+        // SAFETY: as in `closest`; an occlusion call touches the ray part of the record only.
+        unsafe {
+            match W {
+                1 => {
+                    if valid.0[0] != 0 {
+                        sys::rtcOccluded1(target.handle, record_ptr.cast(), &mut args);
+                    }
+                }
+                4 => {
+                    sys::rtcOccluded4(valid.0.as_ptr(), target.handle, record_ptr.cast(), &mut args)
+                }
+                8 => {
+                    sys::rtcOccluded8(valid.0.as_ptr(), target.handle, record_ptr.cast(), &mut args)
+                }
+                _ => sys::rtcOccluded16(
+                    valid.0.as_ptr(),
+                    target.handle,
+                    record_ptr.cast(),
+                    &mut args,
+                ),
+            }
+        }
+        for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
+            let found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
+            *blocked = found || primitive::planes_occlude(target.scene, ray);
+        }
+    }
+}
+
+fn leaves_spheres(rays: &[Ray]) -> bool {
+    rays.iter().any(|ray| ray.from.is_some_and(|from| from.id.geometry == Geometry::Spheres))
+}

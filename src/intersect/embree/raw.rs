@@ -1,0 +1,124 @@
+//! Owners of the Embree objects that embree4-rs does not own, and the way to its own handles.
+#![allow(unsafe_code)]
+
+use embree4_rs::geometry::Geometry;
+use embree4_sys as sys;
+
+use crate::error::{Error, Result};
+
+/// The handle of a scene of embree4-rs, which keeps it private.
+///
+/// This goes when the crate offers its handles itself.
+pub fn scene_handle(scene: &embree4_rs::Scene) -> sys::RTCScene {
+    use std::mem::{offset_of, size_of};
+    const WORD: usize = size_of::<usize>();
+    const DEVICE: usize = offset_of!(embree4_rs::Scene, device);
+    // The struct is the device (one word: its handle) and the scene's handle, in either order.
+    const _: () = assert!(size_of::<embree4_rs::Scene>() == 2 * WORD);
+    const _: () = assert!(size_of::<embree4_rs::Device>() == WORD);
+    const _: () = assert!(DEVICE == 0 || DEVICE == WORD);
+    let words = std::ptr::from_ref(scene).cast::<sys::RTCScene>();
+    // SAFETY: by the assertions the struct is two words, both pointers, and the one that is not
+    // the device is the scene's handle; the crate's version is pinned.
+    unsafe { words.add(if DEVICE == 0 { 1 } else { 0 }).read() }
+}
+
+/// A reference of our own to a scene's device.
+pub struct DeviceHandle(pub sys::RTCDevice);
+
+impl DeviceHandle {
+    pub fn of(scene: &embree4_rs::Scene) -> Self {
+        // SAFETY: the handle is a live scene's; the call adds a reference, which `drop` releases.
+        Self(unsafe { sys::rtcGetSceneDevice(scene_handle(scene)) })
+    }
+
+    /// A property such as the version or a supported packet width.
+    pub fn property(&self, property: sys::RTCDeviceProperty) -> isize {
+        // SAFETY: the device is live.
+        unsafe { sys::rtcGetDeviceProperty(self.0, property) }
+    }
+
+    /// The first error since the last call, as one of ours.
+    pub fn check(&self, doing: &str) -> Result<()> {
+        // SAFETY: the device is live.
+        match unsafe { sys::rtcGetDeviceError(self.0) } {
+            sys::RTCError::NONE => Ok(()),
+            sys::RTCError::OUT_OF_MEMORY => {
+                Err(Error::failed(format!("Embree ran out of memory while {doing}")))
+            }
+            error => Err(Error::failed(format!("Embree failed while {doing}: {error:?}"))),
+        }
+    }
+}
+
+impl Drop for DeviceHandle {
+    fn drop(&mut self) {
+        // SAFETY: this is the reference that `of` took.
+        unsafe { sys::rtcReleaseDevice(self.0) }
+    }
+}
+
+/// A scene to be instanced, on a device that already has one.
+pub struct InnerScene(pub sys::RTCScene);
+
+impl InnerScene {
+    pub fn new(
+        device: &DeviceHandle,
+        quality: sys::RTCBuildQuality,
+        flags: sys::RTCSceneFlags,
+        geometry: &dyn Geometry,
+    ) -> Result<Self> {
+        // SAFETY: the device is live, and so is the geometry, which the scene then references.
+        let scene = unsafe {
+            let handle = sys::rtcNewScene(device.0);
+            sys::rtcSetSceneBuildQuality(handle, quality);
+            sys::rtcSetSceneFlags(handle, flags);
+            sys::rtcAttachGeometry(handle, *geometry.handle());
+            sys::rtcCommitScene(handle);
+            Self(handle)
+        };
+        device.check("building an instanced mesh")?;
+        Ok(scene)
+    }
+}
+
+impl Drop for InnerScene {
+    fn drop(&mut self) {
+        // SAFETY: this is the reference that `rtcNewScene` gave.
+        unsafe { sys::rtcReleaseScene(self.0) }
+    }
+}
+
+/// An instance of a scene, to be attached to another one.
+pub struct InstanceGeometry(sys::RTCGeometry);
+
+impl InstanceGeometry {
+    /// `columns`: the matrix from the inner scene's space to the outer's, column by column.
+    pub fn new(device: &DeviceHandle, scene: &InnerScene, columns: &[[f32; 3]; 4]) -> Result<Self> {
+        // SAFETY: device and scene are live; the instance takes a reference to the scene and
+        // copies the twelve floats.
+        let instance = unsafe {
+            let handle = sys::rtcNewGeometry(device.0, sys::RTCGeometryType::INSTANCE);
+            sys::rtcSetGeometryInstancedScene(handle, scene.0);
+            let format = sys::RTCFormat::FLOAT3X4_COLUMN_MAJOR;
+            sys::rtcSetGeometryTransform(handle, 0, format, columns.as_ptr().cast());
+            sys::rtcCommitGeometry(handle);
+            Self(handle)
+        };
+        device.check("placing an instance")?;
+        Ok(instance)
+    }
+}
+
+impl Geometry for InstanceGeometry {
+    fn handle(&self) -> &sys::RTCGeometry {
+        &self.0
+    }
+}
+
+impl Drop for InstanceGeometry {
+    fn drop(&mut self) {
+        // SAFETY: this is the reference that `rtcNewGeometry` gave.
+        unsafe { sys::rtcReleaseGeometry(self.0) }
+    }
+}

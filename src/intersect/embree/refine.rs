@@ -1,0 +1,68 @@
+//! The f64 hits of the triangles that Embree found.
+
+use glam::DVec3;
+
+use crate::geometry::{Hit, PrimitiveId, triangle};
+use crate::intersect::embree::frame::Exact;
+use crate::intersect::embree::layout::{INVALID, RayHit};
+use crate::scene::Scene;
+
+/// The corners of a packet's triangles, side by side: corner, axis, lane.
+type Corners<const W: usize> = [[[f64; W]; 3]; 3];
+
+/// Intersects each lane's triangle again in f64, and writes the hits; `None` where there is none.
+///
+/// Where f64 says that the ray just misses the triangle that Embree's f32 arithmetic hit, the hit
+/// is kept, with t from the triangle's plane and the weights clamped: dropping it would leave a
+/// hole, since Embree no longer looked behind it. Where the plane gives no t either (the ray runs
+/// along it, or meets it outside the segment) Embree's own t is taken.
+#[inline(always)]
+pub fn refine<const W: usize>(
+    scene: &Scene,
+    instance_of: &[u32],
+    exact: &Exact<W>,
+    record: &RayHit<W>,
+    hits: &mut [Option<Hit>],
+) {
+    let mut corners: Corners<W> = [[[0.0; W]; 3]; 3];
+    let mut ids = [None; W];
+    for i in 0..hits.len() {
+        if record.geom[i] == INVALID {
+            continue;
+        }
+        let attached = if record.inst[i] == INVALID { record.geom[i] } else { record.inst[i] };
+        let instance = instance_of[attached as usize];
+        let mesh = scene.instances[instance as usize].mesh.0;
+        let id = PrimitiveId::triangle(mesh, record.prim[i], instance);
+        ids[i] = Some(id);
+        for (corner, p) in corners.iter_mut().zip(scene.triangle(id)) {
+            for axis in 0..3 {
+                corner[axis][i] = p[axis];
+            }
+        }
+    }
+    let mut ts = [0.0; W];
+    let mut us = [0.0; W];
+    let mut vs = [0.0; W];
+    for i in 0..W {
+        let (origin, direction) = exact.line(i);
+        let corner = |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
+        let edges = triangle::Edges::new([corner(0), corner(1), corner(2)], origin, direction);
+        (us[i], vs[i]) = edges.weights();
+        ts[i] = edges.t;
+    }
+    for (i, (hit, id)) in hits.iter_mut().zip(ids).enumerate() {
+        *hit = id.map(|id| {
+            let mut t = ts[i];
+            if !(t > 0.0 && t < exact.tmax[i]) {
+                let last = exact.tmax[i].next_down();
+                t = exact.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
+            }
+            let (mut u, mut v) = (us[i], vs[i]);
+            if !(u.is_finite() && v.is_finite()) {
+                (u, v) = (f64::from(record.u[i]), f64::from(record.v[i]));
+            }
+            Hit { t, u, v, id }
+        });
+    }
+}

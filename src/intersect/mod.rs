@@ -1,0 +1,91 @@
+//! The hit layer: who finds what a ray meets.
+//!
+//! An [`Intersector`] is asked in batches. Its implementations answer alike: [`Embree`] (with the
+//! feature `embree`), [`Bvh`], the pure-Rust fallback and judge, and [`BruteForce`], for tests.
+//! They share the primitives' tests in [`primitive`]; what differs is which primitives they try.
+
+mod brute;
+mod bvh;
+#[cfg(feature = "embree")]
+mod embree;
+pub mod primitive;
+
+pub use brute::BruteForce;
+pub use bvh::Bvh;
+#[cfg(feature = "embree")]
+pub use embree::{Embree, version as embree_version};
+
+use crate::error::Result;
+use crate::geometry::{Hit, Ray};
+use crate::scene::Scene;
+
+/// Whether the rays of a batch go much the same way, which a packet tracer can use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coherence {
+    /// Neighbours in the batch start and go alike, as primary and shadow rays do.
+    Coherent,
+    /// They do not, as after a bounce.
+    Incoherent,
+}
+
+/// Finds what rays meet in one scene.
+///
+/// A ray meets what it crosses at 0 < t < `tmax`, both strictly, except the surface it left; a
+/// tangent counts. Of several the least (t, geometry, primitive, instance) is the closest.
+pub trait Intersector: Send + Sync {
+    /// What it is called: `embree`, `rust` or `brute`.
+    fn name(&self) -> &'static str;
+
+    /// The version of what does the work.
+    fn version(&self) -> String;
+
+    /// The closest hit of each ray, written to the same place in `hits`.
+    ///
+    /// # Panics
+    /// When the two slices differ in length.
+    fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]);
+
+    /// Whether anything that casts a shadow stands in each ray's way, written to the same place
+    /// in `blocked`.
+    ///
+    /// # Panics
+    /// When the two slices differ in length.
+    fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
+}
+
+/// Which intersector to use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Backend {
+    /// Intel Embree.
+    #[cfg(feature = "embree")]
+    Embree,
+    /// The pure-Rust BVH.
+    Rust,
+}
+
+impl Default for Backend {
+    /// Embree where it is compiled in.
+    fn default() -> Self {
+        #[cfg(feature = "embree")]
+        return Backend::Embree;
+        #[cfg(not(feature = "embree"))]
+        Backend::Rust
+    }
+}
+
+impl Backend {
+    /// Builds the intersector of a checked scene, on `threads` threads (0: all there are).
+    ///
+    /// # Errors
+    /// When Embree cannot be started or runs out of memory.
+    pub fn build(self, scene: &Scene, threads: usize) -> Result<Box<dyn Intersector + '_>> {
+        match self {
+            #[cfg(feature = "embree")]
+            Backend::Embree => Ok(Box::new(Embree::build(scene, threads)?)),
+            Backend::Rust => {
+                let _ = threads; // The BVH is built on the caller's rayon pool.
+                Ok(Box::new(Bvh::build(scene)))
+            }
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The cameras of a scene file.
+
+use glam::DVec3;
+
+use super::source::{Source, Span};
+use super::spanned::{At, Table};
+use super::tables::CameraTable;
+use super::values::unit;
+use crate::error::Result;
+use crate::scene::{Camera, Lens};
+
+/// The vertical field of view, in degrees, of a camera that says nothing of it.
+const DEFAULT_FOV_Y: f64 = 45.0;
+
+/// The cameras of a file; `width` is the film's, which `focal_px` refers to.
+pub fn cameras(
+    source: &Source<'_>,
+    tables: &[At<Table<CameraTable>>],
+    width: u32,
+) -> Result<Vec<Camera>> {
+    let mut cameras: Vec<Camera> = Vec::with_capacity(tables.len());
+    for table in tables {
+        let camera = camera(source, &table.value.0, &table.span, width)?;
+        if let Some(At { span, value: name }) = &table.value.0.name
+            && cameras.iter().any(|other| other.name == *name)
+        {
+            let message = format!("there is a camera `{name}` already");
+            return Err(source.error(span, message).help("give each a name of its own"));
+        }
+        cameras.push(camera);
+    }
+    Ok(cameras)
+}
+
+fn camera(source: &Source<'_>, table: &CameraTable, span: &Span, width: u32) -> Result<Camera> {
+    let position = table.position.0;
+    let (forward, toward) = match (&table.look_at, &table.direction) {
+        (Some(target), None) => {
+            let forward = unit(target.value.0 - position).ok_or_else(|| {
+                source
+                    .error(&target.span, "the camera looks at the point where it stands")
+                    .help("`look_at` must differ from `position`")
+            })?;
+            (forward, &target.span)
+        }
+        (None, Some(direction)) => (direction.value.0, &direction.span),
+        (Some(_), Some(direction)) => {
+            let key = source.key("direction", &direction.span);
+            let message = "a camera has `look_at` or `direction`, not both";
+            return Err(source.error(&key, message).help("leave one out"));
+        }
+        (None, None) => {
+            let message = "[camera] needs the key `look_at`, or `direction`";
+            return Err(source.error(span, message));
+        }
+    };
+    let up = table.up.as_ref().map_or(DVec3::Y, |up| up.value.0);
+    let lens = lens(source, table, width)?;
+    let up_span = table.up.as_ref().map_or(toward, |up| &up.span);
+    // From the origin, so that a position far out does not round the direction.
+    let camera =
+        Camera::look_at(DVec3::ZERO, forward, up, lens).map_err(|e| source.place(up_span, e))?;
+    let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
+    Ok(Camera { name, position, ..camera })
+}
+
+fn lens(source: &Source<'_>, table: &CameraTable, width: u32) -> Result<Lens> {
+    let given: Vec<(&str, &Span, Lens)> = [
+        table.fov_y.as_ref().map(|a| ("fov_y", &a.span, Lens::FovY(a.value.0.to_radians()))),
+        table.fov_x.as_ref().map(|a| ("fov_x", &a.span, Lens::FovX(a.value.0.to_radians()))),
+        table
+            .focal_px
+            .as_ref()
+            .map(|d| ("focal_px", &d.span, Lens::FocalPx { focal: d.value.0, width })),
+        table
+            .ortho_height
+            .as_ref()
+            .map(|h| ("ortho_height", &h.span, Lens::OrthoHeight(h.value.0))),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    match given[..] {
+        [] => Ok(Lens::FovY(DEFAULT_FOV_Y.to_radians())),
+        [(_, _, lens)] => Ok(lens),
+        [(first, ..), (second, span, _), ..] => Err(source
+            .error(
+                &source.key(second, span),
+                format!("a camera cannot have both `{first}` and `{second}`"),
+            )
+            .help("keep one of `fov_y`, `fov_x`, `focal_px` and `ortho_height`")),
+    }
+}

@@ -1,0 +1,150 @@
+//! The models of a scene file.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::resolve::Resolver;
+use super::source::Source;
+use super::spanned::At;
+use super::tables::ModelTable;
+use crate::error::{Error, Result};
+use crate::load;
+use crate::load::place::{Part, Placement};
+
+/// The model files loaded so far, by their canonical paths.
+#[derive(Default)]
+pub struct Models(HashMap<PathBuf, Part>);
+
+impl Models {
+    /// Places a model in the scene; a file named twice is loaded once.
+    pub fn place(&mut self, resolver: &mut Resolver<'_>, table: &ModelTable) -> Result<()> {
+        let material = table.material.as_ref().map(|name| resolver.named(name)).transpose()?;
+        let path = resolver.source.file(&table.file.value);
+        let same = readable(resolver.source, &table.file, &path)?;
+        let part = match self.0.entry(same) {
+            std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
+            std::collections::hash_map::Entry::Vacant(unknown) => {
+                let mut model = load::model(&path)?;
+                for warning in model.warnings.drain(..) {
+                    let file = &table.file.value;
+                    resolver.scene.warnings.push(format!("{file}: {warning}"));
+                }
+                unknown.insert(Part::add(&mut resolver.scene, model))
+            }
+        };
+        let placement = Placement {
+            transform: transform(table),
+            material,
+            casts_shadow: table.casts_shadow.unwrap_or(true),
+            lights: table.lights.unwrap_or(true),
+        };
+        part.place(&mut resolver.scene, &placement);
+        Ok(())
+    }
+}
+
+/// The canonical path of a model file that can be read. What is wrong with the name is the scene
+/// file's fault and is reported there; what is wrong in the file, its reader reports.
+fn readable(source: &Source<'_>, name: &At<String>, path: &Path) -> Result<PathBuf> {
+    let fail = |message: String| {
+        source.error(&name.span, format!("the model {}: {message}", path.display()))
+    };
+    let io = |e: std::io::Error| {
+        let paths = "a path is relative to the scene file's folder";
+        fail(Error::io("read", path, &e).message().to_owned()).help(paths)
+    };
+    match load::extension(path).as_str() {
+        "gltf" | "glb" | "obj" => {}
+        "toml" => return Err(fail("a scene file cannot stand in another one".to_owned())),
+        _ => {
+            return Err(fail("this kind of file is not read".to_owned())
+                .help("a model ends in .gltf, .glb or .obj"));
+        }
+    }
+    let metadata = std::fs::metadata(path).map_err(io)?;
+    if !metadata.is_file() {
+        return Err(fail("this is no file".to_owned()));
+    }
+    std::fs::File::open(path).map_err(io)?;
+    path.canonicalize().map_err(io)
+}
+
+/// translate · rotate · scale, the rotation about the fixed x axis first, then y, then z.
+fn transform(table: &ModelTable) -> DAffine3 {
+    let scale = table.scale.map_or(DVec3::ONE, |scale| scale.0);
+    let [x, y, z] = table.rotate.map_or([0.0; 3], |angles| angles.0);
+    let rotation = turn(DVec3::Z, z) * turn(DVec3::Y, y) * turn(DVec3::X, x);
+    let translation = table.translate.map_or(DVec3::ZERO, |t| t.0);
+    DAffine3 { matrix3: rotation * DMat3::from_diagonal(scale), translation }
+}
+
+/// The rotation about an axis by an angle in degrees; exact for quarter turns, so that a model
+/// that is turned by 90° has walls as upright as before.
+fn turn(axis: DVec3, degrees: f64) -> DMat3 {
+    let (sin, cos) = match degrees.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        other => other.to_radians().sin_cos(),
+    };
+    let [x, y, z] = axis.to_array();
+    // Rodrigues' formula for an axis that is one of the coordinate axes.
+    DMat3::from_cols(
+        DVec3::new(cos + x * (1.0 - cos), z * sin, -y * sin),
+        DVec3::new(-z * sin, cos + y * (1.0 - cos), x * sin),
+        DVec3::new(y * sin, -x * sin, cos + z * (1.0 - cos)),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::scene_file::values::{Point, Rotation, Scale};
+
+    fn table(rotate: [f64; 3], scale: DVec3, translate: DVec3) -> ModelTable {
+        ModelTable {
+            file: At { span: 0..0, value: String::new() },
+            translate: Some(Point(translate)),
+            rotate: Some(Rotation(rotate)),
+            scale: Some(Scale(scale)),
+            material: None,
+            casts_shadow: None,
+            lights: None,
+        }
+    }
+
+    #[test]
+    fn each_turn_is_counterclockwise_seen_against_its_axis() {
+        let turned = |rotate, v| transform(&table(rotate, DVec3::ONE, DVec3::ZERO)).matrix3 * v;
+        assert_eq!(turned([90.0, 0.0, 0.0], DVec3::Y), DVec3::Z);
+        assert_eq!(turned([0.0, 90.0, 0.0], DVec3::Z), DVec3::X);
+        assert_eq!(turned([0.0, 0.0, 90.0], DVec3::X), DVec3::Y);
+    }
+
+    #[test]
+    fn turns_are_about_fixed_axes_x_first_and_z_last() {
+        let matrix = transform(&table([90.0, 0.0, 90.0], DVec3::ONE, DVec3::ZERO)).matrix3;
+        // y goes to z by the first turn, and the last one leaves z alone.
+        assert_eq!(matrix * DVec3::Y, DVec3::Z);
+    }
+
+    #[test]
+    fn any_angle_agrees_with_glam() {
+        for degrees in [-725.0, -90.0, 0.1, 33.0, 180.0, 359.0] {
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                let theirs = DMat3::from_axis_angle(axis, f64::to_radians(degrees));
+                assert!(turn(axis, degrees).abs_diff_eq(theirs, 1e-12), "{axis} {degrees}");
+            }
+        }
+    }
+
+    #[test]
+    fn scale_comes_first_and_translation_last() {
+        let scale = DVec3::new(2.0, -3.0, 4.0);
+        let placed = transform(&table([0.0, 0.0, 90.0], scale, DVec3::splat(10.0)));
+        assert_eq!(placed.transform_point3(DVec3::ONE), DVec3::new(13.0, 12.0, 14.0));
+    }
+}

@@ -1,0 +1,146 @@
+//! What serde and the TOML parser refuse, in words that name the place and the way out.
+
+use super::source::{Source, Span};
+use super::suggest;
+use crate::error::Error;
+
+/// Keys that a material will have one day.
+const NOT_YET: &[&str] = &["reflect", "transmit", "ior", "absorption", "normal_map"];
+
+/// Tables that are written under double brackets.
+const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];
+
+/// Turns an error of the TOML reader into ours.
+pub fn error(source: &Source<'_>, mut error: toml::de::Error) -> Error {
+    let span = error.span().unwrap_or(source.text.len()..source.text.len());
+    let message = error.message().to_owned();
+    // Without its input the reader's error prints the path of the key that it is about.
+    error.set_input(None);
+    let shown = error.to_string();
+    let path = shown
+        .strip_prefix(&message)
+        .and_then(|rest| rest.trim().strip_prefix("in `")?.strip_suffix('`'))
+        .unwrap_or_default();
+    let report = Report { source, span, path };
+    report
+        .unknown(&message)
+        .or_else(|| report.missing(&message))
+        .or_else(|| report.wrong(&message))
+        .unwrap_or_else(|| report.syntax(&message))
+}
+
+struct Report<'a> {
+    source: &'a Source<'a>,
+    span: Span,
+    /// The keys down to the value that the error is about, with dots.
+    path: &'a str,
+}
+
+impl Report<'_> {
+    fn error(&self, message: impl Into<String>) -> Error {
+        self.source.error(&self.span, message)
+    }
+
+    /// "unknown field `x`, expected one of `a`, `b`" and the same of a variant.
+    fn unknown(&self, message: &str) -> Option<Error> {
+        let (what, rest) = message.strip_prefix("unknown ")?.split_once(" `")?;
+        let (found, expected) = rest.rsplit_once("`, expected ")?;
+        let candidates: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
+        if what == "variant" {
+            let key = self.key()?;
+            let advice = suggest::advice(found, &candidates, "it is one of");
+            return Some(self.error(format!("`{key}` cannot be \"{found}\"")).help(advice));
+        }
+        if NOT_YET.contains(&found) && candidates.contains(&"diffuse") {
+            return Some(
+                self.error(format!("`{found}` is not supported yet"))
+                    .help("leave it out: materials are diffuse, specular and emissive so far"),
+            );
+        }
+        let table = if self.path.is_empty() { "a scene file" } else { &self.table() };
+        let message = format!("{table} has no key `{found}`");
+        Some(self.error(message).help(suggest::advice(found, &candidates, "its keys are")))
+    }
+
+    /// "missing field `x`".
+    fn missing(&self, message: &str) -> Option<Error> {
+        let key = message.strip_prefix("missing field `")?.strip_suffix('`')?;
+        Some(self.error(format!("{} needs the key `{key}`", self.table())))
+    }
+
+    /// "invalid type: x, expected y", the same of a value and of a length.
+    fn wrong(&self, message: &str) -> Option<Error> {
+        if message == "wanted string or table" {
+            return Some(self.wrong_value("", "a string"));
+        }
+        let (what, rest) = message.strip_prefix("invalid ")?.split_once([' ', ':'])?;
+        let (found, expected) = rest.trim_start().rsplit_once(", expected ")?;
+        match what {
+            "length" => Some(self.expected(expected, &format!("a list of {found}"))),
+            _ if found == "map" && expected == "a list of tables" => {
+                let table = self.path;
+                Some(
+                    self.error(format!("there can be more than one `{table}`"))
+                        .help(format!("write its header in double brackets: [[{table}]]")),
+                )
+            }
+            _ if found == "sequence" && expected == "a table" && !self.path.contains('.') => {
+                let table = self.path;
+                Some(
+                    self.error(format!("there can be only one `{table}`"))
+                        .help(format!("write its header in single brackets: [{table}]")),
+                )
+            }
+            _ => Some(self.wrong_value(found, expected)),
+        }
+    }
+
+    fn wrong_value(&self, found: &str, expected: &str) -> Error {
+        let excerpt = self.source.excerpt(&self.span);
+        let found = match found {
+            // The reader hands on a date as a table.
+            "map" if !excerpt.starts_with(|c: char| c.is_ascii_digit()) => "a table".to_owned(),
+            "sequence" => "a list".to_owned(),
+            _ if found.starts_with("string") => format!("the string {excerpt}"),
+            _ => format!("`{excerpt}`"),
+        };
+        self.expected(expected, &found)
+    }
+
+    fn expected(&self, expected: &str, found: &str) -> Error {
+        let key = self.key().map(|key| format!("`{key}`: ")).unwrap_or_default();
+        self.error(format!("{key}expected {expected}, found {found}"))
+    }
+
+    /// Everything else: what is no TOML, and what our own values say.
+    fn syntax(&self, message: &str) -> Error {
+        let found = self.source.excerpt(&self.span);
+        if message == "duplicate key" {
+            let error = self.error(format!("`{found}` is there already"));
+            return if REPEATED.contains(&found.as_str()) {
+                error.help(format!("write each header in double brackets: [[{found}]]"))
+            } else {
+                error.help("write it once")
+            };
+        }
+        self.error(match self.key() {
+            Some(key) => format!("`{key}`: {message}"),
+            None => message.to_owned(),
+        })
+    }
+
+    fn key(&self) -> Option<&str> {
+        self.path.rsplit('.').next().filter(|key| !key.is_empty())
+    }
+
+    /// The table that the error is about, as it is written.
+    fn table(&self) -> String {
+        match self.path {
+            path if path.contains('.') => format!("`{path}`"),
+            "film" => "[film]".to_owned(),
+            path if self.source.excerpt(&self.span).starts_with("[[") => format!("[[{path}]]"),
+            "camera" => "[camera]".to_owned(),
+            path => format!("[[{path}]]"),
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! From tables to a scene: names become indices, files are read, and what several keys say
+//! together is checked.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::camera;
+use super::color::Color;
+use super::light;
+use super::model::Models;
+use super::source::{Source, Span};
+use super::spanned::{At, Table};
+use super::suggest;
+use super::tables::{FilmTable, MaterialTable, PlaneTable, SceneTable, SphereTable};
+use crate::error::Result;
+use crate::load::picture;
+use crate::scene::check::{self, MAX_COORDINATE};
+use crate::scene::{
+    Checker, FilmSettings, Filter, Material, MaterialId, Plane, Scene, Sphere, Texture, TextureId,
+    Transfer, Wrap,
+};
+
+/// The scene that the tables of a file describe.
+pub fn scene(source: &Source<'_>, tables: SceneTable) -> Result<Scene> {
+    if tables.camera.0.is_empty() && tables.model.0.is_empty() {
+        let end = source.text.trim_end().len();
+        return Err(source
+            .error(&(end..end), "there is neither a [camera] nor a [[model]]")
+            .help("a scene needs one of them: nothing says what to look at"));
+    }
+    let film = film(source, &tables.film.0)?;
+    let mut resolver = Resolver {
+        source,
+        scene: Scene { film, ..Scene::default() },
+        materials: HashMap::new(),
+        plain: None,
+        pictures: HashMap::new(),
+    };
+    resolver.scene.cameras =
+        camera::cameras(source, &tables.camera.0, resolver.scene.film.size[0])?;
+    tables.material.0.iter().try_for_each(|m| resolver.material(m))?;
+    tables.sphere.0.iter().try_for_each(|s| resolver.sphere(&s.value.0))?;
+    tables.plane.0.iter().try_for_each(|p| resolver.plane(&p.value.0))?;
+    for table in &tables.light.0 {
+        let light = light::light(source, &table.value.0, resolver.scene.film.transfer)?;
+        resolver.scene.lights.push(light);
+    }
+    let mut models = Models::default();
+    tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
+    let scene = resolver.scene;
+    Ok(scene)
+}
+
+fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
+    let default = FilmSettings::default();
+    if let Some(At { span, value }) = &table.size {
+        check::check_size(value.0).map_err(|e| source.place(span, e))?;
+    }
+    if let Some(At { span, value }) = &table.spp {
+        check::check_spp(value.0).map_err(|e| source.place(span, e))?;
+    }
+    let transfer = table.transfer.unwrap_or(default.transfer);
+    Ok(FilmSettings {
+        size: table.size.as_ref().map_or(default.size, |size| size.value.0),
+        spp: table.spp.as_ref().map_or(default.spp, |spp| spp.value.0),
+        transfer,
+        background: table.background.map_or(default.background, |c| c.linear(transfer)),
+        sample_position: table.sample_position.unwrap_or(default.sample_position),
+    })
+}
+
+/// What is under way while a scene is put together.
+pub struct Resolver<'a> {
+    /// The file.
+    pub source: &'a Source<'a>,
+    /// The scene so far.
+    pub scene: Scene,
+    /// The file's own materials by name, each with the place of its name.
+    materials: HashMap<String, (MaterialId, Span)>,
+    /// The material of what names none, once there is such a thing.
+    plain: Option<MaterialId>,
+    /// The pictures read so far, by their canonical paths.
+    pictures: HashMap<PathBuf, TextureId>,
+}
+
+impl Resolver<'_> {
+    fn color(&self, color: Option<Color>, default: Vec3) -> Vec3 {
+        color.map_or(default, |c| c.linear(self.scene.film.transfer))
+    }
+
+    fn material(&mut self, table: &At<Table<MaterialTable>>) -> Result<()> {
+        let table = &table.value.0;
+        let At { span, value: name } = &table.name;
+        let default = Material::default();
+        let material = Material {
+            name: name.clone(),
+            diffuse: self.color(table.diffuse.as_ref().map(|c| c.value), default.diffuse),
+            diffuse_map: self.picture(table.diffuse_map.as_ref())?,
+            specular: self.color(table.specular, default.specular),
+            shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
+            emission: self.color(table.emission, default.emission),
+            emission_map: self.picture(table.emission_map.as_ref())?,
+            double_sided: table.double_sided.unwrap_or(default.double_sided),
+        };
+        if let Some(At { span, .. }) = &table.diffuse
+            && material.diffuse.max_element() > 1.0
+        {
+            let line = self.source.line(span);
+            self.scene.warnings.push(format!(
+                "line {line}: the material `{name}` scatters more light than it gets (numbers in \
+                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")"
+            ));
+        }
+        let id = self.scene.add_material(material);
+        match self.materials.insert(name.clone(), (id, span.clone())) {
+            None => Ok(()),
+            Some((_, first)) => {
+                let message = format!("there is a material `{name}` already");
+                let line = self.source.line(&first);
+                let help = format!("the first is in line {line}; give each a name of its own");
+                Err(self.source.error(span, message).help(help))
+            }
+        }
+    }
+
+    /// The texture for a picture that a material names; a picture named twice is read once.
+    fn picture(&mut self, file: Option<&At<String>>) -> Result<Option<TextureId>> {
+        let Some(At { span, value: name }) = file else {
+            return Ok(None);
+        };
+        let path = self.source.file(name);
+        let same = path.canonicalize().unwrap_or_else(|_| path.clone());
+        if let Some(&texture) = self.pictures.get(&same) {
+            return Ok(Some(texture));
+        }
+        let image = picture::read(&path).map_err(|e| {
+            self.source.error(span, format!("the picture {}: {}", path.display(), e.message()))
+        })?;
+        let texture = Texture {
+            image: Arc::new(image),
+            transfer: Transfer::Srgb,
+            wrap: [Wrap::Repeat; 2],
+            filter: Filter::Linear,
+        };
+        let texture = self.scene.add_texture(texture);
+        self.pictures.insert(same, texture);
+        Ok(Some(texture))
+    }
+
+    /// The material with a name.
+    ///
+    /// # Errors
+    /// When there is none; the message lists those that there are.
+    pub fn named(&self, name: &At<String>) -> Result<MaterialId> {
+        let At { span, value: name } = name;
+        self.materials.get(name).map(|(id, _)| *id).ok_or_else(|| {
+            let materials = &self.scene.materials[..self.materials.len()];
+            let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
+            let help = if names.is_empty() {
+                "the file has none: add a [[material]] with this name".to_owned()
+            } else {
+                match suggest::closest(name, &names) {
+                    Some(meant) => format!(
+                        "did you mean `{meant}`? The materials are {}",
+                        suggest::list(&names)
+                    ),
+                    None => format!("the materials are {}", suggest::list(&names)),
+                }
+            };
+            self.source.error(span, format!("there is no material `{name}`")).help(help)
+        })
+    }
+
+    /// The material with a name, or a plain grey.
+    fn named_or_plain(&mut self, name: Option<&At<String>>) -> Result<MaterialId> {
+        match name {
+            Some(name) => self.named(name),
+            None => Ok(*self.plain.get_or_insert_with(|| {
+                let plain = Material { name: "default".to_owned(), ..Material::default() };
+                self.scene.add_material(plain)
+            })),
+        }
+    }
+
+    fn sphere(&mut self, table: &SphereTable) -> Result<()> {
+        let (center, At { span, value: radius }) = (table.center.0, &table.radius);
+        if center.abs().max_element() + radius.0 > MAX_COORDINATE {
+            return Err(self.source.error(span, "the sphere reaches beyond 1e15 from 0"));
+        }
+        let material = self.named_or_plain(table.material.as_ref())?;
+        let sphere = Sphere {
+            casts_shadow: table.casts_shadow.unwrap_or(true),
+            ..Sphere::new(center, radius.0, material)
+        };
+        self.scene.spheres.push(sphere);
+        Ok(())
+    }
+
+    fn plane(&mut self, table: &PlaneTable) -> Result<()> {
+        let material = self.named_or_plain(table.material.as_ref())?;
+        let transfer = self.scene.film.transfer;
+        let checker = table.checker.as_ref().map(|Table(checker)| Checker {
+            colors: checker.colors.0.map(|c| c.linear(transfer)),
+            size: checker.size.map_or(1.0, |size| size.0),
+        });
+        let plane = Plane {
+            checker,
+            casts_shadow: table.casts_shadow.unwrap_or(true),
+            ..Plane::new(table.point.0, table.normal.0, material)
+        };
+        self.scene.planes.push(plane);
+        Ok(())
+    }
+}

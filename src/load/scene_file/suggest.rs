@@ -1,0 +1,153 @@
+//! "Did you mean …?"
+
+/// What people write, and what they may mean by it; the first that can stand there is meant.
+const HABITS: &[(&str, &[&str])] = &[
+    ("albedo", &["diffuse"]),
+    ("alpha", &["shininess"]),
+    ("ambient", &["emission"]),
+    ("angle", &["outer_angle", "fov_y"]),
+    ("antialiasing", &["spp"]),
+    ("at", &["look_at"]),
+    ("basecolor", &["diffuse"]),
+    ("bg", &["background"]),
+    ("brightness", &["intensity"]),
+    ("color", &["color", "diffuse", "background", "colors"]),
+    ("colour", &["color", "diffuse", "background", "colors"]),
+    ("colours", &["colors"]),
+    ("centre", &["center"]),
+    ("dimensions", &["size"]),
+    ("dir", &["direction", "directional"]),
+    ("distance", &["directional"]),
+    ("distant", &["directional"]),
+    ("emissive", &["emission"]),
+    ("eye", &["position", "camera"]),
+    ("exponent", &["shininess"]),
+    ("floor", &["plane"]),
+    ("fov", &["fov_y"]),
+    ("focal", &["focal_px"]),
+    ("focallength", &["focal_px"]),
+    ("forward", &["direction"]),
+    ("from", &["position"]),
+    ("gamma", &["transfer"]),
+    ("ground", &["plane"]),
+    ("height", &["size", "ortho_height"]),
+    ("image", &["film", "diffuse_map"]),
+    ("kd", &["diffuse"]),
+    ("ke", &["emission"]),
+    ("ks", &["specular"]),
+    ("linear", &["none"]),
+    ("location", &["position", "center", "translate"]),
+    ("lookingat", &["look_at"]),
+    ("mesh", &["model"]),
+    ("mode", &["kind"]),
+    ("ns", &["shininess"]),
+    ("object", &["model"]),
+    ("omni", &["point"]),
+    ("origin", &["position", "center", "point"]),
+    ("orthographic", &["ortho_height"]),
+    ("path", &["file"]),
+    ("point", &["position", "center"]),
+    ("pos", &["position", "center", "point", "translate"]),
+    ("position", &["center", "point", "translate"]),
+    ("power", &["intensity"]),
+    ("quadratic", &["inverse_square"]),
+    ("r", &["radius"]),
+    ("render", &["film"]),
+    ("resolution", &["size"]),
+    ("rotation", &["rotate"]),
+    ("roughness", &["shininess"]),
+    ("samples", &["spp"]),
+    ("shadow", &["casts_shadow", "shadow"]),
+    ("shadows", &["casts_shadow", "shadow"]),
+    ("castsshadow", &["shadow"]),
+    ("castshadow", &["casts_shadow", "shadow"]),
+    ("size", &["radius", "scale"]),
+    ("source", &["file"]),
+    ("src", &["file"]),
+    ("sun", &["directional"]),
+    ("target", &["look_at"]),
+    ("texture", &["diffuse_map"]),
+    ("to", &["look_at"]),
+    ("translation", &["translate"]),
+    ("type", &["kind"]),
+    ("url", &["file"]),
+    ("view", &["camera", "direction"]),
+    ("width", &["size"]),
+];
+
+/// The one of `candidates` that `found` was probably meant to be.
+pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let folded = fold(found);
+    let habit = HABITS.iter().find(|(habit, _)| *habit == folded);
+    let meant =
+        habit.and_then(|(_, meant)| meant.iter().find_map(|m| candidates.iter().find(|c| *c == m)));
+    if let Some(meant) = meant {
+        return Some(meant);
+    }
+    let distance = |candidate: &str| strsim::damerau_levenshtein(&folded, &fold(candidate));
+    let (nearest, distance) =
+        candidates.iter().map(|c| (*c, distance(c))).min_by_key(|(_, distance)| *distance)?;
+    (distance <= (folded.chars().count() / 3).max(1) && distance < fold(nearest).chars().count())
+        .then_some(nearest)
+}
+
+/// "did you mean `x`?", or what there is to choose from.
+pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
+    match closest(found, candidates) {
+        Some(meant) => format!("did you mean `{meant}`?"),
+        None => format!("{kind} {}", list(candidates)),
+    }
+}
+
+/// `a`, `b` and `c`; the first of many.
+pub fn list(names: &[&str]) -> String {
+    const MOST: usize = 20;
+    let quoted: Vec<String> = names.iter().take(MOST).map(|n| format!("`{n}`")).collect();
+    match &quoted[..] {
+        [] => String::new(),
+        [only] => only.clone(),
+        all if names.len() > MOST => format!("{} …", all.join(", ")),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// Case and separators are where most misspellings differ.
+fn fold(name: &str) -> String {
+    name.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn case_and_separators_do_not_count() {
+        for found in ["lookat", "lookAt", "Look-At", "LOOK_AT"] {
+            assert_eq!(closest(found, &["position", "look_at"]), Some("look_at"), "{found}");
+        }
+    }
+
+    #[test]
+    fn a_habit_means_what_can_stand_there() {
+        assert_eq!(closest("colour", &["kind", "color"]), Some("color"));
+        assert_eq!(closest("colour", &["name", "diffuse"]), Some("diffuse"));
+    }
+
+    #[test]
+    fn a_typing_error_finds_its_key() {
+        assert_eq!(closest("raduis", &["center", "radius"]), Some("radius"));
+    }
+
+    #[test]
+    fn nothing_alike_is_no_suggestion() {
+        assert_eq!(closest("wavelength", &["center", "radius", "up"]), None);
+        assert_eq!(closest("x", &["up"]), None);
+    }
+
+    #[test]
+    fn habits_are_folded() {
+        for (habit, _) in HABITS {
+            assert_eq!(*habit, fold(habit));
+        }
+    }
+}

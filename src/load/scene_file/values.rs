@@ -1,0 +1,282 @@
+//! The values that keys take: each type refuses, at its own place in the text, what it cannot be.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+use glam::DVec3;
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, Expected, IgnoredAny, SeqAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use crate::scene::check::MAX_COORDINATE;
+
+/// Gives a type of value its part of the JSON Schema.
+macro_rules! value_schema {
+    ($name:ident, $schema:tt) => {
+        impl JsonSchema for $name {
+            fn inline_schema() -> bool {
+                true
+            }
+            fn schema_name() -> Cow<'static, str> {
+                stringify!($name).into()
+            }
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
+            }
+        }
+    };
+}
+pub(super) use value_schema;
+
+/// A kind of number: what to call it in a message, which numbers it holds, and its schema.
+macro_rules! number {
+    ($(#[$doc:meta])* $name:ident, $expected:literal, $holds:expr, $schema:tt) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct $name(pub f64);
+
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let visitor = NumberVisitor { expected: $expected, holds: $holds };
+                deserializer.deserialize_f64(visitor).map(Self)
+            }
+        }
+
+        value_schema!($name, $schema);
+    };
+}
+
+number!(
+    /// Any finite number.
+    Number, "a finite number", |_| true, { "type": "number" });
+number!(
+    /// A coordinate in world space.
+    Coordinate, "a number within 1e15 of 0", |x| x.abs() <= MAX_COORDINATE,
+    { "type": "number", "minimum": -1e15, "maximum": 1e15 });
+number!(
+    /// A length above 0.
+    Length, "a number above 0 (and at most 1e15)", |x| x > 0.0 && x <= MAX_COORDINATE,
+    { "type": "number", "exclusiveMinimum": 0, "maximum": 1e15 });
+number!(
+    /// A number that f32 holds, 0 or above: a share of light or an amount of it.
+    Amount, "a number from 0 up (and at most 1e30)", |x| (0.0..=1e30).contains(&x),
+    { "type": "number", "minimum": 0, "maximum": 1e30 });
+number!(
+    /// Phong's exponent, above 0.
+    Shininess, "a number above 0 (and at most 1e6)", |x| (1e-30..=1e6).contains(&x),
+    { "type": "number", "exclusiveMinimum": 0, "maximum": 1e6 });
+number!(
+    /// A field of view in degrees.
+    FieldOfView, "an angle in degrees, above 0 and below 180", |x| x > 1e-6 && x < 180.0 - 1e-6,
+    { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180 });
+number!(
+    /// Half the opening of a cone, in degrees.
+    HalfAngle, "an angle in degrees, from 0 to 90", |x| (0.0..=90.0).contains(&x),
+    { "type": "number", "minimum": 0, "maximum": 90 });
+number!(
+    /// A factor of a scale.
+    Factor, "a number other than 0 (at least 1e-15 and at most 1e15 in size)",
+    |x| (1e-15..=1e15).contains(&x.abs()),
+    { "type": "number", "not": { "const": 0 } });
+
+struct NumberVisitor {
+    expected: &'static str,
+    holds: fn(f64) -> bool,
+}
+
+impl Visitor<'_> for NumberVisitor {
+    type Value = f64;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+
+    fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
+        if x.is_finite() && (self.holds)(x) {
+            Ok(x)
+        } else {
+            Err(E::invalid_value(Unexpected::Float(x), &self))
+        }
+    }
+
+    fn visit_i64<E: Error>(self, x: i64) -> Result<f64, E> {
+        self.visit_f64(x as f64)
+    }
+
+    fn visit_u64<E: Error>(self, x: u64) -> Result<f64, E> {
+        self.visit_f64(x as f64)
+    }
+}
+
+/// Reads a list that must hold exactly `N` values.
+pub(super) fn list<'de, T, D, const N: usize>(d: D, expected: &str) -> Result<[T; N], D::Error>
+where
+    T: Deserialize<'de> + Copy + Default,
+    D: Deserializer<'de>,
+{
+    struct ListVisitor<'a, T, const N: usize>(&'a str, PhantomData<T>);
+
+    impl<'de, T, const N: usize> Visitor<'de> for ListVisitor<'_, T, N>
+    where
+        T: Deserialize<'de> + Copy + Default,
+    {
+        type Value = [T; N];
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(self.0)
+        }
+        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<[T; N], A::Error> {
+            elements(seq, &self)
+        }
+    }
+
+    d.deserialize_seq(ListVisitor(expected, PhantomData))
+}
+
+/// Reads the elements of a list that must be `N` long.
+pub(super) fn elements<'de, T, A, const N: usize>(
+    mut seq: A,
+    expected: &dyn Expected,
+) -> Result<[T; N], A::Error>
+where
+    T: Deserialize<'de> + Copy + Default,
+    A: SeqAccess<'de>,
+{
+    let mut values = [T::default(); N];
+    for (i, value) in values.iter_mut().enumerate() {
+        *value = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(i, expected))?;
+    }
+    let mut length = N;
+    while seq.next_element::<IgnoredAny>()?.is_some() {
+        length += 1;
+    }
+    if length == N { Ok(values) } else { Err(A::Error::invalid_length(length, expected)) }
+}
+
+/// A position, or a displacement, in world space.
+#[derive(Clone, Copy, Debug)]
+pub struct Point(pub DVec3);
+
+impl<'de> Deserialize<'de> for Point {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let xyz: [Coordinate; 3] = list(deserializer, "three numbers")?;
+        Ok(Self(DVec3::from_array(xyz.map(|x| x.0))))
+    }
+}
+
+value_schema!(Point, {
+    "type": "array", "minItems": 3, "maxItems": 3,
+    "items": { "type": "number", "minimum": -1e15, "maximum": 1e15 },
+});
+
+/// A direction of any length but zero; it is kept with length 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction(pub DVec3);
+
+impl<'de> Deserialize<'de> for Direction {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let xyz: [Number; 3] = list(deserializer, "three numbers")?;
+        unit(DVec3::from_array(xyz.map(|x| x.0)))
+            .map(Self)
+            .ok_or_else(|| D::Error::custom("a direction cannot be [0, 0, 0]"))
+    }
+}
+
+value_schema!(Direction, {
+    "type": "array", "minItems": 3, "maxItems": 3, "items": { "type": "number" },
+});
+
+/// The vector of length 1 along `v`, however long or short `v` is; none for zero.
+pub fn unit(v: DVec3) -> Option<DVec3> {
+    // Measured by its greatest component first, so that no square over- or underflows.
+    (v / v.abs().max_element()).try_normalize()
+}
+
+/// Angles about x, y and z, in degrees.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotation(pub [f64; 3]);
+
+impl<'de> Deserialize<'de> for Rotation {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let angles: [Number; 3] = list(deserializer, "three angles in degrees")?;
+        Ok(Self(angles.map(|angle| angle.0)))
+    }
+}
+
+value_schema!(Rotation, {
+    "type": "array", "minItems": 3, "maxItems": 3, "items": { "type": "number" },
+});
+
+/// A factor for all axes or one for each.
+#[derive(Clone, Copy, Debug)]
+pub struct Scale(pub DVec3);
+
+impl<'de> Deserialize<'de> for Scale {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ScaleVisitor;
+        impl<'de> Visitor<'de> for ScaleVisitor {
+            type Value = DVec3;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("one number or three")
+            }
+            fn visit_f64<E: Error>(self, x: f64) -> Result<DVec3, E> {
+                Factor::deserialize(serde::de::value::F64Deserializer::new(x))
+                    .map(|factor| DVec3::splat(factor.0))
+            }
+            fn visit_i64<E: Error>(self, x: i64) -> Result<DVec3, E> {
+                self.visit_f64(x as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<DVec3, A::Error> {
+                elements(seq, &self).map(|v: [Factor; 3]| DVec3::from_array(v.map(|x| x.0)))
+            }
+        }
+        deserializer.deserialize_any(ScaleVisitor).map(Self)
+    }
+}
+
+value_schema!(Scale, {
+    "anyOf": [
+        { "type": "number", "not": { "const": 0 } },
+        {
+            "type": "array", "minItems": 3, "maxItems": 3,
+            "items": { "type": "number", "not": { "const": 0 } },
+        },
+    ],
+});
+
+/// A whole number, 0 or above.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Whole(pub u32);
+
+impl<'de> Deserialize<'de> for Whole {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct WholeVisitor;
+        impl Visitor<'_> for WholeVisitor {
+            type Value = u32;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a whole number from 1 to 4294967295")
+            }
+            fn visit_i64<E: Error>(self, x: i64) -> Result<u32, E> {
+                u32::try_from(x).map_err(|_| E::invalid_value(Unexpected::Signed(x), &self))
+            }
+        }
+        deserializer.deserialize_u32(WholeVisitor).map(Self)
+    }
+}
+
+value_schema!(Whole, { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
+
+/// A width and a height in pixels.
+#[derive(Clone, Copy, Debug)]
+pub struct Size(pub [u32; 2]);
+
+impl<'de> Deserialize<'de> for Size {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let sides: [Whole; 2] = list(deserializer, "two whole numbers, width and height")?;
+        Ok(Self(sides.map(|side| side.0)))
+    }
+}
+
+value_schema!(Size, {
+    "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1 },
+});

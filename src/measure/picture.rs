@@ -1,0 +1,162 @@
+//! One picture against another: RMSE, PSNR, largest difference.
+
+use std::path::Path;
+
+use exr::prelude::{ReadChannels, ReadLayers};
+use serde::Serialize;
+
+use crate::error::{Error, Result};
+use crate::write::Format;
+
+/// A picture read back from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Width and height.
+    pub size: [u32; 2],
+    /// The channels' names, in the order of their values.
+    pub channels: Vec<String>,
+    /// For each pixel a value for each channel: a PNG's bytes over 255, an EXR's floats.
+    pub values: Vec<f32>,
+}
+
+/// How much two pictures differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Root of the mean squared difference of the values.
+    pub rmse: f64,
+    /// −20 log₁₀ rmse, in dB, for a peak of 1; infinite (null in JSON) when the pictures are equal.
+    pub psnr: f64,
+    /// Largest difference of two values.
+    pub max: f64,
+    /// Pixels of which some value differs by more than the tolerance.
+    pub pixels_differing: u64,
+}
+
+impl Picture {
+    /// Reads a PNG or an EXR.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is neither.
+    pub fn read(path: &Path) -> Result<Self> {
+        std::fs::File::open(path).map_err(|e| Error::io("read", path, &e))?;
+        let damaged = |e: &dyn std::fmt::Display| {
+            Error::input(format!("the picture cannot be decoded: {e}")).at(path)
+        };
+        match Format::of(path)? {
+            Format::Png => {
+                let image = image::open(path).map_err(|e| damaged(&e))?.into_rgb8();
+                Ok(Self {
+                    size: image.dimensions().into(),
+                    channels: ["R", "G", "B"].map(String::from).into(),
+                    values: image.as_raw().iter().map(|&b| f32::from(b) / 255.0).collect(),
+                })
+            }
+            Format::Exr => {
+                let image = exr::prelude::read()
+                    .no_deep_data()
+                    .largest_resolution_level()
+                    .all_channels()
+                    .first_valid_layer()
+                    .all_attributes()
+                    .from_file(path)
+                    .map_err(|e| damaged(&e))?;
+                let layer = image.layer_data;
+                let (width, height) = (layer.size.width(), layer.size.height());
+                let list = &layer.channel_data.list;
+                let mut values = vec![0.0; width * height * list.len()];
+                for (c, channel) in list.iter().enumerate() {
+                    let pixels = channel.sample_data.values_as_f32();
+                    for (value, x) in values.iter_mut().skip(c).step_by(list.len()).zip(pixels) {
+                        *value = x;
+                    }
+                }
+                let channels = list.iter().map(|c| c.name.to_string()).collect();
+                Ok(Self { size: [width as u32, height as u32], channels, values })
+            }
+        }
+    }
+}
+
+/// Compares two pictures of one size and with the same channels. Values that are the same
+/// infinity, or both not a number, do not differ; one that is finite in one picture only differs
+/// infinitely.
+///
+/// # Errors
+/// When sizes or channels differ.
+pub fn compare(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comparison> {
+    if a.size != b.size {
+        let [w, h] = a.size;
+        let [v, g] = b.size;
+        return Err(Error::input(format!("{w}x{h} and {v}x{g} pixels cannot be compared")));
+    }
+    if a.channels != b.channels {
+        let (a, b) = (a.channels.join(", "), b.channels.join(", "));
+        return Err(Error::input(format!("channels {a} and channels {b} cannot be compared"))
+            .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
+    }
+    let difference = |(x, y): (&f32, &f32)| {
+        if x == y || (x.is_nan() && y.is_nan()) {
+            0.0
+        } else {
+            let d = f64::from((x - y).abs());
+            if d.is_nan() { f64::INFINITY } else { d }
+        }
+    };
+    let (mut squares, mut max, mut differing) = (0.0, 0.0f64, 0);
+    let n = a.channels.len().max(1);
+    for (p, q) in a.values.chunks(n).zip(b.values.chunks(n)) {
+        let mut largest = 0.0f64;
+        for d in p.iter().zip(q).map(difference) {
+            squares += d * d;
+            largest = largest.max(d);
+        }
+        max = max.max(largest);
+        differing += u64::from(largest > f64::from(tolerance));
+    }
+    let rmse = (squares / a.values.len().max(1) as f64).sqrt();
+    Ok(Comparison { rmse, psnr: -20.0 * rmse.log10(), max, pixels_differing: differing })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(values: &[f32]) -> Picture {
+        Picture {
+            size: [values.len() as u32, 1],
+            channels: vec!["Y".into()],
+            values: values.to_vec(),
+        }
+    }
+
+    #[test]
+    fn equal_pictures_have_no_error_and_infinite_psnr() {
+        let a = grey(&[0.5, f32::INFINITY, f32::NAN]);
+        let c = compare(&a, &a, 0.0).unwrap();
+        assert_eq!((c.rmse, c.psnr, c.pixels_differing), (0.0, f64::INFINITY, 0));
+    }
+
+    #[test]
+    fn rmse_and_psnr_of_a_known_difference() {
+        let c = compare(&grey(&[0.0, 0.0]), &grey(&[0.1, 0.1]), 0.0).unwrap();
+        assert!((c.rmse - 0.1).abs() < 1e-7 && (c.psnr - 20.0).abs() < 1e-5, "{c:?}");
+    }
+
+    #[test]
+    fn tolerance_decides_which_pixels_differ() {
+        let c = compare(&grey(&[0.0, 0.0, 0.0]), &grey(&[0.0, 0.1, 0.2]), 0.15).unwrap();
+        assert_eq!(c.pixels_differing, 1);
+    }
+
+    #[test]
+    fn a_value_that_is_finite_in_one_picture_only_differs_infinitely() {
+        let c = compare(&grey(&[f32::NAN]), &grey(&[0.0]), 1.0).unwrap();
+        assert_eq!((c.max, c.pixels_differing), (f64::INFINITY, 1));
+    }
+
+    #[test]
+    fn sizes_that_differ_are_an_error() {
+        let error = compare(&grey(&[0.0]), &grey(&[0.0, 0.0]), 0.0).unwrap_err();
+        assert_eq!(error.message(), "1x1 and 2x1 pixels cannot be compared");
+    }
+}

@@ -1,0 +1,129 @@
+//! A picture from a scene: threads, progress, statistics.
+
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use rayon::prelude::*;
+
+use crate::error::{Error, Result};
+use crate::film::{Film, View};
+use crate::integrator::{Counts, Integrator, STRIP_ROWS, Scratch};
+use crate::intersect::{Backend, Intersector};
+use crate::scene::Scene;
+
+/// How to make a picture; size, samples and background stand in the scene's film settings.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Who finds the hits.
+    pub backend: Backend,
+    /// How many threads; 0 means all there are.
+    pub threads: usize,
+    /// Which of the scene's cameras.
+    pub camera: usize,
+    /// What the picture shows.
+    pub view: View,
+}
+
+/// A picture, and what it took.
+#[derive(Clone, Debug)]
+pub struct Rendering {
+    /// The picture.
+    pub film: Film,
+    /// What was counted and timed.
+    pub statistics: Statistics,
+}
+
+/// What making a picture took.
+#[derive(Clone, Debug)]
+pub struct Statistics {
+    /// The intersector's name and version.
+    pub backend: (&'static str, String),
+    /// Threads used.
+    pub threads: usize,
+    /// Rays and other counts.
+    pub counts: Counts,
+    /// Time to build the intersector.
+    pub build: Duration,
+    /// Time from the first ray to the last pixel.
+    pub render: Duration,
+}
+
+/// Renders a scene.
+///
+/// `progress` is called with the share done, in (0, 1], from whichever thread finished a part.
+///
+/// # Errors
+/// When the scene is not valid, has no such camera, or the intersector cannot be built.
+pub fn render(
+    scene: &Scene,
+    options: &Options,
+    progress: &(dyn Fn(f32) + Sync),
+) -> Result<Rendering> {
+    scene.check()?;
+    check_camera(scene, options.camera)?;
+    in_pool(options.threads, || {
+        let start = Instant::now();
+        let intersector = options.backend.build(scene, rayon::current_num_threads())?;
+        let build = start.elapsed();
+        let (film, counts, render) = with_intersector(scene, options, &*intersector, progress);
+        let backend = (intersector.name(), intersector.version());
+        let threads = rayon::current_num_threads();
+        Ok(Rendering { film, statistics: Statistics { backend, threads, counts, build, render } })
+    })
+}
+
+/// Renders a checked scene with an intersector that is there already, on the current rayon pool.
+///
+/// # Panics
+/// When the scene has no such camera.
+pub fn with_intersector(
+    scene: &Scene,
+    options: &Options,
+    intersector: &dyn Intersector,
+    progress: &(dyn Fn(f32) + Sync),
+) -> (Film, Counts, Duration) {
+    let size = scene.film.size;
+    let mut film = Film::new(size, options.view);
+    let rays = scene.cameras[options.camera].rays(size);
+    let integrator = Integrator::new(scene, intersector, rays, options.view);
+    let strip = size[0] as usize * STRIP_ROWS;
+    let total = film.pixels.len().div_ceil(strip);
+    let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));
+    let start = Instant::now();
+    film.pixels.par_chunks_mut(strip).enumerate().for_each_init(
+        Scratch::default,
+        |scratch, (i, pixels)| {
+            let here = integrator.strip(i * STRIP_ROWS, pixels, scratch);
+            // A poisoned lock still holds the counts; the panic that caused it is reported anyway.
+            *counts.lock().unwrap_or_else(|e| e.into_inner()) += here;
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            progress(done as f32 / total as f32);
+        },
+    );
+    let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
+    (film, counts, start.elapsed())
+}
+
+/// Runs `work` on a pool of `threads` threads of its own; 0 means all there are.
+///
+/// # Errors
+/// When the threads cannot be started, and what `work` returns.
+pub fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|e| Error::failed(format!("cannot start {threads} threads: {e}")))?
+        .install(work)
+}
+
+/// Checks that the scene has camera `index`.
+///
+/// # Errors
+/// When it has not.
+pub fn check_camera(scene: &Scene, index: usize) -> Result<()> {
+    if index < scene.cameras.len() {
+        return Ok(());
+    }
+    Err(Error::input(format!("there is no camera {index}; the scene has {}", scene.cameras.len())))
+}

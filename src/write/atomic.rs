@@ -1,0 +1,141 @@
+//! A file that is the whole old one or the whole new one, at any moment.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Seek, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::{Builder, NamedTempFile};
+
+use crate::error::{Error, Result};
+
+/// Where a file is written before it takes the name: the same folder, so that the rename cannot
+/// cross file systems.
+fn temporary(target: &Path) -> Result<NamedTempFile> {
+    let folder = folder_of(target);
+    let mut builder = Builder::new();
+    builder.prefix(".envers-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The rights of any new file, less the user's umask, instead of a temporary file's own.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(&folder).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            let folder = folder.display();
+            Error::input(format!("the output's folder {folder} does not exist"))
+                .at(target)
+                .help(format!("make it first: mkdir -p {folder}"))
+        }
+        _ => Error::io("write", target, &e)
+            .help(format!("can files be made in {}?", folder.display())),
+    })
+}
+
+fn folder_of(target: &Path) -> PathBuf {
+    match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    }
+}
+
+/// The file that a path leads to, through links: a link stays, and what it names is replaced.
+fn resolve(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Checks that [`atomically`] could write to `path`.
+///
+/// # Errors
+/// When it could not.
+pub fn check(path: &Path) -> Result<()> {
+    let target = resolve(path);
+    match fs::metadata(&target) {
+        Ok(m) if m.is_dir() => Err(Error::input("the output is a folder").at(path)),
+        Ok(m) if !m.is_file() => {
+            Err(Error::input("the output is a pipe or a device, not a file").at(path))
+        }
+        Ok(m) if m.permissions().readonly() => {
+            Err(Error::input("the output is there already and is read-only").at(path))
+        }
+        _ => temporary(&target).map(drop),
+    }
+}
+
+/// Writes a file through `fill`: to a temporary file in the same folder, which is flushed to the
+/// disk and then takes the name.
+///
+/// # Errors
+/// When anything fails; the temporary file is then removed, and what stood at `path` is untouched.
+pub fn atomically(
+    path: &Path,
+    fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
+) -> Result<()> {
+    let target = resolve(path);
+    let mut file = temporary(&target)?;
+    let failed = |e: std::io::Error| Error::io("write", path, &e);
+    let mut buffered = BufWriter::new(file.as_file_mut());
+    fill(&mut buffered).map_err(failed)?;
+    buffered.flush().map_err(failed)?;
+    drop(buffered);
+    file.as_file().sync_all().map_err(failed)?;
+    file.persist(&target).map_err(|e| failed(e.error))?;
+    // The name itself reaches the disk with its folder; where a folder cannot be opened or
+    // flushed (on some systems and file systems) the file is there all the same.
+    if let Ok(folder) = File::open(folder_of(&target)) {
+        let _ = folder.sync_all();
+    }
+    Ok(())
+}
+
+/// What files are written through.
+pub trait WriteSeek: Write + Seek {}
+impl<T: Write + Seek> WriteSeek for T {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io;
+
+    #[test]
+    fn failure_leaves_the_old_file_and_no_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        fs::write(&path, "old").unwrap();
+        let result = atomically(&path, |out| {
+            out.write_all(b"half of the new")?;
+            Err(io::Error::other("the disk is full"))
+        });
+        assert!(result.unwrap_err().to_string().contains("the disk is full"));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn success_replaces_the_old_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        fs::write(&path, "old").unwrap();
+        atomically(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (real, link) = (folder.path().join("real.png"), folder.path().join("link.png"));
+        fs::write(&real, "old").unwrap();
+        std::os::unix::fs::symlink(&real, &link).unwrap();
+        atomically(&link, |out| out.write_all(b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&real).unwrap(), b"new");
+    }
+
+    #[test]
+    fn missing_folder_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = check(&folder.path().join("no/a.png")).unwrap_err();
+        assert!(error.to_string().contains("does not exist"), "{error}");
+    }
+}

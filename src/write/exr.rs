@@ -1,0 +1,97 @@
+//! OpenEXR: linear floats, unclamped, with what determines the picture as attributes.
+
+use std::io;
+use std::path::Path;
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text, Vec2,
+    WritableImage, f16,
+};
+
+use crate::error::Result;
+use crate::film::{Film, View};
+use crate::write::{Settings, atomically};
+
+/// Writes a scan-line EXR, losslessly compressed, with the view's channels. Of a view other than
+/// beauty the values are always 32-bit, whatever `settings.half` says: depths and numbers of
+/// objects do not fit in 16.
+pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
+    let half = settings.half && film.view == View::Beauty;
+    let channels = film.view.channels().iter().enumerate().map(|(i, name)| {
+        let values = film.pixels.iter().map(|pixel| pixel[i]);
+        let samples = if half {
+            FlatSamples::F16(values.map(f16::from_f32).collect())
+        } else {
+            FlatSamples::F32(values.collect())
+        };
+        AnyChannel::new(*name, samples)
+    });
+    let mut attributes =
+        LayerAttributes { software_name: Some(Text::from("envers")), ..Default::default() };
+    for (name, value) in &settings.metadata {
+        let text = exr::meta::attribute::AttributeValue::Text(Text::from(value.as_str()));
+        attributes.other.insert(Text::from(name.as_str()), text);
+    }
+    let layer = Layer::new(
+        Vec2(film.size[0] as usize, film.size[1] as usize),
+        attributes,
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort(channels.collect()),
+    );
+    let image = Image::from_layer(layer);
+    atomically(path, |out| image.write().to_buffered(out).map_err(io::Error::other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use exr::prelude::{ReadChannels, ReadLayers, read};
+
+    fn written(film: &Film, settings: &Settings) -> Image<Layer<AnyChannels<FlatSamples>>> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        write(film, &path, settings).unwrap();
+        read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_file(path)
+            .unwrap()
+    }
+
+    #[test]
+    fn values_come_back_unclamped_and_exact() {
+        let pixels = vec![[1e6, -0.25, 0.1], [0.0, 65536.5, 3e-8]];
+        let film = Film { size: [2, 1], view: View::Beauty, pixels };
+        let image = written(&film, &Settings::default());
+        let red = &image.layer_data.channel_data.list.iter().find(|c| c.name.eq("R")).unwrap();
+        assert_eq!(red.sample_data.values_as_f32().collect::<Vec<_>>(), [1e6, 0.0]);
+    }
+
+    #[test]
+    fn half_stores_sixteen_bits() {
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1.0; 3]] };
+        let image = written(&film, &Settings { half: true, ..Settings::default() });
+        let first = &image.layer_data.channel_data.list[0].sample_data;
+        assert!(matches!(first, FlatSamples::F16(_)));
+    }
+
+    #[test]
+    fn depth_has_the_one_channel_z() {
+        let film = Film { size: [1, 1], view: View::Depth, pixels: vec![[f32::INFINITY; 3]] };
+        let list = written(&film, &Settings::default()).layer_data.channel_data.list;
+        let names: Vec<String> = list.iter().map(|c| c.name.to_string()).collect();
+        assert_eq!(names, ["Z"]);
+    }
+
+    #[test]
+    fn metadata_stands_in_the_file() {
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.0; 3]] };
+        let metadata = vec![("envers:spp".to_owned(), "16".to_owned())];
+        let image = written(&film, &Settings { metadata, ..Settings::default() });
+        let value = image.layer_data.attributes.other.get(&Text::from("envers:spp"));
+        assert!(value.is_some());
+    }
+}

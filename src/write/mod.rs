@@ -1,0 +1,75 @@
+//! From film to file, whole or not at all.
+
+mod atomic;
+mod exr;
+mod png;
+
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::scene::Transfer;
+
+pub use atomic::{atomically, check as check_file};
+pub use png::encode as png_bytes;
+
+/// What an output file is, by its extension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 8 bits a channel, clamped.
+    Png,
+    /// Linear floats, unclamped.
+    Exr,
+}
+
+/// How to write a picture.
+#[derive(Clone, Debug, Default)]
+pub struct Settings {
+    /// How a PNG encodes radiance.
+    pub transfer: Transfer,
+    /// A PNG's radiance is multiplied with 2 to the power of this; an EXR's never.
+    pub exposure: f32,
+    /// Whether an EXR stores 16-bit floats rather than 32-bit ones.
+    pub half: bool,
+    /// What an EXR says of itself: names and values of what determines the picture.
+    pub metadata: Vec<(String, String)>,
+}
+
+impl Format {
+    /// The format that the file's extension names.
+    ///
+    /// # Errors
+    /// When it names none that can be written.
+    pub fn of(path: &Path) -> Result<Self> {
+        match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
+            "png" => Ok(Format::Png),
+            "exr" => Ok(Format::Exr),
+            "" => Err(Error::input("the output has no extension that tells its format").at(path)),
+            other => {
+                Err(Error::input(format!("pictures that end in .{other} are not written")).at(path))
+            }
+        }
+        .map_err(|e| e.help("name it .png (8 bits) or .exr (floats)"))
+    }
+}
+
+/// Checks that a picture could be written to `path`: that its format is known and its folder is
+/// there and can be written to. Called before the work begins.
+///
+/// # Errors
+/// When it could not.
+pub fn check(path: &Path) -> Result<()> {
+    Format::of(path)?;
+    atomic::check(path)
+}
+
+/// Writes a film, in the format that the extension names.
+///
+/// # Errors
+/// When the file cannot be written; what stood there before then stands there still.
+pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
+    match Format::of(path)? {
+        Format::Png => png::write(film, path, settings),
+        Format::Exr => exr::write(film, path, settings),
+    }
+}

@@ -1,0 +1,102 @@
+//! PNG: 8 bits a channel.
+
+use std::io;
+use std::path::Path;
+
+use image::ImageEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use rayon::prelude::*;
+
+use crate::error::Result;
+use crate::film::{Film, View};
+use crate::write::{Settings, atomically};
+
+/// Writes an RGB PNG.
+pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
+    let bytes = encode(film, settings);
+    atomically(path, |out| {
+        PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Adaptive)
+            .write_image(&bytes, film.size[0], film.size[1], image::ExtendedColorType::Rgb8)
+            .map_err(io::Error::other)
+    })
+}
+
+/// The bytes of the picture: red, green, blue of each pixel, row by row.
+///
+/// Beauty: `round(255 · encode(radiance · 2^exposure))`, clamped, with the transfer's curve.
+/// Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
+/// at the nearest hit to a dark grey at the farthest, black where nothing is hit. Id: a colour for
+/// each object, drawn from its numbers; black where nothing is hit.
+pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
+    let byte = |x: f32| (x * 255.0).round() as u8;
+    let gain = settings.exposure.exp2();
+    let depths = || film.pixels.iter().map(|p| p[0]).filter(|z| z.is_finite());
+    let (near, far) = match film.view {
+        View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
+        _ => (0.0, 1.0),
+    };
+    let color = |pixel: &[f32; 3]| match film.view {
+        View::Beauty => pixel.map(|x| byte(settings.transfer.encode(x * gain))),
+        View::Normal if *pixel == [0.0; 3] => [0; 3],
+        View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
+        View::Depth if !pixel[0].is_finite() => [0; 3],
+        View::Depth => [byte(1.0 - 0.85 * (pixel[0] - near) / (far - near).max(1e-30)); 3],
+        View::Id if pixel[0] == 0.0 => [0; 3],
+        View::Id => id_color(pixel.map(|x| x as u32)),
+    };
+    film.pixels.par_iter().flat_map_iter(color).collect()
+}
+
+/// A colour that is bright enough to see, spread by a multiplicative hash. Triangles of one
+/// instance share it.
+fn id_color([geometry, primitive, instance]: [u32; 3]) -> [u8; 3] {
+    let key = if geometry < 3 { primitive } else { instance };
+    let hash = (geometry.wrapping_mul(0x85eb_ca6b) ^ key.wrapping_add(1))
+        .wrapping_mul(0x9e37_79b1)
+        .rotate_left(15)
+        .wrapping_mul(0xc2b2_ae35);
+    [hash, hash >> 8, hash >> 16].map(|h| 64 + (h & 0xff) as u8 / 4 * 3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Transfer;
+
+    fn bytes(pixel: [f32; 3], view: View, settings: &Settings) -> Vec<u8> {
+        encode(&Film { size: [1, 1], view, pixels: vec![pixel] }, settings)
+    }
+
+    #[test]
+    fn without_transfer_a_byte_is_255_times_the_value_rounded() {
+        let settings = Settings { transfer: Transfer::None, ..Settings::default() };
+        let pixel = [58.0 / 255.0, 84.4 / 255.0, 215.6 / 255.0];
+        assert_eq!(bytes(pixel, View::Beauty, &settings), [58, 84, 216]);
+    }
+
+    #[test]
+    fn exposure_is_a_factor_of_two_to_its_power() {
+        let settings = Settings { transfer: Transfer::None, exposure: -1.0, ..Settings::default() };
+        assert_eq!(bytes([1.0, 2.0, 4.0], View::Beauty, &settings), [128, 255, 255]);
+    }
+
+    #[test]
+    fn normals_map_to_the_cube_of_colours() {
+        let settings = Settings::default();
+        assert_eq!(bytes([0.0, 1.0, 0.0], View::Normal, &settings), [128, 255, 128]);
+    }
+
+    #[test]
+    fn nearest_depth_is_white_and_nothing_is_black() {
+        let pixels = vec![[2.0; 3], [5.0; 3], [f32::INFINITY; 3]];
+        let film = Film { size: [3, 1], view: View::Depth, pixels };
+        assert_eq!(encode(&film, &Settings::default()), [255, 255, 255, 38, 38, 38, 0, 0, 0]);
+    }
+
+    #[test]
+    fn different_objects_have_different_colours() {
+        let colors: std::collections::HashSet<_> =
+            (0..100).flat_map(|i| [id_color([1, i, 0]), id_color([3, 7, i])]).collect();
+        assert!(colors.len() > 195, "{}", colors.len());
+    }
+}
