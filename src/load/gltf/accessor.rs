@@ -10,17 +10,18 @@ use gltf::json::validation::Checked;
 use super::buffers::{Buffers, get, range};
 use crate::error::{Error, Place, Result};
 
-/// The most elements that all accessors of a file together can ask for: about 3 GiB of positions.
-/// It bounds what a small file with sparse or repeated accessors can make us store.
-pub const MAX_ELEMENTS: u64 = 1 << 28;
-/// The most elements of an accessor without a buffer view, which costs its file nothing.
+/// The most elements that a file can have us read beyond one for each byte of its buffers: it
+/// bounds what a small file with many accessors on the same bytes can make us store.
+pub const MAX_REPEATED_ELEMENTS: u64 = 1 << 26;
+/// The most elements, in all, of accessors without a buffer view, which cost a file nothing.
 pub const MAX_VIRTUAL_ELEMENTS: u64 = 1 << 24;
 
 /// Reads accessors.
 pub struct Accessors<'a> {
     root: &'a json::Root,
     buffers: &'a Buffers<'a>,
-    left: Cell<u64>,
+    read: Cell<u64>,
+    virtual_read: Cell<u64>,
 }
 
 /// A number within a buffer: what it is and how it reads.
@@ -33,7 +34,7 @@ struct Number {
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
     pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, buffers, left: Cell::new(MAX_ELEMENTS) }
+        Self { root, buffers, read: Cell::new(0), virtual_read: Cell::new(0) }
     }
 
     /// How many elements an accessor has, 0 if there is no such accessor.
@@ -84,7 +85,6 @@ impl<'a> Accessors<'a> {
         let at = format!("accessors[{index}]");
         let number = Number { kind: component(accessor, index)?, normalized: accessor.normalized };
         self.check_type::<N>(accessor, &at, by)?;
-        let count = self.check_count(accessor, &at)?;
         let mut elements = Vec::new();
         let decode_element = |bytes: &[u8]| {
             let mut element = [T::default(); N];
@@ -93,12 +93,15 @@ impl<'a> Accessors<'a> {
             }
             element
         };
+        let bytes = match accessor.buffer_view {
+            Some(view) => self.buffers.view(view.value(), &format!("{at}.bufferView"))?,
+            None => &[],
+        };
+        let count = self.check_count(accessor, &at)?;
         match accessor.buffer_view {
             Some(view) => {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
                 let stride = self.stride(view.value());
-                let place = format!("{at}.bufferView");
-                let bytes = self.buffers.view(view.value(), &place)?;
                 let size = N * number.kind.size();
                 let rows = Rows::new(bytes, offset, stride.unwrap_or(size), size, count)
                     .ok_or_else(|| past_the_view(&at, count, view.value(), bytes.len()))?;
@@ -142,17 +145,17 @@ impl<'a> Accessors<'a> {
 
     fn check_count(&self, accessor: &Accessor, at: &str) -> Result<usize> {
         let count = accessor.count.0;
-        let limit = match accessor.buffer_view {
-            Some(_) => MAX_ELEMENTS,
-            None => MAX_VIRTUAL_ELEMENTS,
+        let (used, limit) = match accessor.buffer_view {
+            Some(_) => (&self.read, MAX_REPEATED_ELEMENTS + self.buffers.loaded_bytes()),
+            None => (&self.virtual_read, MAX_VIRTUAL_ELEMENTS),
         };
-        let left = self.left.get();
-        if count > limit || count > left {
+        let total = used.get().saturating_add(count);
+        if total > limit {
             return Err(Error::input(format!("{count} elements are too many"))
                 .place(Place::Json(format!("{at}.count")))
-                .help(format!("at most {limit} in one accessor, {MAX_ELEMENTS} in a file")));
+                .help(format!("with those read before they are {total}; the limit is {limit}")));
         }
-        self.left.set(left - count);
+        used.set(total);
         Ok(count as usize)
     }
 

@@ -1,6 +1,6 @@
 //! The bytes that a glTF file refers to, fetched when they are first asked for.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::{Cell, OnceCell, RefCell};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,6 +26,7 @@ pub struct Buffers<'a> {
     folder: PathBuf,
     bin: Option<&'a [u8]>,
     loaded: Vec<OnceCell<Arc<Vec<u8>>>>,
+    loaded_bytes: Cell<u64>,
     /// Buffers that name the same file share its bytes.
     files: RefCell<HashMap<PathBuf, Arc<Vec<u8>>>>,
 }
@@ -46,8 +47,14 @@ impl<'a> Buffers<'a> {
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
             bin,
             loaded: root.buffers.iter().map(|_| OnceCell::new()).collect(),
+            loaded_bytes: Cell::new(bin.map_or(0, |b| b.len() as u64)),
             files: RefCell::default(),
         }
+    }
+
+    /// How many bytes have been fetched so far; files that several buffers name count once.
+    pub fn loaded_bytes(&self) -> u64 {
+        self.loaded_bytes.get()
     }
 
     /// The bytes of a buffer view. `by` is the place of what refers to it.
@@ -85,7 +92,10 @@ impl<'a> Buffers<'a> {
             return Ok(bytes);
         }
         let bytes = match self.resolve(uri).map_err(|e| e.place(at()))? {
-            Target::Data(bytes) => Arc::new(bytes),
+            Target::Data(bytes) => {
+                self.count(bytes.len());
+                Arc::new(bytes)
+            }
             Target::File(path) => self.file(&path).map_err(|e| {
                 // The model's own path stays the error's, so that its place makes sense.
                 let reason = e.message().to_owned();
@@ -102,8 +112,13 @@ impl<'a> Buffers<'a> {
             return Ok(bytes.clone());
         }
         let bytes = Arc::new(crate::load::read(path)?);
+        self.count(bytes.len());
         self.files.borrow_mut().insert(path.to_owned(), bytes.clone());
         Ok(bytes)
+    }
+
+    fn count(&self, bytes: usize) {
+        self.loaded_bytes.set(self.loaded_bytes.get() + bytes as u64);
     }
 
     /// What a URI names: data within it, or a file beside the model.

@@ -6,7 +6,9 @@
 
 mod accessor;
 mod buffers;
+mod compact;
 mod container;
+mod document;
 mod extensions;
 mod lights;
 mod material;
@@ -41,7 +43,7 @@ pub fn load(path: &Path) -> Result<Scene> {
 
 fn import(path: &Path, bytes: &[u8]) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
-    let root = container::parse(json)?;
+    let root = document::parse(json)?;
     let mut tally = Tally::default();
     extensions::check(&root, &mut tally)?;
     let buffers = Buffers::new(&root, path, bin);

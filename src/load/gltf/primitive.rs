@@ -5,6 +5,7 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use super::accessor::Accessors;
+use super::compact::compact;
 use super::texture::UvMap;
 use super::topology::triangles;
 use crate::error::{Error, Place, Result};
@@ -46,6 +47,7 @@ pub fn read(
     mesh.colors = reader.colors(mesh.positions.len(), tally)?;
     mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
     repair(&mut mesh, tally, at);
+    compact(&mut mesh);
     Ok((!mesh.triangles.is_empty()).then_some(mesh))
 }
 

@@ -33,12 +33,10 @@ impl Library {
     pub fn read(names: &[String], folder: &Path, tally: &mut Tally) -> Self {
         let mut library = Self::default();
         for name in names {
+            let files = names_of_line(name).into_iter().map(|n| find(folder, &n));
             // A name may hold spaces, and a line several names.
             let whole = find(folder, name);
-            let files = match whole.exists() || !name.contains(' ') {
-                true => vec![whole],
-                false => name.split_whitespace().map(|n| find(folder, n)).collect(),
-            };
+            let files: Vec<_> = if whole.exists() { vec![whole] } else { files.collect() };
             files.iter().for_each(|file| library.add(file, tally));
         }
         library
@@ -174,6 +172,24 @@ impl Library {
     }
 }
 
+/// The names on a `mtllib` line: each ends in `.mtl`, or else at a space that no `\\` escapes.
+fn names_of_line(line: &str) -> Vec<String> {
+    let line = line.replace("\\ ", "\0");
+    let mut names = Vec::new();
+    let mut name = String::new();
+    for word in line.split_whitespace() {
+        if !name.is_empty() {
+            name.push(' ');
+        }
+        name.push_str(word);
+        if word.to_ascii_lowercase().ends_with(".mtl") {
+            names.push(std::mem::take(&mut name));
+        }
+    }
+    names.extend(name.split(' ').filter(|n| !n.is_empty()).map(str::to_owned));
+    names.into_iter().map(|n| n.replace('\0', " ")).collect()
+}
+
 /// A file named in a model: as it stands, or as written on Windows, or beside the model when the
 /// folder it was in is on another machine.
 fn find(folder: &Path, name: &str) -> PathBuf {
@@ -246,4 +262,25 @@ fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
         };
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn library_names_with_spaces() {
+        assert_eq!(names_of_line("a b.mtl c.MTL"), ["a b.mtl", "c.MTL"]);
+        assert_eq!(names_of_line("x.mat y.mat"), ["x.mat", "y.mat"]);
+        assert_eq!(names_of_line("a\\ b.mat c.mtl"), ["a b.mat c.mtl"]);
+    }
+
+    #[test]
+    fn broken_lines_do_not_reach_tobj() {
+        let mut tally = Tally::default();
+        let text = "newmtl a\nKd 1\nKs 1 2\nNs x\nKe spectral a.rfl\nd -halo 0.5\nillum 99\n";
+        let clean = clean(text, Path::new("a.mtl"), &mut tally);
+        assert_eq!(clean, "newmtl a\nKd 1 1 1\nd 0.5\n");
+        assert!(tally.sentences(Path::new("a"))[0].contains("4 lines"));
+    }
 }

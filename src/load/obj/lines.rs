@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn backslash_joins_lines() {
-        assert_eq!(all("f 1 \\\n 2 \\\n3\nv"), [one("f", "1   2  3", 1), one("v", "", 4)]);
+        assert_eq!(all("f 1 \\\n 2 \\\n3\nv"), [one("f", "1  2  3", 1), one("v", "", 4)]);
     }
 
     #[test]

@@ -110,16 +110,20 @@ fn triangles(source: &tobj::Mesh, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
 }
 
 /// The normals of a smoothing group: at each place the mean of the triangles that meet there,
-/// weighted by their areas, however many vertices stand there for the sake of textures.
+/// weighted by their angles, so that it doesn't matter how polygons were cut (G. Thürmer and
+/// C. Wüthrich, 1998), and however many vertices stand there for the sake of textures.
 fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let key = |p: &[f32; 3]| p.map(|x| (x + 0.0).to_bits());
     let mut sums: HashMap<[u32; 3], DVec3> = HashMap::new();
     for triangle in &mesh.triangles {
-        let [a, b, c] = triangle.map(|i| position(&mesh.positions, i));
-        let normal = (b - a).cross(c - a);
-        for &i in triangle {
-            if let Some(p) = mesh.positions.get(i as usize) {
-                *sums.entry(key(p)).or_default() += normal;
+        let corners = triangle.map(|i| position(&mesh.positions, i));
+        for k in 0..3 {
+            let [here, next, last] = [0, 1, 2].map(|j| corners[(k + j) % 3]);
+            let normal = (next - here).cross(last - here).normalize_or_zero();
+            let angle = (next - here).angle_between(last - here);
+            let weighted = if angle.is_finite() { normal * angle } else { DVec3::ZERO };
+            if let Some(p) = mesh.positions.get(triangle[k] as usize) {
+                *sums.entry(key(p)).or_default() += weighted;
             }
         }
     }

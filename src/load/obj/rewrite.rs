@@ -209,9 +209,9 @@ impl Rewriter<'_> {
             let all = corners.iter().all(in_range);
             (all, named && !all)
         });
-        let reason = "{} faces lack a normal or texture coordinate at some corner and lose it at \
-                      the others";
-        self.tally.add(reason, u64::from(uvs.1) + u64::from(normals.1), at);
+        let reason = "{} faces do without normals or texture coordinates: at some corner they name \
+                      none that is there";
+        self.tally.add(reason, u64::from(uvs.1 || normals.1), at);
         let mut part = self.current.clone();
         (part.has_uvs, part.has_normals) = (uvs.0, normals.0);
         if part.has_normals {

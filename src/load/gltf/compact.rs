@@ -1,0 +1,59 @@
+//! Some exporters let every primitive of a model share one large array of vertices. Each becomes a
+//! mesh of its own here, which must not keep all of them.
+
+use crate::scene::Mesh;
+
+/// Drops the vertices that no triangle uses, when they are more than half of all.
+pub fn compact(mesh: &mut Mesh) {
+    const UNUSED: u32 = u32::MAX;
+    let mut new_index = vec![UNUSED; mesh.positions.len()];
+    let mut kept: Vec<usize> = Vec::new();
+    for &i in mesh.triangles.as_flattened() {
+        if let Some(new) = new_index.get_mut(i as usize).filter(|new| **new == UNUSED) {
+            *new = kept.len() as u32;
+            kept.push(i as usize);
+        }
+    }
+    if kept.len() >= mesh.positions.len().div_ceil(2) {
+        return;
+    }
+    for i in mesh.triangles.as_flattened_mut() {
+        *i = new_index.get(*i as usize).copied().unwrap_or(UNUSED);
+    }
+    keep(&mut mesh.positions, &kept);
+    keep(&mut mesh.normals, &kept);
+    keep(&mut mesh.uvs, &kept);
+    keep(&mut mesh.colors, &kept);
+}
+
+fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {
+    if !values.is_empty() {
+        *values = kept.iter().filter_map(|&i| values.get(i)).copied().collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unused_vertices_go_when_they_are_many() {
+        let positions: Vec<_> = (0..9).map(|i| [i as f32; 3]).collect();
+        let uvs: Vec<_> = (0..9).map(|i| [i as f32; 2]).collect();
+        let mut mesh = Mesh { positions, uvs, triangles: vec![[8, 2, 4]], ..Mesh::default() };
+        compact(&mut mesh);
+        assert_eq!(mesh.triangles, [[0, 1, 2]]);
+        assert_eq!(mesh.positions, [[8.; 3], [2.; 3], [4.; 3]]);
+        assert_eq!(mesh.uvs, [[8.; 2], [2.; 2], [4.; 2]]);
+        assert!(mesh.normals.is_empty());
+    }
+
+    #[test]
+    fn vertices_stay_as_they_are_when_most_are_used() {
+        let positions: Vec<_> = (0..4).map(|i| [i as f32; 3]).collect();
+        let mesh = Mesh { positions, triangles: vec![[3, 2, 0]], ..Mesh::default() };
+        let mut same = mesh.clone();
+        compact(&mut same);
+        assert_eq!(same, mesh);
+    }
+}
