@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use crate::geometry::Bounds;
 use crate::scene::{
     Camera, Instance, Lens, Light, LightKind, MaterialId, MeshId, Scene, TextureId,
 };
@@ -13,6 +14,8 @@ pub struct Part {
     instances: Vec<Instance>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
+    /// Around all of it, its lights and cameras too, before it is placed.
+    bounds: Bounds,
 }
 
 /// How a model is to stand.
@@ -34,6 +37,7 @@ impl Part {
     /// The model's film and warnings are dropped, and so are spheres and planes, which no model
     /// file has.
     pub fn add(scene: &mut Scene, model: Scene) -> Self {
+        let bounds = bounds(&model);
         let first_texture = scene.textures.len() as u32;
         let first_material = scene.materials.len() as u32;
         let first_mesh = scene.meshes.len() as u32;
@@ -50,7 +54,12 @@ impl Part {
             instance.mesh = MeshId(instance.mesh.0 + first_mesh);
             instance.material = MaterialId(instance.material.0 + first_material);
         }
-        Self { instances, lights: model.lights, cameras: model.cameras }
+        Self { instances, lights: model.lights, cameras: model.cameras, bounds }
+    }
+
+    /// How far from the origin something of it may be once it is placed.
+    pub fn reach(&self, transform: &DAffine3) -> f64 {
+        self.bounds.transformed(transform).max_abs()
     }
 
     /// Places the model in the scene that it was added to.
@@ -75,6 +84,15 @@ impl Part {
             }
         }
     }
+}
+
+fn bounds(model: &Scene) -> Bounds {
+    let lights = model.lights.iter().filter_map(|light| match light.kind {
+        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => Some(position),
+        LightKind::Ambient | LightKind::Directional { .. } => None,
+    });
+    let cameras = model.cameras.iter().map(|camera| camera.position);
+    model.bounds().union(Bounds::of(lights.chain(cameras)))
 }
 
 /// Moves and turns a light. Its intensity and its range stay as they are under any scale, as
@@ -106,4 +124,169 @@ fn place_camera(camera: &Camera, transform: &DAffine3) -> Option<Camera> {
     let placed = Camera::look_at(DVec3::ZERO, forward, up, lens).ok()?;
     let position = transform.transform_point3(camera.position);
     Some(Camera { name: camera.name.clone(), position, ..placed })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Falloff, Image, Material, Mesh, Texture, Transfer};
+    use glam::{DMat3, Vec3};
+    use std::sync::Arc;
+
+    /// One triangle with a textured material, a spot light and a camera.
+    fn model() -> Scene {
+        let mut model = Scene::default();
+        let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[9; 4]] };
+        let texture = model.add_texture(Texture {
+            image: Arc::new(image),
+            transfer: Transfer::Srgb,
+            wrap: Default::default(),
+            filter: Default::default(),
+        });
+        let material = Material { diffuse_map: Some(texture), ..Material::default() };
+        let material = model.add_material(material);
+        let mesh = model.add_mesh(Mesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        });
+        model.instances.push(Instance::new(mesh, DAffine3::from_translation(DVec3::X), material));
+        model.lights.push(Light {
+            name: "lamp".to_owned(),
+            kind: LightKind::Spot {
+                position: DVec3::X,
+                direction: DVec3::X,
+                falloff: Falloff::InverseSquare,
+                range: 5.0,
+                inner_angle: 0.1,
+                outer_angle: 0.2,
+            },
+            intensity: Vec3::ONE,
+            casts_shadow: true,
+        });
+        let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Lens::OrthoHeight(2.0));
+        model.cameras.push(camera.unwrap());
+        model
+    }
+
+    fn placed(transform: DAffine3) -> Placement {
+        Placement { transform, material: None, casts_shadow: true, lights: true }
+    }
+
+    /// A quarter turn about z, twice as large, moved by 10 along x.
+    fn turned() -> DAffine3 {
+        DAffine3 {
+            matrix3: DMat3::from_cols(DVec3::Y * 2.0, DVec3::X * -2.0, DVec3::Z * 2.0),
+            translation: DVec3::X * 10.0,
+        }
+    }
+
+    #[test]
+    fn indices_are_moved_past_what_the_scene_has() {
+        let mut scene = model();
+        let part = Part::add(&mut scene, model());
+        part.place(&mut scene, &placed(DAffine3::IDENTITY));
+        let instance = &scene.instances[1];
+        assert_eq!((instance.mesh, instance.material), (MeshId(1), MaterialId(1)));
+        assert_eq!(scene.materials[1].diffuse_map, Some(TextureId(1)));
+        scene.check().unwrap();
+    }
+
+    #[test]
+    fn placing_twice_stores_the_mesh_once() {
+        let mut scene = Scene::default();
+        let part = Part::add(&mut scene, model());
+        part.place(&mut scene, &placed(DAffine3::IDENTITY));
+        part.place(&mut scene, &placed(turned()));
+        assert_eq!((scene.meshes.len(), scene.materials.len(), scene.textures.len()), (1, 1, 1));
+        assert_eq!((scene.instances.len(), scene.lights.len(), scene.cameras.len()), (2, 2, 2));
+        scene.check().unwrap();
+    }
+
+    #[test]
+    fn a_part_that_is_not_placed_is_not_seen() {
+        let mut scene = Scene::default();
+        Part::add(&mut scene, model());
+        assert!(scene.instances.is_empty() && scene.lights.is_empty() && scene.cameras.is_empty());
+    }
+
+    #[test]
+    fn the_placement_comes_after_the_models_own_transform() {
+        let mut scene = Scene::default();
+        Part::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        // (1, 0, 0) by the model, then turned to y, doubled and moved.
+        assert_eq!(scene.instances[0].bake([0.0; 3]), DVec3::new(10.0, 2.0, 0.0));
+    }
+
+    #[test]
+    fn a_light_moves_and_turns_and_keeps_its_strength() {
+        let mut scene = Scene::default();
+        Part::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        let light = &scene.lights[0];
+        let LightKind::Spot { position, direction, range, .. } = light.kind else {
+            panic!("a spot");
+        };
+        assert_eq!((position, direction), (DVec3::new(10.0, 2.0, 0.0), DVec3::Y));
+        assert_eq!((range, light.intensity), (5.0, Vec3::ONE));
+    }
+
+    #[test]
+    fn lights_can_be_left_out() {
+        let mut scene = Scene::default();
+        let dark = Placement { lights: false, ..placed(DAffine3::IDENTITY) };
+        Part::add(&mut scene, model()).place(&mut scene, &dark);
+        assert!(scene.lights.is_empty());
+    }
+
+    #[test]
+    fn a_material_can_be_put_in_place_of_the_models_own() {
+        let mut scene = Scene::default();
+        let gold = scene.add_material(Material::default());
+        let golden = Placement { material: Some(gold), ..placed(DAffine3::IDENTITY) };
+        Part::add(&mut scene, model()).place(&mut scene, &golden);
+        assert_eq!(scene.instances[0].material, gold);
+    }
+
+    #[test]
+    fn shadows_are_cast_unless_the_model_or_its_placement_says_no() {
+        let casts = |model_casts: bool, casts_shadow: bool| {
+            let (mut scene, mut model) = (Scene::default(), model());
+            model.instances[0].casts_shadow = model_casts;
+            let placement = Placement { casts_shadow, ..placed(DAffine3::IDENTITY) };
+            Part::add(&mut scene, model).place(&mut scene, &placement);
+            scene.instances[0].casts_shadow
+        };
+        let all = [casts(true, true), casts(true, false), casts(false, true)];
+        assert_eq!(all, [true, false, false]);
+    }
+
+    #[test]
+    fn a_camera_goes_with_its_model_and_sees_as_much_of_it() {
+        let mut scene = Scene::default();
+        Part::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        let camera = &scene.cameras[0];
+        assert_eq!(camera.position, DVec3::new(10.0, 0.0, 2.0));
+        assert_eq!((camera.forward, camera.up), (-DVec3::Z, -DVec3::X));
+        assert_eq!(camera.lens, Lens::OrthoHeight(4.0));
+    }
+
+    #[test]
+    fn a_camera_in_a_mirrored_model_is_no_mirror() {
+        let mut scene = Scene::default();
+        let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        Part::add(&mut scene, model()).place(&mut scene, &placed(mirror));
+        let camera = &scene.cameras[0];
+        assert_eq!(camera.right.cross(camera.forward), camera.up);
+        scene.check().unwrap();
+    }
+
+    #[test]
+    fn a_camera_that_loses_its_up_is_a_warning() {
+        let (mut scene, mut model) = (Scene::default(), model());
+        let tilted = Camera::look_at(DVec3::Z, DVec3::Y, DVec3::Y, Lens::FovY(1.0)).unwrap();
+        model.cameras = vec![tilted];
+        let flat = DAffine3::from_scale(DVec3::new(1.0, 1e-12, 1.0));
+        Part::add(&mut scene, model).place(&mut scene, &placed(flat));
+        assert_eq!((scene.cameras.len(), scene.warnings.len()), (0, 1));
+    }
 }

@@ -62,6 +62,19 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, threads: usize) -> Result<Self> {
+        Self::with_width(scene, threads, None)
+    }
+
+    /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
+    /// bring, and to compare the two.
+    ///
+    /// # Errors
+    /// As [`Embree::build`].
+    pub fn build_single(scene: &'s Scene, threads: usize) -> Result<Self> {
+        Self::with_width(scene, threads, Some(Width::One))
+    }
+
+    fn with_width(scene: &'s Scene, threads: usize, width: Option<Width>) -> Result<Self> {
         static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
         CHECKED
             .get_or_init(|| canary::check().map_err(|e| e.to_string()))
@@ -73,7 +86,7 @@ impl<'s> Embree<'s> {
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
         let frame = Frame::around(scene.bounds());
-        let width = Width::native(&device);
+        let width = width.unwrap_or_else(|| Width::native(&device));
 
         let instance_of = attach_meshes(scene, &top, &device, &frame)?;
         let spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));

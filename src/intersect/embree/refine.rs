@@ -8,7 +8,7 @@ use crate::intersect::embree::layout::{INVALID, RayHit};
 use crate::scene::Scene;
 
 /// The corners of a packet's triangles, side by side: corner, axis, lane.
-type Corners<const W: usize> = [[[f64; W]; 3]; 3];
+type Corners<T, const W: usize> = [[[T; W]; 3]; 3];
 
 /// Intersects each lane's triangle again in f64, and writes the hits; `None` where there is none.
 ///
@@ -24,8 +24,10 @@ pub fn refine<const W: usize>(
     record: &RayHit<W>,
     hits: &mut [Option<Hit>],
 ) {
-    let mut corners: Corners<W> = [[[0.0; W]; 3]; 3];
+    let mut local: Corners<f32, W> = [[[0.0; W]; 3]; 3];
     let mut ids = [None; W];
+    let mut instances = [INVALID; W];
+    let mut first = INVALID;
     for i in 0..hits.len() {
         if record.geom[i] == INVALID {
             continue;
@@ -33,14 +35,21 @@ pub fn refine<const W: usize>(
         let attached = if record.inst[i] == INVALID { record.geom[i] } else { record.inst[i] };
         let instance = instance_of[attached as usize];
         let mesh = scene.instances[instance as usize].mesh.0;
-        let id = PrimitiveId::triangle(mesh, record.prim[i], instance);
-        ids[i] = Some(id);
-        for (corner, p) in corners.iter_mut().zip(scene.triangle(id)) {
+        let corners = scene.meshes[mesh as usize].corners(record.prim[i]);
+        for (to, p) in local.iter_mut().zip(corners) {
             for axis in 0..3 {
-                corner[axis][i] = p[axis];
+                to[axis][i] = p[axis];
             }
         }
+        ids[i] = Some(PrimitiveId::triangle(mesh, record.prim[i], instance));
+        instances[i] = instance;
+        first = instance;
     }
+    if first == INVALID {
+        hits.fill(None);
+        return;
+    }
+    let corners = bake(scene, first, &instances, &local);
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
@@ -65,4 +74,41 @@ pub fn refine<const W: usize>(
             Hit { t, u, v, id }
         });
     }
+}
+
+/// The corners in world space. Nearly always all lanes are in one instance, whose transform then
+/// is the same for all.
+#[inline(always)]
+fn bake<const W: usize>(
+    scene: &Scene,
+    first: u32,
+    instances: &[u32; W],
+    local: &Corners<f32, W>,
+) -> Corners<f64, W> {
+    let mut world: Corners<f64, W> = [[[0.0; W]; 3]; 3];
+    let mut one = true;
+    for &instance in instances {
+        one &= instance == INVALID || instance == first;
+    }
+    let placed = &scene.instances[first as usize];
+    for (to, from) in world.iter_mut().zip(local) {
+        for i in 0..W {
+            let p = placed.bake([from[0][i], from[1][i], from[2][i]]);
+            for axis in 0..3 {
+                to[axis][i] = p[axis];
+            }
+        }
+    }
+    if !one {
+        for i in (0..W).filter(|&i| instances[i] != INVALID) {
+            let placed = &scene.instances[instances[i] as usize];
+            for (to, from) in world.iter_mut().zip(local) {
+                let p = placed.bake([from[0][i], from[1][i], from[2][i]]);
+                for axis in 0..3 {
+                    to[axis][i] = p[axis];
+                }
+            }
+        }
+    }
+    world
 }

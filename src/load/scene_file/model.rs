@@ -12,6 +12,7 @@ use super::tables::ModelTable;
 use crate::error::{Error, Result};
 use crate::load;
 use crate::load::place::{Part, Placement};
+use crate::scene::check::MAX_COORDINATE;
 
 /// The model files loaded so far, by their canonical paths.
 #[derive(Default)]
@@ -27,10 +28,8 @@ impl Models {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
                 let mut model = load::model(&path)?;
-                for warning in model.warnings.drain(..) {
-                    let file = &table.file.value;
-                    resolver.scene.warnings.push(format!("{file}: {warning}"));
-                }
+                // Each names the model already.
+                resolver.scene.warnings.append(&mut model.warnings);
                 unknown.insert(Part::add(&mut resolver.scene, model))
             }
         };
@@ -40,6 +39,13 @@ impl Models {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             lights: table.lights.unwrap_or(true),
         };
+        if part.reach(&placement.transform) > MAX_COORDINATE {
+            let span = &table.file.span;
+            return Err(resolver
+                .source
+                .error(span, "the model reaches beyond 1e15 from 0 as it is placed")
+                .help("make its `scale` or `translate` smaller"));
+        }
         part.place(&mut resolver.scene, &placement);
         Ok(())
     }

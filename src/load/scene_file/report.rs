@@ -58,8 +58,12 @@ impl Report<'_> {
             );
         }
         let table = if self.path.is_empty() { "a scene file" } else { &self.table() };
-        let message = format!("{table} has no key `{found}`");
-        Some(self.error(message).help(suggest::advice(found, &candidates, "its keys are")))
+        let error = self.error(format!("{table} has no key `{found}`"));
+        let help = match (suggest::closest(found, &candidates), homes(found)) {
+            (None, Some(homes)) => format!("it belongs {homes}"),
+            _ => suggest::advice(found, &candidates, "its keys are"),
+        };
+        Some(error.help(help))
     }
 
     /// "missing field `x`".
@@ -91,7 +95,9 @@ impl Report<'_> {
                         .help(format!("write its header in single brackets: [{table}]")),
                 )
             }
-            _ => Some(self.wrong_value(found, expected)),
+            _ if expected == "a boolean" => Some(self.wrong_value(found, "true or false")),
+            "type" | "value" => Some(self.wrong_value(found, expected)),
+            _ => None,
         }
     }
 
@@ -142,5 +148,29 @@ impl Report<'_> {
             "camera" => "[camera]".to_owned(),
             path => format!("[[{path}]]"),
         }
+    }
+}
+
+/// Where a key belongs that stands in the wrong table; the schema knows all tables.
+fn homes(key: &str) -> Option<String> {
+    let schema = super::schema();
+    let tables = schema.get("properties")?.as_object()?;
+    if tables.contains_key(key) {
+        return Some("under a header of its own, or before the first one".to_owned());
+    }
+    let homes: Vec<String> = tables
+        .iter()
+        .filter(|(_, table)| {
+            let one = table.get("items").or_else(|| table.pointer("/anyOf/0")).unwrap_or(table);
+            one.get("properties").is_some_and(|keys| keys.get(key).is_some())
+        })
+        .map(|(name, _)| match REPEATED.contains(&name.as_str()) && name != "camera" {
+            true => format!("[[{name}]]"),
+            false => format!("[{name}]"),
+        })
+        .collect();
+    match &homes[..] {
+        [] => None,
+        homes => Some(format!("in {}", homes.join(" or "))),
     }
 }

@@ -108,10 +108,10 @@ impl Resolver<'_> {
         if let Some(At { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
         {
-            let line = self.source.line(span);
             self.scene.warnings.push(format!(
-                "line {line}: the material `{name}` scatters more light than it gets (numbers in \
-                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")"
+                "{}: the material `{name}` scatters more light than it gets (numbers in \
+                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
+                self.source.shown(span)
             ));
         }
         let id = self.scene.add_material(material);
@@ -137,7 +137,8 @@ impl Resolver<'_> {
             return Ok(Some(texture));
         }
         let image = picture::read(&path).map_err(|e| {
-            self.source.error(span, format!("the picture {}: {}", path.display(), e.message()))
+            let message = format!("the picture {}: {}", path.display(), e.message());
+            self.source.error(span, message).help("a path is relative to the scene file's folder")
         })?;
         let texture = Texture {
             image: Arc::new(image),

@@ -41,6 +41,11 @@ impl<'a> Source<'a> {
         self.text[..span.start].matches('\n').count() + 1
     }
 
+    /// FILE:line:column of a place, for warnings.
+    pub fn shown(&self, span: &Span) -> String {
+        format!("{}:{}", self.path.display(), Place::in_text(self.text, span.clone()))
+    }
+
     /// The place of `key` in `key = value`, by the place of the value; that of the value itself
     /// when the key is written another way.
     pub fn key(&self, key: &str, value: &Span) -> Span {

@@ -1,0 +1,82 @@
+//! The two scenes of the benches, made by formula, and the rays of their pictures.
+
+use envers::geometry::Ray;
+use envers::scene::{Camera, Instance, Lens, Material, Mesh, Scene, Sphere};
+use glam::{DAffine3, DVec3};
+
+/// Width and height of the pictures that are traced.
+pub const SIZE: [u32; 2] = [1000, 500];
+
+/// M: a torus knot with a displaced surface, of `rings · sides · 2` triangles.
+pub fn knot(rings: u32, sides: u32) -> Scene {
+    use std::f64::consts::TAU;
+    let center = |s: f64| {
+        let (p, q) = (2.0 * s, 3.0 * s);
+        let radius = 1.0 + 0.45 * q.cos();
+        DVec3::new(radius * p.cos(), radius * p.sin(), 0.45 * q.sin())
+    };
+    let mut positions = Vec::with_capacity((rings * sides) as usize);
+    for i in 0..rings {
+        let s = TAU * f64::from(i) / f64::from(rings);
+        let along = (center(s + 1e-4) - center(s - 1e-4)).normalize();
+        let across = along.cross(DVec3::Z).normalize();
+        let up = across.cross(along);
+        for k in 0..sides {
+            let a = TAU * f64::from(k) / f64::from(sides);
+            let bump = 0.02 * ((s * 40.0).sin() * (a * 9.0).sin() + (s * 131.0).cos() * 0.3);
+            let p = center(s) + (across * a.cos() + up * a.sin()) * (0.3 + bump);
+            positions.push(p.as_vec3().to_array());
+        }
+    }
+    let at = |i: u32, k: u32| (i % rings) * sides + k % sides;
+    let triangles = (0..rings)
+        .flat_map(|i| (0..sides).map(move |k| (i, k)))
+        .flat_map(|(i, k)| {
+            let (a, b, c, d) = (at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1));
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
+    scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+    finish(scene, DVec3::new(0.25, 0.15, 2.1))
+}
+
+/// S: 501 spheres, one large and 500 on a spiral around it.
+pub fn spheres() -> Scene {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    scene.spheres.push(Sphere::new(DVec3::ZERO, 0.7, material));
+    for i in 0..500 {
+        // The points of a spiral from pole to pole, evenly spread by the golden angle.
+        let y = 1.0 - 2.0 * (f64::from(i) + 0.5) / 500.0;
+        let (r, a) = ((1.0 - y * y).sqrt(), f64::from(i) * 2.399_963_229_728_653);
+        let center = DVec3::new(r * a.cos(), y, r * a.sin()) * (1.0 + 0.2 * f64::from(i % 3));
+        scene.spheres.push(Sphere::new(center, 0.03 + 0.005 * f64::from(i % 7), material));
+    }
+    finish(scene, DVec3::new(0.0, 0.6, 3.6))
+}
+
+fn finish(mut scene: Scene, eye: DVec3) -> Scene {
+    scene.film.size = SIZE;
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.9));
+    scene.cameras.push(camera.expect("the eye is not at the origin"));
+    scene.check().expect("the benches' scenes are valid");
+    scene
+}
+
+/// The primary rays of a picture in squares of four by four, as the renderer sends them.
+pub fn primary(scene: &Scene) -> Vec<Ray> {
+    let [width, height] = scene.film.size;
+    let maker = scene.cameras[0].rays(scene.film.size);
+    let mut rays = Vec::with_capacity((width * height) as usize);
+    for y in (0..height).step_by(4) {
+        for x in (0..width).step_by(4) {
+            for (j, i) in (0..4).flat_map(|j| (0..4).map(move |i| (j, i))) {
+                rays.push(maker.through(f64::from(x + i) + 0.5, f64::from(y + j) + 0.5));
+            }
+        }
+    }
+    rays
+}
