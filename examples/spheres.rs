@@ -41,6 +41,12 @@ fn main() -> Result<()> {
         intensity: Vec3::ONE,
         casts_shadow: true,
     });
+    scene.lights.push(Light {
+        name: "sky".to_owned(),
+        kind: LightKind::Ambient,
+        intensity: Vec3::new(0.2, 0.22, 0.25),
+        casts_shadow: false,
+    });
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
     scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(0.6))?);
 
