@@ -60,3 +60,8 @@ pub mod scene;
 pub mod shading;
 pub mod surface;
 pub mod write;
+
+/// The README's program, compiled with the documentation's.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -24,7 +24,7 @@ use std::sync::OnceLock;
 use embree4_rs::geometry::{Geometry, TriangleMeshGeometry};
 use embree4_rs::{CommittedScene, Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Ray};
@@ -135,7 +135,8 @@ fn attach_meshes(
 ) -> Result<Vec<u32>> {
     let mut uses = vec![0u32; scene.meshes.len()];
     scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
-    let mut inner: Vec<Option<InnerScene>> = scene.meshes.iter().map(|_| None).collect();
+    // An instanced mesh is recentred too: a model may stand far from its own origin.
+    let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();
     for (index, instance) in scene.instances.iter().enumerate() {
         let at = instance.mesh.0 as usize;
@@ -148,11 +149,14 @@ fn attach_meshes(
             attach(top, &geometry)?;
         } else {
             if inner[at].is_none() {
-                let geometry = upload(&top.device, mesh, |p| p)?;
-                inner[at] = Some(InnerScene::new(device, QUALITY, flags(), &geometry)?);
+                let center = mesh.bounds().center();
+                let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
+                let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
+                inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
             }
-            if let Some(built) = &inner[at] {
-                attach(top, &InstanceGeometry::new(device, built, &columns(instance, frame))?)?;
+            if let Some((built, center)) = &inner[at] {
+                let columns = columns(instance, *center, frame);
+                attach(top, &InstanceGeometry::new(device, built, &columns)?)?;
             }
         }
         instance_of.push(index as u32);
@@ -175,9 +179,11 @@ fn upload(
         .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
 }
 
-/// The matrix from the mesh's space to the recentred world.
-fn columns(instance: &Instance, frame: &Frame) -> [[f32; 3]; 4] {
-    let m = DAffine3::from_translation(-frame.center) * instance.transform;
+/// The matrix from the mesh's space, recentred on `center`, to the recentred world.
+fn columns(instance: &Instance, center: DVec3, frame: &Frame) -> [[f32; 3]; 4] {
+    let m = DAffine3::from_translation(-frame.center)
+        * instance.transform
+        * DAffine3::from_translation(center);
     [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
         .map(|column| column.as_vec3().to_array())
 }
