@@ -7,7 +7,7 @@
 use glam::DVec3;
 
 use crate::geometry::Bounds;
-use crate::intersect::bvh::tree::{Node, Tree};
+use crate::intersect::bvh::tree::{MAX_DEPTH, Node, Tree};
 
 const BINS: usize = 16;
 /// The largest leaf that is not split when splitting costs more.
@@ -16,9 +16,6 @@ const MAX_LEAF: usize = 8;
 const SERIAL: usize = 4096;
 /// What visiting a node costs, in units of testing an item.
 const VISIT: f64 = 1.0;
-/// No path from the root is longer: beyond half of it nodes are split in the middle, which halves
-/// at most 2³² items 32 times.
-pub const MAX_DEPTH: usize = 96;
 
 #[derive(Clone, Copy)]
 struct Item {
@@ -50,6 +47,7 @@ fn subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
     }
     let middle = match best_split(items, &bounds) {
         Split::Leaf => return leaf(),
+        // Deeper down nodes are split in the middle, which halves at most 2³² items 32 times.
         Split::At { axis, bin, of } if depth < MAX_DEPTH / 2 => {
             let middle = partition(items, |i| of.bin(i.center[axis]) < bin);
             if middle == 0 || middle == items.len() { halve(items) } else { middle }

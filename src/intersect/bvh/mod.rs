@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
 use crate::intersect::{Coherence, Intersector, primitive};
 use crate::scene::{Mesh, Scene, Sphere};
+use build::build;
 use tree::{Line, Tree};
 
 /// The pure-Rust intersector.
@@ -36,7 +37,7 @@ impl<'s> Bvh<'s> {
     /// Builds the trees of a checked scene, on the current rayon pool.
     pub fn build(scene: &'s Scene) -> Self {
         let meshes: Vec<Tree> =
-            scene.meshes.par_iter().map(|mesh| Tree::build(&triangle_bounds(mesh))).collect();
+            scene.meshes.par_iter().map(|mesh| build(&triangle_bounds(mesh))).collect();
         let spheres: Vec<Bounds> = scene.spheres.iter().map(Sphere::bounds).collect();
         let placed: Vec<Bounds> = scene
             .instances
@@ -59,7 +60,7 @@ impl<'s> Bvh<'s> {
                 Entry { inverse, condition: norm(&i.transform) * norm(&inverse) }
             })
             .collect();
-        let (spheres, instances) = (Tree::build(&spheres), Tree::build(&placed));
+        let (spheres, instances) = (build(&spheres), build(&placed));
         Self { scene, spheres, instances, entries, meshes }
     }
 

@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::geometry::Bounds;
-use crate::intersect::bvh::build;
+
+/// No path from the root of a tree has more nodes than this.
+pub const MAX_DEPTH: usize = 96;
 
 /// A binary tree of boxes over numbered items, stored depth first.
 pub struct Tree {
@@ -65,11 +67,6 @@ impl Line {
 }
 
 impl Tree {
-    /// Builds the tree over boxes numbered from 0.
-    pub fn build(boxes: &[Bounds]) -> Self {
-        build::build(boxes)
-    }
-
     /// The box around everything.
     pub fn bounds(&self) -> Bounds {
         self.nodes.first().map_or(Bounds::EMPTY, |root| root.bounds)
@@ -86,8 +83,7 @@ impl Tree {
     ) -> bool {
         let Some(root) = self.nodes.first() else { return false };
         let margin = line.margin + line.relative * root.bounds.max_abs();
-        // The builder keeps every path shorter than this.
-        let mut stack = [(0u32, 0.0f64); build::MAX_DEPTH + 1];
+        let mut stack = [(0u32, 0.0f64); MAX_DEPTH + 1];
         let mut top = 0;
         let mut current = line.enters(&root.bounds, margin, *limit).map(|_| 0u32);
         loop {

@@ -86,58 +86,44 @@ type Occluded = unsafe extern "C" fn(*const sys::RTCOccludedFunctionNArguments);
 /// The callbacks for packets of `width`, compiled for a processor that has such packets.
 fn callbacks(width: Width) -> (Intersect, Occluded) {
     match width {
-        Width::One => (intersect_1, occluded_1),
-        Width::Four => (intersect_4, occluded_4),
+        Width::One => (one::intersect, one::occluded),
+        Width::Four => (four::intersect, four::occluded),
         #[cfg(target_arch = "x86_64")]
-        Width::Eight => (intersect_8, occluded_8),
+        Width::Eight => (eight::intersect, eight::occluded),
         #[cfg(target_arch = "x86_64")]
-        Width::Sixteen => (intersect_16, occluded_16),
+        Width::Sixteen => (sixteen::intersect, sixteen::occluded),
     }
 }
 
-// One set for each width. SAFETY, for all of them: Embree calls them with what it was given in
-// `geometry` and `query`; the ones with target features are only chosen by `Width::native`, which
-// asks the processor.
+/// The two callbacks for one width, with the processor features that it comes with.
+macro_rules! callbacks_for {
+    ($name:ident, $width:literal, $(#[$attribute:meta])*) => {
+        mod $name {
+            use super::*;
 
-unsafe extern "C" fn intersect_1(args: *const sys::RTCIntersectFunctionNArguments) {
-    unsafe { intersect::<1>(&*args) }
+            // SAFETY, for both: Embree calls them with what it was given in `geometry` and in
+            // `query`; those with target features are only chosen by `Width::native`, which asks
+            // the processor.
+
+            $(#[$attribute])*
+            pub unsafe extern "C" fn intersect(args: *const sys::RTCIntersectFunctionNArguments) {
+                unsafe { super::intersect::<$width>(&*args) }
+            }
+
+            $(#[$attribute])*
+            pub unsafe extern "C" fn occluded(args: *const sys::RTCOccludedFunctionNArguments) {
+                unsafe { super::occluded::<$width>(&*args) }
+            }
+        }
+    };
 }
 
-unsafe extern "C" fn intersect_4(args: *const sys::RTCIntersectFunctionNArguments) {
-    unsafe { intersect::<4>(&*args) }
-}
-
+callbacks_for!(one, 1,);
+callbacks_for!(four, 4,);
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe extern "C" fn intersect_8(args: *const sys::RTCIntersectFunctionNArguments) {
-    unsafe { intersect::<8>(&*args) }
-}
-
+callbacks_for!(eight, 8, #[target_feature(enable = "avx2")]);
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-unsafe extern "C" fn intersect_16(args: *const sys::RTCIntersectFunctionNArguments) {
-    unsafe { intersect::<16>(&*args) }
-}
-
-unsafe extern "C" fn occluded_1(args: *const sys::RTCOccludedFunctionNArguments) {
-    unsafe { occluded::<1>(&*args) }
-}
-
-unsafe extern "C" fn occluded_4(args: *const sys::RTCOccludedFunctionNArguments) {
-    unsafe { occluded::<4>(&*args) }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe extern "C" fn occluded_8(args: *const sys::RTCOccludedFunctionNArguments) {
-    unsafe { occluded::<8>(&*args) }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-unsafe extern "C" fn occluded_16(args: *const sys::RTCOccludedFunctionNArguments) {
-    unsafe { occluded::<16>(&*args) }
-}
+callbacks_for!(sixteen, 16, #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]);
 
 unsafe extern "C" fn bounds(args: *const sys::RTCBoundsFunctionArguments) {
     // SAFETY: Embree passes the user data set in `geometry` and a primitive below its count.
