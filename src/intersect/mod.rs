@@ -1,6 +1,6 @@
 //! The hit layer: who finds what a ray meets.
 //!
-//! An [`Intersector`] is asked in batches. Its implementations answer alike: [`Embree`] (with the
+//! An [`Intersector`] is asked in batches. Its implementations answer alike: `Embree` (with the
 //! feature `embree`), [`Bvh`], the pure-Rust fallback and judge, and [`BruteForce`], for tests.
 //! They share the primitives' tests in [`primitive`]; what differs is which primitives they try.
 
