@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
-use crate::scene::{Arrival, MaterialId, Plane, Scene};
+use crate::scene::{Arrival, MaterialId, Scene};
 
 /// The point of a surface that a ray hit.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ impl Surface {
         let id = hit.id;
         let mut surface = match id.geometry {
             Geometry::Spheres => on_sphere(scene, ray, hit),
-            Geometry::Planes => on_plane(&scene.planes[id.primitive as usize], ray, hit),
+            Geometry::Planes => on_plane(scene, ray, hit),
             Geometry::Mesh(_) => on_triangle(scene, hit),
         };
         if surface.geometric_normal.dot(ray.direction) > 0.0 {
@@ -111,20 +111,27 @@ fn longitude_latitude(normal: DVec3) -> [f32; 2] {
     [u as f32, v as f32]
 }
 
-fn on_plane(plane: &Plane, ray: &Ray, hit: &Hit) -> Surface {
+fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
+    let plane = &scene.planes[hit.id.primitive as usize];
     let position = ray.at(hit.t);
     // Put back on the plane, as with the sphere.
     let position = position - plane.normal * plane.normal.dot(position - plane.point);
     let mut surface = base(hit.id, position, plane.normal, plane.material);
-    let (a, b) = plane.axes();
-    let from = position - plane.point;
-    let (x, y) = (from.dot(a), from.dot(b));
-    surface.uv = [x.rem_euclid(1.0) as f32, y.rem_euclid(1.0) as f32];
-    surface.checker = plane.checker.map(|checker| {
-        // The parity is taken of the remainder, which stays exact far out on the plane.
-        let half = |x: f64| (x / checker.size).rem_euclid(2.0) >= 1.0;
-        checker.colors[usize::from(half(x) != half(y))]
-    });
+    let textured = scene.materials[plane.material.0 as usize].is_textured();
+    if textured || plane.checker.is_some() {
+        let (a, b) = plane.axes();
+        let from = position - plane.point;
+        let (x, y) = (from.dot(a), from.dot(b));
+        // The whole part is taken off in f64, so that the pattern stays sharp far out.
+        surface.uv = [(x - x.floor()) as f32, (y - y.floor()) as f32];
+        surface.checker = plane.checker.map(|checker| {
+            let odd = |x: f64| {
+                let half = (x / checker.size).floor() * 0.5;
+                half != half.floor()
+            };
+            checker.colors[usize::from(odd(x) != odd(y))]
+        });
+    }
     surface
 }
 
@@ -181,7 +188,7 @@ fn on_triangle(scene: &Scene, hit: &Hit) -> Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Checker, Instance, Material, Mesh, Sphere};
+    use crate::scene::{Checker, Instance, Material, Mesh, Plane, Sphere};
     use glam::DAffine3;
 
     fn scene() -> Scene {

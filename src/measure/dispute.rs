@@ -14,12 +14,15 @@ use crate::scene::Scene;
 /// What explains a disagreement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
+    /// The ray passes the edge of a triangle within the margin.
     Edge,
+    /// Two surfaces, or a surface and the end of a shadow ray, lie within the margin of each other.
     Tie,
 }
 
 /// Judges disagreements about rays in one scene.
 pub struct Disputes<'a> {
+    /// The scene.
     pub scene: &'a Scene,
     /// How far an f32 ray may be from the exact one, in world units.
     pub margin: f64,

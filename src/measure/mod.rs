@@ -1,9 +1,9 @@
 //! What measures the renderer: one backend against the other, one picture against another.
 
-#[cfg(feature = "embree")]
 mod dispute;
 mod picture;
 mod validate;
 
+pub use dispute::{Cause, Disputes};
 pub use picture::{Comparison, Picture, compare};
 pub use validate::{Causes, Validation, validate};

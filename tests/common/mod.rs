@@ -102,13 +102,19 @@ pub fn random_scene(seed: u64, offset: DVec3, size: f64) -> Scene {
         scene.planes.push(Plane::new(offset + r.cube(size), r.cube(1.0), material));
     }
     let single = scene.add_mesh(soup(&mut r, 30));
-    let many = scene.add_mesh(ball(1));
+    // Modelled away from its own origin, as files often are.
+    let away = [300.0, -200.0, 100.0];
+    let mut many = ball(1);
+    many.positions.iter_mut().for_each(|p| *p = std::array::from_fn(|i| p[i] + away[i]));
+    let many = scene.add_mesh(many);
     for mesh in [single, many, many, many] {
         let turn =
             DQuat::from_euler(EulerRot::XYZ, r.range(0., 6.), r.range(0., 6.), r.range(0., 6.));
         let stretch = DVec3::new(r.range(0.1, 0.6), r.range(0.1, 0.6), r.range(-0.6, -0.1)) * size;
         let transform =
             DAffine3::from_scale_rotation_translation(stretch, turn, offset + r.cube(size));
+        let back = if mesh == many { -DVec3::from(away.map(f64::from)) } else { DVec3::ZERO };
+        let transform = transform * DAffine3::from_translation(back);
         scene.instances.push(Instance::new(mesh, transform, material));
     }
     scene.check().expect("the generator makes valid scenes");

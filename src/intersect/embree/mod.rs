@@ -24,7 +24,7 @@ use std::sync::OnceLock;
 use embree4_rs::geometry::{Geometry, TriangleMeshGeometry};
 use embree4_rs::{CommittedScene, Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Ray};
@@ -135,7 +135,8 @@ fn attach_meshes(
 ) -> Result<Vec<u32>> {
     let mut uses = vec![0u32; scene.meshes.len()];
     scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
-    let mut inner: Vec<Option<InnerScene>> = scene.meshes.iter().map(|_| None).collect();
+    // An instanced mesh is recentred too: a model may stand far from its own origin.
+    let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();
     for (index, instance) in scene.instances.iter().enumerate() {
         let at = instance.mesh.0 as usize;
@@ -148,11 +149,14 @@ fn attach_meshes(
             attach(top, &geometry)?;
         } else {
             if inner[at].is_none() {
-                let geometry = upload(&top.device, mesh, |p| p)?;
-                inner[at] = Some(InnerScene::new(device, QUALITY, flags(), &geometry)?);
+                let center = mesh.bounds().center();
+                let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
+                let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
+                inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
             }
-            if let Some(built) = &inner[at] {
-                attach(top, &InstanceGeometry::new(device, built, &columns(instance, frame))?)?;
+            if let Some((built, center)) = &inner[at] {
+                let columns = columns(instance, *center, frame);
+                attach(top, &InstanceGeometry::new(device, built, &columns)?)?;
             }
         }
         instance_of.push(index as u32);
@@ -175,9 +179,11 @@ fn upload(
         .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
 }
 
-/// The matrix from the mesh's space to the recentred world.
-fn columns(instance: &Instance, frame: &Frame) -> [[f32; 3]; 4] {
-    let m = DAffine3::from_translation(-frame.center) * instance.transform;
+/// The matrix from the mesh's space, recentred on `center`, to the recentred world.
+fn columns(instance: &Instance, center: DVec3, frame: &Frame) -> [[f32; 3]; 4] {
+    let m = DAffine3::from_translation(-frame.center)
+        * instance.transform
+        * DAffine3::from_translation(center);
     [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
         .map(|column| column.as_vec3().to_array())
 }
@@ -219,5 +225,107 @@ impl Intersector for Embree<'_> {
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         self.target().occluded(rays, coherence, blocked);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Departure, PrimitiveId, Side};
+    use crate::intersect::Bvh;
+    use crate::scene::{MaterialId, Sphere};
+
+    /// Numbers in [-1, 1) from a linear congruence (Knuth's MMIX constants).
+    fn random(state: &mut u64) -> f64 {
+        *state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// Spheres, a mesh that stands once and one that stands twice.
+    fn scene(state: &mut u64) -> Scene {
+        let mut scene = Scene::default();
+        let mut point = || DVec3::new(random(state), random(state), random(state));
+        for _ in 0..40 {
+            scene.spheres.push(Sphere::new(point() * 2.0, 0.15, MaterialId(0)));
+        }
+        for uses in [1, 2] {
+            let positions: Vec<[f32; 3]> = (0..60).map(|_| point().as_vec3().to_array()).collect();
+            let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
+            for _ in 0..uses {
+                let transform = DAffine3::from_translation(point());
+                scene.instances.push(Instance::new(mesh, transform, MaterialId(0)));
+            }
+        }
+        scene
+    }
+
+    /// Rays of which a third leaves a sphere and a third a triangle; not a multiple of any width.
+    fn rays(state: &mut u64) -> Vec<Ray> {
+        (0..4003)
+            .map(|i| {
+                let mut point = || DVec3::new(random(state), random(state), random(state)) * 3.0;
+                let (origin, target) = (point(), point());
+                let id = match i % 3 {
+                    0 => None,
+                    1 => Some(PrimitiveId::sphere(i % 40)),
+                    _ => Some(PrimitiveId::triangle(0, i % 20, 0)),
+                };
+                let side = if i % 2 == 0 { Side::Front } else { Side::Back };
+                let from = id.map(|id| Departure { id, side });
+                Ray {
+                    from,
+                    tmax: if i % 5 == 0 { 1.0 } else { f64::INFINITY },
+                    ..Ray::new(origin, target - origin)
+                }
+            })
+            .collect()
+    }
+
+    fn check(width: Width) {
+        let mut state = 7;
+        let scene = scene(&mut state);
+        let rays = rays(&mut state);
+        let embree = Embree::with_width(&scene, 1, Some(width)).unwrap();
+        let judge = Bvh::build(&scene);
+        let closest = |i: &dyn Intersector| {
+            let mut hits = vec![None; rays.len()];
+            i.closest(&rays, Coherence::Incoherent, &mut hits);
+            hits
+        };
+        assert_eq!(closest(&embree), closest(&judge));
+        let occluded = |i: &dyn Intersector| {
+            let mut blocked = vec![false; rays.len()];
+            i.occluded(&rays, Coherence::Coherent, &mut blocked);
+            blocked
+        };
+        assert_eq!(occluded(&embree), occluded(&judge));
+    }
+
+    #[test]
+    fn single_rays_equal_the_bvh() {
+        check(Width::One);
+    }
+
+    #[test]
+    fn packets_of_four_equal_the_bvh() {
+        check(Width::Four);
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn packets_of_eight_equal_the_bvh() {
+        if is_x86_feature_detected!("avx2") {
+            check(Width::Eight);
+        }
+    }
+
+    #[test]
+    #[cfg(target_arch = "x86_64")]
+    fn packets_of_sixteen_equal_the_bvh() {
+        if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
+            check(Width::Sixteen);
+        }
     }
 }

@@ -8,7 +8,8 @@ const MAX_EARS: usize = 20_000;
 /// The triangles of a polygon, as indices of its corners, wound as it is.
 ///
 /// A convex polygon becomes a fan around its first corner, as everywhere; a concave one has its
-/// ears cut, in the plane that fits its corners best.
+/// ears cut, as seen along the axis nearest to its normal. A polygon that crosses itself there,
+/// as a bent one may, has no right answer and becomes a fan too, so that nothing is lost.
 pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
     let fan = || (2..corners.len()).map(|i| [0, i - 1, i]).collect();
     let finite = corners.iter().all(|c| c.is_finite());
@@ -19,16 +20,23 @@ pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
     if is_convex(&flat) {
         return fan();
     }
+    if let [a, b, c, d] = flat[..] {
+        // The other diagonal is all that is left to try.
+        let turned = cross(b, c, d) >= 0.0 && cross(b, d, a) >= 0.0;
+        return if turned { vec![[1, 2, 3], [1, 3, 0]] } else { fan() };
+    }
+    let point = |i: usize| flat.get(i).copied().unwrap_or_default();
+    let twice_area = |t: &[usize; 3]| cross(point(t[0]), point(t[1]), point(t[2]));
     let coordinates: Vec<f64> = flat.iter().flatten().copied().collect();
-    let ears = earcutr::earcut(&coordinates, &[], 2).unwrap_or_default();
-    let wound = |t: &[usize; 3]| {
-        let [a, b, c] = *t;
-        let point = |i: usize| flat.get(i).copied().unwrap_or_default();
-        if cross(point(a), point(b), point(c)) < 0.0 { [a, c, b] } else { [a, b, c] }
-    };
-    let triangles: Vec<[usize; 3]> = ears.as_chunks().0.iter().map(wound).collect();
-    // A polygon that crosses itself or has no area may leave no ear.
-    if triangles.is_empty() { fan() } else { triangles }
+    let mut ears = earcutr::earcut(&coordinates, &[], 2).unwrap_or_default();
+    let ears = ears.as_chunks_mut().0;
+    for ear in ears.iter_mut().filter(|ear| twice_area(ear) < 0.0) {
+        ear.swap(1, 2);
+    }
+    let fan: Vec<[usize; 3]> = fan();
+    let whole: f64 = fan.iter().map(twice_area).sum();
+    let cut: f64 = ears.iter().map(twice_area).sum();
+    if (cut - whole).abs() <= 1e-9 * whole { ears.to_vec() } else { fan }
 }
 
 /// The polygon as seen along the axis that its normal is nearest to, turned so that it winds
@@ -110,6 +118,30 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn no_corner_of_a_bent_or_crossing_polygon_is_lost() {
+        let bent = [[0.0, 0.0, 0.0], [0.0, 0.7, 0.1], [0.1, 0.05, 0.1], [0.1, 0.8, 0.0]];
+        let crossing = [[0., 0., 0.], [1., 1., 0.], [1., 0., 0.], [0., 1., 0.], [-1., 0.5, 0.]];
+        assert_eq!(triangulate(&bent.map(DVec3::from)).len(), 2);
+        assert_eq!(triangulate(&crossing.map(DVec3::from)).len(), 3);
+    }
+
+    #[test]
+    fn larger_concave_polygon_keeps_its_area() {
+        // A comb of five teeth.
+        let mut corners = vec![DVec3::new(10.0, -1.0, 2.0), DVec3::new(0.0, -1.0, 2.0)];
+        let tooth = |i: usize| {
+            let x = 2.0 * i as f64;
+            [[x, 0.0], [x, 3.0], [x + 1.0, 3.0], [x + 1.0, 0.0]]
+        };
+        corners.extend((0..5).flat_map(tooth).map(|[x, y]| DVec3::new(x, y, 2.0)));
+        let triangles = triangulate(&corners);
+        let areas: Vec<f64> = triangles.iter().map(|t| area(&corners, &[*t]).z).collect();
+        assert!(areas.iter().all(|a| *a <= 0.0), "{areas:?}");
+        // The teeth; the bar below reaches to 10 and slopes up to the last tooth's foot at 9.
+        assert!((areas.iter().sum::<f64>() + 5.0 * 3.0 + 9.5).abs() < 1e-9, "{areas:?}");
     }
 
     #[test]

@@ -72,20 +72,18 @@ pub struct Bare {
     device: sys::RTCDevice,
     scene: sys::RTCScene,
     /// Centre and radius of each sphere, recentred; read by the callbacks.
-    _spheres: Box<Vec<[f32; 4]>>,
+    _spheres: Vec<[f32; 4]>,
 }
 
 impl Bare {
     /// The same geometry, build quality and scene flags as envers's own Embree scene.
     pub fn build(scene: &Scene, width: usize) -> Self {
         let center = scene.bounds().center();
-        let spheres: Box<Vec<[f32; 4]>> = Box::new(
-            scene
-                .spheres
-                .iter()
-                .map(|s| (s.center - center).as_vec3().extend(s.radius as f32).to_array())
-                .collect(),
-        );
+        let spheres: Vec<[f32; 4]> = scene
+            .spheres
+            .iter()
+            .map(|s| (s.center - center).as_vec3().extend(s.radius as f32).to_array())
+            .collect();
         // SAFETY: the calls follow the library's manual; buffers are filled before the commit.
         unsafe {
             let device = sys::rtcNewDevice(c"threads=1".as_ptr());
@@ -113,7 +111,7 @@ impl Bare {
             if !spheres.is_empty() {
                 let geometry = sys::rtcNewGeometry(device, sys::RTCGeometryType::USER);
                 sys::rtcSetGeometryUserPrimitiveCount(geometry, spheres.len() as u32);
-                let data = std::ptr::from_ref(&*spheres).cast_mut().cast();
+                let data = spheres.as_ptr().cast_mut().cast();
                 sys::rtcSetGeometryUserData(geometry, data);
                 sys::rtcSetGeometryBoundsFunction(geometry, Some(bounds), std::ptr::null_mut());
                 let (intersect, occluded) = callbacks(width);
@@ -214,8 +212,7 @@ unsafe extern "C" fn bounds(args: *const sys::RTCBoundsFunctionArguments) {
     // SAFETY: called by Embree with the data set in `build`.
     unsafe {
         let args = &*args;
-        let spheres = &*args.geometryUserPtr.cast::<Vec<[f32; 4]>>();
-        let [x, y, z, r] = spheres[args.primID as usize];
+        let [x, y, z, r] = *args.geometryUserPtr.cast::<[f32; 4]>().add(args.primID as usize);
         let b = &mut *args.bounds_o;
         (b.lower_x, b.lower_y, b.lower_z) = (x - r, y - r, z - r);
         (b.upper_x, b.upper_y, b.upper_z) = (x + r, y + r, z + r);
@@ -274,7 +271,7 @@ unsafe fn sphere<const W: usize, const CLOSEST: bool>(
 ) {
     // SAFETY: called by Embree with a full packet, in the widths that are native.
     unsafe {
-        let [cx, cy, cz, r] = *(&*data.cast::<Vec<[f32; 4]>>()).get_unchecked(prim as usize);
+        let [cx, cy, cz, r] = *data.cast::<[f32; 4]>().add(prim as usize);
         let valid = &*valid.cast::<[i32; W]>();
         let (mut hit, mut ts, mut any) = ([false; W], [0.0f32; W], false);
         {
@@ -308,10 +305,10 @@ unsafe fn sphere<const W: usize, const CLOSEST: bool>(
             }
         } else {
             // An occlusion query's record may end with the ray: touch no more of it.
-            let tfar = &mut *(&raw mut (*rays).tfar);
+            let tfar = &raw mut (*rays).tfar;
             for i in 0..W {
                 if hit[i] {
-                    tfar[i] = f32::NEG_INFINITY;
+                    tfar.cast::<f32>().add(i).write(f32::NEG_INFINITY);
                 }
             }
         }

@@ -1,0 +1,23 @@
+//! A model file as it is: loaded, framed, lit, and written as an HDR picture.
+//!
+//! `cargo run --release --example model -- model.glb out.exr`
+
+use std::path::PathBuf;
+
+use envers::error::{Error, Result};
+use envers::load;
+use envers::render::{Options, render};
+use envers::write::{Settings, write};
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
+    let (Some(model), Some(output)) = (arguments.next(), arguments.next()) else {
+        return Err(Error::input("two files are needed").help("model MODEL OUTPUT"));
+    };
+    let scene = load::load(&model)?;
+    scene.warnings.iter().for_each(|warning| eprintln!("{warning}"));
+    let rendering = render(&scene, &Options::default(), &|_| {})?;
+    write(&rendering.film, &output, &Settings { half: true, ..Settings::default() })?;
+    println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
+    Ok(())
+}
