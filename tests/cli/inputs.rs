@@ -169,7 +169,7 @@ fn a_file_that_cannot_be_read_is_named() {
         return;
     }
     let folder = Folder::with(&endless());
-    let secret = std::fs::Permissions::from_mode(0);
+    let secret = std::fs::Permissions::from_mode(0o000);
     std::fs::set_permissions(folder.path("scene.toml"), secret).unwrap();
     assert!(refused_run(&folder, "render scene.toml").starts_with("error: scene.toml: "));
 }

@@ -2,9 +2,12 @@
 
 use super::*;
 
+/// Whether a JSON value is of some kind.
+type Kind = fn(&Value) -> bool;
+
 /// Asserts that a JSON object has these fields, of these kinds, and says which differ.
 #[track_caller]
-fn assert_fields(object: &Value, fields: &[(&str, fn(&Value) -> bool)]) {
+fn assert_fields(object: &Value, fields: &[(&str, Kind)]) {
     for (name, is) in fields {
         assert!(is(&object[*name]), "{name} is {} in {object}", object[*name]);
     }
@@ -40,10 +43,10 @@ fn statistics_have_every_field() {
         ],
     );
     assert_fields(&stats["backend"], &[("name", Value::is_string), ("version", Value::is_string)]);
-    let times: [(&str, fn(&Value) -> bool); 5] =
+    let times: [(&str, Kind); 5] =
         ["load", "build", "render", "write", "total"].map(|name| (name, seconds as _));
     assert_fields(&stats["seconds"], &times);
-    let counts: [(&str, fn(&Value) -> bool); 4] =
+    let counts: [(&str, Kind); 4] =
         ["primary", "shadow", "reflection", "refraction"].map(|name| (name, Value::is_u64 as _));
     assert_fields(&stats["rays"], &counts);
 }
