@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::cli::files;
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::intersect::Backend;
 use crate::scene::Scene;
+use crate::scene::check::MAX_SPP;
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
 #[derive(Parser)]
@@ -50,7 +52,7 @@ pub struct Tracing {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Samples per pixel [default: the scene's; bare models 16]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)))]
     pub spp: Option<u32>,
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
@@ -82,7 +84,7 @@ pub struct Render {
     #[arg(long, value_enum, default_value = "beauty")]
     pub view: ViewName,
     /// Brighten the PNG by 2 to the power of EV; an EXR is never changed
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
     pub exposure: f32,
     /// Store 16-bit floats in the EXR rather than 32-bit ones
     #[arg(long)]
@@ -120,7 +122,7 @@ pub struct Diff {
     /// Another one of the same kind and size
     pub b: PathBuf,
     /// Largest difference of two values that still counts as equal; a PNG's values are n/255
-    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = not_negative, allow_negative_numbers = true)]
     pub tolerance: f32,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
@@ -151,7 +153,7 @@ impl BackendName {
     }
 }
 
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 pub enum ViewName {
     Beauty,
     Normal,
@@ -181,15 +183,22 @@ fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     Ok(size)
 }
 
+fn finite(text: &str) -> std::result::Result<f32, String> {
+    text.parse().ok().filter(|x: &f32| x.is_finite()).ok_or("expected a finite number".to_owned())
+}
+
+fn not_negative(text: &str) -> std::result::Result<f32, String> {
+    let in_range = |x: &f32| *x >= 0.0;
+    text.parse().ok().filter(in_range).ok_or("expected a number, 0 or above".to_owned())
+}
+
 impl Tracing {
     /// Loads the scene and applies the flags; says which camera is asked for.
     ///
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
     pub fn load(&self) -> Result<(Scene, usize)> {
-        if let Some(spp) = self.spp {
-            crate::scene::check::check_spp(spp)?;
-        }
+        files::check_input(&self.scene)?;
         let mut scene = crate::load::load_for(&self.scene, self.size)?;
         if let Some(spp) = self.spp {
             scene.film.spp = spp;
@@ -215,11 +224,15 @@ fn find_camera(scene: &Scene, wanted: &str) -> Result<usize> {
         Ok(index) if index < scene.cameras.len() => Ok(index),
         _ => {
             let names: Vec<String> =
-                (0..).zip(&scene.cameras).map(|(i, c)| format!("{i} `{}`", c.name)).collect();
+                (0..).zip(&scene.cameras).map(|(i, c)| shown(i, &c.name)).collect();
             Err(Error::input(format!("there is no camera `{wanted}`"))
                 .help(format!("the scene has {}", names.join(", "))))
         }
     }
+}
+
+fn shown(index: usize, name: &str) -> String {
+    if name.is_empty() { index.to_string() } else { format!("{index} `{name}`") }
 }
 
 #[cfg(test)]

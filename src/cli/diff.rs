@@ -1,26 +1,36 @@
 //! `envers diff`.
 
 use crate::cli::args::Diff;
-use crate::cli::{Outcome, Verdict, output};
+use crate::cli::{Outcome, Verdict, files, output};
 use crate::error::Error;
 use crate::film::{Film, View};
 use crate::measure::{Picture, compare};
 use crate::scene::Transfer;
-use crate::write::{self, Settings};
+use crate::write::{self, Format, Settings};
 
 pub fn run(arguments: &Diff) -> Outcome {
-    if arguments.tolerance < 0.0 || arguments.tolerance.is_nan() {
-        return Err(Error::input(format!("--tolerance {} is not 0 or above", arguments.tolerance)));
-    }
     output::check_json(arguments.json.as_ref())?;
     output::check_png(arguments.heatmap.as_ref())?;
+    for input in [&arguments.a, &arguments.b] {
+        files::check_input(input)?;
+        if let Some(path) = arguments.heatmap.as_ref().filter(|path| files::same(path, input)) {
+            return Err(Error::input("the heat map would overwrite a picture that it compares")
+                .at(path)
+                .help("choose another name"));
+        }
+    }
+    if Format::of(&arguments.a)? != Format::of(&arguments.b)? {
+        return Err(Error::input("a PNG and an EXR cannot be compared")
+            .at(&arguments.b)
+            .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
+    }
     let (a, b) = (Picture::read(&arguments.a)?, Picture::read(&arguments.b)?);
     let found = compare(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
     if output::stdout_is_free(arguments.json.as_ref()) {
-        println!(
-            "RMSE {:.6e}, PSNR {:.2} dB, largest difference {:.6e}, {} pixels differ by more than {}",
+        output::print(&format!(
+            "RMSE {:.6e}, PSNR {:.2} dB, largest difference {:.6e}, {} pixels differ by more than {}\n",
             found.rmse, found.psnr, found.max, found.pixels_differing, arguments.tolerance
-        );
+        ))?;
     }
     if let Some(path) = &arguments.json {
         output::write_json(path, &found)?;

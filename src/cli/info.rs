@@ -1,10 +1,12 @@
 //! `envers info`.
 
+use std::fmt;
+
 use serde::Serialize;
 
 use crate::cli::args::Info;
 use crate::cli::json::Geometry;
-use crate::cli::{Outcome, Verdict, output, report};
+use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::load;
 use crate::scene::{Lens, LightKind, Scene};
 
@@ -30,10 +32,11 @@ struct Summary {
 
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
+    files::check_input(&arguments.scene)?;
     let scene = load::load(&arguments.scene)?;
     let summary = summarize(&scene);
     if output::stdout_is_free(arguments.json.as_ref()) {
-        print(&summary);
+        output::print(&summary.to_string())?;
         summary.warnings.iter().for_each(|w| report::warning(w));
     }
     if let Some(path) = &arguments.json {
@@ -100,24 +103,27 @@ fn lens(lens: &Lens) -> String {
     }
 }
 
-fn print(summary: &Summary) {
-    let [width, height] = summary.size;
-    let g = &summary.geometry;
-    println!("picture    {width}x{height}, {} samples per pixel", summary.spp);
-    println!("spheres    {}", g.spheres);
-    println!("planes     {}", g.planes);
-    println!(
-        "triangles  {} in {} instances of {} meshes ({} stored)",
-        g.triangles, g.instances, summary.meshes, summary.mesh_triangles
-    );
-    println!("materials  {}, textures {}", summary.materials, summary.textures);
-    println!("lights     {}", or_none(&summary.lights));
-    println!("cameras    {}", or_none(&summary.cameras));
-    match summary.bounds {
-        Some([a, b]) => println!("bounds     {a:?} to {b:?}"),
-        None => println!("bounds     nothing finite"),
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [width, height] = self.size;
+        let g = &self.geometry;
+        writeln!(f, "picture    {width}x{height}, {} samples per pixel", self.spp)?;
+        writeln!(f, "spheres    {}", g.spheres)?;
+        writeln!(f, "planes     {}", g.planes)?;
+        writeln!(
+            f,
+            "triangles  {} in {} instances of {} meshes ({} stored)",
+            g.triangles, g.instances, self.meshes, self.mesh_triangles
+        )?;
+        writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
+        writeln!(f, "lights     {}", or_none(&self.lights))?;
+        writeln!(f, "cameras    {}", or_none(&self.cameras))?;
+        match self.bounds {
+            Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
+            None => writeln!(f, "bounds     nothing finite")?,
+        }
+        self.skipped.iter().try_for_each(|what| writeln!(f, "skips      {what}"))
     }
-    summary.skipped.iter().for_each(|what| println!("skips      {what}"));
 }
 
 fn or_none(list: &[String]) -> String {

@@ -2,6 +2,7 @@
 
 mod args;
 mod diff;
+mod files;
 mod info;
 mod json;
 mod output;
@@ -22,21 +23,24 @@ use args::{Arguments, Command};
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.version {
-        println!("{}", version());
-        return ExitCode::SUCCESS;
+        return finish(output::print(&format!("{}\n", version())).map(|()| Verdict::Good));
     }
     let Some(command) = arguments.command else {
         // Nothing was asked for: say what there is.
-        let _ = Arguments::command().print_help();
+        report::to_stderr(&Arguments::command().render_help().to_string());
         return ExitCode::from(2);
     };
-    let result = match command {
+    finish(match command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
-    };
-    match result {
+    })
+}
+
+/// Reports what went wrong, and says how it came out.
+fn finish(outcome: Outcome) -> ExitCode {
+    match outcome {
         Ok(Verdict::Good) => ExitCode::SUCCESS,
         Ok(Verdict::Bad) => ExitCode::FAILURE,
         Err(error) => {

@@ -1,6 +1,6 @@
 //! Outputs of the command: checked before the work begins, written when it is done.
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -13,10 +13,14 @@ use crate::write;
 /// # Errors
 /// When it could not.
 pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
-    match path {
-        Some(path) if !is_stdout(path) => write::check_file(path),
-        _ => Ok(()),
+    let Some(path) = path.filter(|path| !is_stdout(path)) else { return Ok(()) };
+    // Of what a scene is read from, nothing ends in .json: none of it can be overwritten.
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+        return Err(Error::input("JSON is not written to a file of this name")
+            .at(path)
+            .help("name it .json, or - for standard output"));
     }
+    write::check_file(path)
 }
 
 /// Checks that a PNG could be written to `path`.
@@ -40,13 +44,24 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
         .map_err(|e| Error::failed(format!("the JSON cannot be made: {e}")))?;
     text.push('\n');
     if is_stdout(path) {
-        let mut out = std::io::stdout().lock();
-        return out
-            .write_all(text.as_bytes())
-            .and_then(|()| out.flush())
-            .map_err(|e| Error::failed(format!("cannot write to standard output: {e}")));
+        return print(&text);
     }
     write::atomically(path, |out| out.write_all(text.as_bytes()))
+}
+
+/// Prints to standard output. A reader that has gone, as `head` does, wants no more; that is no
+/// error.
+///
+/// # Errors
+/// When it cannot be written for another reason.
+pub fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::failed(format!("cannot write to standard output: {e}")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Whether results for a person may go to standard output, which JSON may have taken.

@@ -6,13 +6,12 @@ use std::time::Instant;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::cli::args::Render;
+use crate::cli::args::{Render, ViewName};
 use crate::cli::json::Stats;
-use crate::cli::{Outcome, Verdict, output, report};
+use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
-use crate::film::{Film, View};
-use crate::integrator::Counts;
-use crate::render::{self, Options};
+use crate::film::View;
+use crate::render::{self, Options, Rendering};
 use crate::scene::{Scene, Transfer};
 use crate::write::{self, Format, Settings};
 
@@ -24,7 +23,11 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let (scene, camera) = arguments.tracing.load()?;
+    let (mut scene, camera) = arguments.tracing.load()?;
+    files::check_not_a_texture(&scene, &outputs)?;
+    if arguments.view != ViewName::Beauty {
+        scene.film.spp = 1;
+    }
     let loaded = start.elapsed();
 
     let view = View::from(arguments.view);
@@ -36,7 +39,7 @@ pub fn run(arguments: &Render) -> Outcome {
     progress.finish_and_clear();
 
     let mut warnings = scene.warnings.clone();
-    warnings.extend(oddities(&scene, &rendering.film, &rendering.statistics.counts));
+    warnings.extend(oddities(&scene, camera, &rendering));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
     }
@@ -56,7 +59,7 @@ pub fn run(arguments: &Render) -> Outcome {
 
     if !arguments.tracing.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
         for path in &outputs {
-            println!("{} ({:.2} s)", path.display(), total.as_secs_f64());
+            output::print(&format!("{} ({:.2} s)\n", path.display(), total.as_secs_f64()))?;
         }
     }
     if let Some(path) = &arguments.stats {
@@ -78,20 +81,29 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
     }
     for (i, path) in outputs.iter().enumerate() {
         write::check(path)?;
-        if outputs[..i].contains(path) {
-            return Err(Error::input("this output is named twice").at(path));
+        if outputs[..i].iter().any(|other| files::same(other, path)) {
+            return Err(Error::input("this output is named twice").at(path).help("name it once"));
         }
     }
     let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
     if arguments.half && !formats.contains(&Format::Exr) {
-        return Err(Error::input("--half is about EXR, and no .exr is asked for"));
+        return Err(Error::input("--half is about EXR, and no .exr is asked for")
+            .help("add `-o NAME.exr`, or leave --half out"));
     }
     if arguments.exposure != 0.0 && !formats.contains(&Format::Png) {
         return Err(Error::input("--exposure is about PNG, and no .png is asked for")
             .help("an EXR always holds the radiance itself"));
     }
-    if !arguments.exposure.is_finite() {
-        return Err(Error::input(format!("--exposure {} is not a number", arguments.exposure)));
+    if arguments.view != ViewName::Beauty {
+        let flags = [
+            ("--exposure", arguments.exposure != 0.0),
+            ("--half", arguments.half),
+            ("--spp", arguments.tracing.spp.is_some()),
+        ];
+        if let Some((flag, _)) = flags.iter().find(|(_, given)| *given) {
+            return Err(Error::input(format!("{flag} says nothing to a view other than beauty"))
+                .help(format!("leave {flag} out: a view has one sample, 32 bits, raw values")));
+        }
     }
     Ok(outputs)
 }
@@ -108,7 +120,8 @@ fn progress_bar(quiet: bool) -> ProgressBar {
 }
 
 /// What in a picture is probably not what was meant, with the likely cause.
-fn oddities(scene: &Scene, film: &Film, counts: &Counts) -> Vec<String> {
+fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> {
+    let (film, counts) = (&rendering.film, &rendering.statistics.counts);
     let mut found = Vec::new();
     if counts.not_finite > 0 {
         found.push(format!(
@@ -123,7 +136,7 @@ fn oddities(scene: &Scene, film: &Film, counts: &Counts) -> Vec<String> {
         } else {
             format!(
                 "the picture is empty: the camera at {} sees none of the scene, which is about {}",
-                scene.cameras[0].position,
+                scene.cameras[camera].position,
                 bounds.center()
             )
         });
@@ -149,19 +162,18 @@ fn oddities(scene: &Scene, film: &Film, counts: &Counts) -> Vec<String> {
 /// What determines the picture; never the time, the host, the threads or the backend.
 fn metadata(scene: &Scene, camera: usize, view: View) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
-    let samples = if view == View::Beauty { scene.film.spp } else { 1 };
     let transfer = match scene.film.transfer {
         Transfer::Srgb => "srgb",
         Transfer::None => "none",
     };
     [
-        ("envers:version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("envers:size", format!("{width}x{height}")),
-        ("envers:spp", samples.to_string()),
-        ("envers:camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
-        ("envers:view", format!("{view:?}").to_lowercase()),
-        ("envers:precision", "fast".to_owned()),
-        ("envers:png_transfer", transfer.to_owned()),
+        ("version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("size", format!("{width}x{height}")),
+        ("spp", scene.film.spp.to_string()),
+        ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
+        ("view", format!("{view:?}").to_lowercase()),
+        ("precision", "fast".to_owned()),
+        ("png_transfer", transfer.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()

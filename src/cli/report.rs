@@ -1,15 +1,22 @@
 //! Messages to a person, on stderr.
 
+use std::io::Write;
+
 use crate::error::{Error, Place};
 
 /// Prints an error: file, place and message; the line in question; the way out.
 pub fn error(error: &Error) {
-    eprint!("{}", format(error));
+    to_stderr(&format(error));
 }
 
 /// Prints a warning.
 pub fn warning(text: &str) {
-    eprintln!("warning: {text}");
+    to_stderr(&format!("warning: {text}\n"));
+}
+
+/// Prints to stderr; that nobody reads it is no reason to stop.
+pub fn to_stderr(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
 fn format(error: &Error) -> String {

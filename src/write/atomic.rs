@@ -21,7 +21,7 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(&folder).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => {
+        std::io::ErrorKind::NotFound if !folder.exists() => {
             let folder = folder.display();
             Error::input(format!("the output's folder {folder} does not exist"))
                 .at(target)
@@ -51,12 +51,16 @@ fn resolve(path: &Path) -> PathBuf {
 pub fn check(path: &Path) -> Result<()> {
     let target = resolve(path);
     match fs::metadata(&target) {
-        Ok(m) if m.is_dir() => Err(Error::input("the output is a folder").at(path)),
-        Ok(m) if !m.is_file() => {
-            Err(Error::input("the output is a pipe or a device, not a file").at(path))
+        Ok(m) if m.is_dir() => {
+            Err(Error::input("the output is a folder").at(path).help("name a file in it"))
         }
+        Ok(m) if !m.is_file() => Err(Error::input("the output is a pipe or a device, not a file")
+            .at(path)
+            .help("name a file: it is written beside its old self, which it then replaces")),
         Ok(m) if m.permissions().readonly() => {
-            Err(Error::input("the output is there already and is read-only").at(path))
+            Err(Error::input("the output is there already and is read-only")
+                .at(path)
+                .help("choose another name, or make it writable"))
         }
         _ => temporary(&target).map(drop),
     }

@@ -3,16 +3,20 @@
 use std::io;
 use std::path::Path;
 
+use exr::meta::attribute::AttributeValue;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, Text, Vec2,
-    WritableImage, f16,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, LineOrder, Text,
+    Vec2, WritableImage, f16,
 };
 
 use crate::error::Result;
 use crate::film::{Film, View};
 use crate::write::{Settings, atomically};
 
-/// Writes a scan-line EXR, losslessly compressed, with the view's channels. Of a view other than
+/// The attribute that holds what determines the picture, a line each.
+const METADATA: &str = "envers";
+
+/// Writes a tiled EXR, losslessly compressed, with the view's channels. Of a view other than
 /// beauty the values are always 32-bit, whatever `settings.half` says: depths and numbers of
 /// objects do not fit in 16.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
@@ -28,14 +32,19 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     });
     let mut attributes =
         LayerAttributes { software_name: Some(Text::from("envers")), ..Default::default() };
-    for (name, value) in &settings.metadata {
-        let text = exr::meta::attribute::AttributeValue::Text(Text::from(value.as_str()));
-        attributes.other.insert(Text::from(name.as_str()), text);
+    if !settings.metadata.is_empty() {
+        // One attribute: the crate writes several in a random order, and so never the same bytes.
+        let lines: Vec<String> =
+            settings.metadata.iter().map(|(name, value)| format!("{name}: {value}")).collect();
+        let text = AttributeValue::Text(Text::from(lines.join("\n").as_str()));
+        attributes.other.insert(Text::from(METADATA), text);
     }
+    // In whatever order they were compressed, the tiles are written in one.
+    let encoding = Encoding { line_order: LineOrder::Increasing, ..Encoding::FAST_LOSSLESS };
     let layer = Layer::new(
         Vec2(film.size[0] as usize, film.size[1] as usize),
         attributes,
-        Encoding::FAST_LOSSLESS,
+        encoding,
         AnyChannels::sort(channels.collect()),
     );
     let image = Image::from_layer(layer);
@@ -71,6 +80,20 @@ mod tests {
     }
 
     #[test]
+    fn the_same_film_is_the_same_bytes() {
+        let pixels = (0..640 * 480).map(|i| [i as f32, (i as f32).sin(), 0.5]).collect();
+        let film = Film { size: [640, 480], view: View::Beauty, pixels };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.exr");
+        let bytes = || {
+            write(&film, &path, &Settings::default()).unwrap();
+            std::fs::read(&path).unwrap()
+        };
+        let first = bytes();
+        assert!((0..5).all(|_| bytes() == first));
+    }
+
+    #[test]
     fn half_stores_sixteen_bits() {
         let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1.0; 3]] };
         let image = written(&film, &Settings { half: true, ..Settings::default() });
@@ -89,9 +112,11 @@ mod tests {
     #[test]
     fn metadata_stands_in_the_file() {
         let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.0; 3]] };
-        let metadata = vec![("envers:spp".to_owned(), "16".to_owned())];
+        let entry = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+        let metadata = vec![entry("spp", "16"), entry("view", "beauty")];
         let image = written(&film, &Settings { metadata, ..Settings::default() });
-        let value = image.layer_data.attributes.other.get(&Text::from("envers:spp"));
-        assert!(value.is_some());
+        let value = image.layer_data.attributes.other.get(&Text::from(METADATA));
+        let expected = AttributeValue::Text(Text::from("spp: 16\nview: beauty"));
+        assert_eq!(value, Some(&expected));
     }
 }

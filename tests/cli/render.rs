@@ -1,0 +1,217 @@
+//! `envers render`: the pictures.
+
+use super::*;
+use envers::measure::Picture;
+
+/// The bytes of a picture of a scene, made with these flags.
+#[track_caller]
+fn made(folder: &Folder, flags: &str, name: &str) -> Vec<u8> {
+    folder.run(&format!("render scene.toml {flags} -o {name}")).good();
+    folder.read(name)
+}
+
+#[test]
+fn one_run_writes_every_output_that_is_named() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.png -o b.exr -o c.PNG").good();
+    assert_eq!(folder.names(), ["a.png", "b.exr", "c.PNG", "scene.toml"]);
+    assert_eq!(&folder.read("a.png")[1..4], b"PNG");
+    assert_eq!(folder.read("b.exr")[..4], [0x76, 0x2f, 0x31, 0x01]);
+    assert_eq!(folder.read("a.png"), folder.read("c.PNG"));
+}
+
+#[test]
+fn each_output_is_named_on_a_line_of_stdout() {
+    let stdout = Folder::with(SPHERE).run("render scene.toml -o a.png -o b.exr").good().stdout;
+    let names: Vec<&str> = stdout.lines().filter_map(|l| l.split_once(' ')).map(|l| l.0).collect();
+    assert_eq!(names, ["a.png", "b.exr"]);
+}
+
+#[test]
+fn without_an_output_the_picture_stands_in_the_working_folder() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("deep")).unwrap();
+    folder.write("deep/room.v2.toml", SPHERE);
+    let stdout = folder.run("render deep/room.v2.toml").good().stdout;
+    assert!(stdout.starts_with("room.v2.png ("), "{stdout}");
+    assert_eq!(folder.names(), ["deep", "room.v2.png"]);
+}
+
+#[test]
+fn the_picture_has_the_size_of_the_scene() {
+    assert_eq!(pixels(&made(&Folder::with(SPHERE), "", "a.png")).0, (64, 48));
+}
+
+#[test]
+fn size_comes_before_the_scenes() {
+    assert_eq!(pixels(&made(&Folder::with(SPHERE), "--size 37x21", "a.png")).0, (37, 21));
+}
+
+#[test]
+fn background_is_the_hex_colour_that_the_scene_names() {
+    assert_eq!(pixels(&made(&Folder::with(SPHERE), "", "a.png")).1[..3], [0x20, 0x30, 0x40]);
+}
+
+#[test]
+fn a_bare_model_is_framed_and_lit() {
+    for (name, bytes) in [
+        ("model.glb", import_common::Model::triangle().glb()),
+        ("model.obj", TETRAHEDRON.as_bytes().to_vec()),
+    ] {
+        let folder = Folder::new();
+        folder.write(name, bytes);
+        folder.run(&format!("render {name} --size 40x30")).good();
+        let pixels = pixels(&folder.read("model.png")).1;
+        assert!(pixels.chunks(3).any(|p| p[0] > 50), "{name} is dark");
+    }
+}
+
+#[test]
+fn more_samples_smooth_the_edges() {
+    let folder = Folder::with(SPHERE);
+    assert_ne!(made(&folder, "", "one.png"), made(&folder, "--spp 9", "nine.png"));
+    let stats = folder.run("render scene.toml -o a.png --spp 9 --stats -").good().json();
+    assert_eq!((&stats["spp"], &stats["rays"]["primary"]), (&9.into(), &(64 * 48 * 9).into()));
+}
+
+/// The bytes with 1, 2 and 8 threads are the same.
+#[track_caller]
+fn same_for_any_number_of_threads(name: &str, flags: &str) {
+    let folder = Folder::with_everything();
+    let one = made(&folder, &format!("{flags} --threads 1"), name);
+    for threads in [2, 8] {
+        let several = made(&folder, &format!("{flags} --threads {threads}"), name);
+        assert!(one == several, "{threads} threads make other bytes");
+    }
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn embree_makes_the_same_png_with_any_number_of_threads() {
+    same_for_any_number_of_threads("a.png", "--backend embree");
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn embree_makes_the_same_exr_with_any_number_of_threads() {
+    same_for_any_number_of_threads("a.exr", "--backend embree");
+}
+
+#[test]
+fn rust_makes_the_same_png_with_any_number_of_threads() {
+    same_for_any_number_of_threads("a.png", "--backend rust");
+}
+
+#[test]
+fn rust_makes_the_same_exr_with_any_number_of_threads() {
+    same_for_any_number_of_threads("a.exr", "--backend rust");
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn both_backends_make_the_same_picture() {
+    let folder = Folder::with_everything();
+    let (_, a) = pixels(&made(&folder, "--backend embree", "a.png"));
+    let (_, b) = pixels(&made(&folder, "--backend rust", "b.png"));
+    assert!(a.iter().zip(&b).all(|(x, y)| x.abs_diff(*y) <= 1));
+}
+
+#[test]
+#[cfg(not(feature = "embree"))]
+fn a_build_without_embree_says_so_when_it_is_asked_for() {
+    let message = Folder::with(&endless()).run("render scene.toml --backend embree").refused();
+    assert!(message.contains("built without Embree"), "{message}");
+}
+
+#[test]
+fn a_camera_is_chosen_by_name() {
+    let folder = Folder::with_everything();
+    assert_ne!(made(&folder, "", "front.png"), made(&folder, "--camera above", "above.png"));
+}
+
+#[test]
+fn a_camera_is_chosen_by_index() {
+    let folder = Folder::with_everything();
+    assert_eq!(made(&folder, "--camera 1", "1.png"), made(&folder, "--camera above", "above.png"));
+}
+
+/// The channels and the values of the centre of a view, which shows the sphere's front.
+#[track_caller]
+fn centre(view: &str) -> (Vec<String>, Vec<f32>) {
+    let scene = SPHERE.replace("position = [0, 1, 5]", "position = [0, 0.5, 5]");
+    let folder = Folder::with(&scene.replace("[64, 48]", "[65, 49]"));
+    folder.run(&format!("render scene.toml -o a.exr --view {view}")).good();
+    let picture = Picture::read(&folder.path("a.exr")).unwrap();
+    let n = picture.channels.len();
+    let middle = (24 * 65 + 32) * n;
+    (picture.channels, picture.values[middle..middle + n].to_vec())
+}
+
+#[test]
+fn view_depth_is_the_distance_in_an_exr() {
+    assert_eq!(centre("depth"), (vec!["Z".to_owned()], vec![4.5]));
+}
+
+#[test]
+fn view_normal_is_the_unit_normal_in_an_exr() {
+    let (channels, values) = centre("normal");
+    let z = channels.iter().position(|c| c.ends_with('Z') || c == "B").unwrap();
+    assert!((values[z] - 1.0).abs() < 1e-6, "{channels:?} {values:?}");
+    assert!(values.iter().map(|x| x * x).sum::<f32>() - 1.0 < 1e-6);
+}
+
+#[test]
+fn view_id_tells_objects_apart() {
+    let (_, pixels) = pixels(&made(&Folder::with_everything(), "--view id", "id.png"));
+    let colors: std::collections::HashSet<&[u8]> = pixels.chunks(3).collect();
+    // Two spheres, the plane, three models, and nothing.
+    assert_eq!(colors.len(), 7);
+}
+
+#[test]
+fn exposure_doubles_the_light_of_a_png() {
+    let folder = Folder::with(&SPHERE.replace("[film]", "[film]\ntransfer = \"none\""));
+    let (_, plain) = pixels(&made(&folder, "", "a.png"));
+    let (_, bright) = pixels(&made(&folder, "--exposure 1", "b.png"));
+    assert!(bright.iter().any(|&x| x > 0));
+    for (a, b) in plain.iter().zip(&bright) {
+        let expected = (u16::from(*a) * 2).min(255);
+        assert!(u16::from(*b).abs_diff(expected) <= 1, "{a} became {b}");
+    }
+}
+
+#[test]
+fn exposure_can_be_negative() {
+    let folder = Folder::with(SPHERE);
+    assert_ne!(made(&folder, "", "a.png"), made(&folder, "--exposure -2.5", "b.png"));
+}
+
+#[test]
+fn exposure_never_changes_an_exr() {
+    let folder = Folder::with(SPHERE);
+    let plain = made(&folder, "", "plain.exr");
+    folder.run("render scene.toml --exposure 3 -o a.png -o bright.exr").good();
+    assert!(plain == folder.read("bright.exr"));
+}
+
+#[test]
+fn half_stores_the_same_radiance_in_16_bits() {
+    let folder = Folder::with(SPHERE);
+    let (full, half) = (made(&folder, "", "full.exr"), made(&folder, "--half", "half.exr"));
+    assert!(half.len() < full.len(), "{} and {} bytes", half.len(), full.len());
+    folder.run("diff full.exr half.exr --tolerance 0.001").good();
+}
+
+#[test]
+fn quiet_prints_nothing() {
+    let folder =
+        Folder::with(&SPHERE.replace("[[light]]\nkind = \"point\"\nposition = [3, 5, 4]", ""));
+    let run = folder.run("render scene.toml -o a.png --quiet").good();
+    assert_eq!(run.stdout, "");
+    assert!(folder.has("a.png"));
+}
+
+#[test]
+fn progress_is_not_shown_on_a_pipe() {
+    assert_eq!(Folder::with_everything().run("render scene.toml --spp 16").good().stderr, "");
+}

@@ -1,0 +1,298 @@
+//! What the command tells in JSON and in words.
+
+use super::*;
+
+/// Whether a JSON value is of some kind.
+type Kind = fn(&Value) -> bool;
+
+/// Asserts that a JSON object has these fields, of these kinds, and says which differ.
+#[track_caller]
+fn assert_fields(object: &Value, fields: &[(&str, Kind)]) {
+    for (name, is) in fields {
+        assert!(is(&object[*name]), "{name} is {} in {object}", object[*name]);
+    }
+}
+
+fn seconds(value: &Value) -> bool {
+    value.as_f64().is_some_and(|x| x.is_finite() && x >= 0.0)
+}
+
+fn texts(value: &Value) -> bool {
+    value.as_array().is_some_and(|list| list.iter().all(Value::is_string))
+}
+
+#[test]
+fn statistics_have_every_field() {
+    let folder = Folder::with_everything();
+    folder.run("render scene.toml -o a.png --stats stats.json").good();
+    let stats: Value = serde_json::from_slice(&folder.read("stats.json")).unwrap();
+    assert_fields(
+        &stats,
+        &[
+            ("backend", Value::is_object),
+            ("precision", Value::is_string),
+            ("threads", Value::is_u64),
+            ("size", Value::is_array),
+            ("spp", Value::is_u64),
+            ("geometry", Value::is_object),
+            ("rays", Value::is_object),
+            ("seconds", Value::is_object),
+            ("mrays_per_second", seconds),
+            ("peak_memory_bytes", |v| v.is_u64() || (!cfg!(target_os = "linux") && v.is_null())),
+            ("warnings", texts),
+        ],
+    );
+    assert_fields(&stats["backend"], &[("name", Value::is_string), ("version", Value::is_string)]);
+    let times: [(&str, Kind); 5] =
+        ["load", "build", "render", "write", "total"].map(|name| (name, seconds as _));
+    assert_fields(&stats["seconds"], &times);
+    let counts: [(&str, Kind); 4] =
+        ["primary", "shadow", "reflection", "refraction"].map(|name| (name, Value::is_u64 as _));
+    assert_fields(&stats["rays"], &counts);
+}
+
+#[test]
+fn statistics_count_what_stands_in_the_scene() {
+    let stats = Folder::with_everything().run("render scene.toml --stats -").good().json();
+    let expected = serde_json::json!({"spheres": 2, "triangles": 9, "planes": 1, "instances": 3});
+    assert_eq!(stats["geometry"], expected);
+}
+
+#[test]
+fn statistics_tell_what_was_asked_for() {
+    let run = "render scene.toml --stats - --threads 2 --size 20x10 --spp 3 --backend rust";
+    let stats = Folder::with(SPHERE).run(run).good().json();
+    assert_eq!(stats["threads"], 2);
+    assert_eq!(stats["size"], serde_json::json!([20, 10]));
+    assert_eq!(stats["spp"], 3);
+    assert_eq!(stats["precision"], "fast");
+    assert_eq!(stats["backend"]["name"], "rust");
+    assert_eq!(stats["rays"]["primary"], 20 * 10 * 3);
+}
+
+#[test]
+fn statistics_of_a_view_count_its_one_sample() {
+    let run = "render scene.toml --stats - --view depth";
+    let stats = Folder::with_everything().run(run).good().json();
+    assert_eq!((&stats["spp"], &stats["rays"]["primary"]), (&1.into(), &(150 * 110).into()));
+    assert_eq!(stats["rays"]["shadow"], 0);
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn statistics_name_the_version_of_embree() {
+    let stats = Folder::with(SPHERE).run("render scene.toml --stats -").good().json();
+    assert_eq!(stats["backend"]["name"], "embree");
+    assert!(stats["backend"]["version"].as_str().unwrap().starts_with("4."));
+}
+
+#[test]
+fn statistics_on_stdout_are_alone_there() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.png --stats -").good().json();
+    assert!(folder.has("a.png"));
+}
+
+#[test]
+fn quiet_statistics_on_stdout_are_still_there() {
+    Folder::with(SPHERE).run("render scene.toml --quiet --stats -").good().json();
+}
+
+// Validate
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_passes_a_good_scene() {
+    let stdout = Folder::with_everything().run("validate scene.toml").good().stdout;
+    assert!(stdout.starts_with("passed: "), "{stdout}");
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_json_has_every_field() {
+    let result = Folder::with_everything().run("validate scene.toml --json -").good().json();
+    assert_fields(
+        &result,
+        &[
+            ("rays_compared", Value::is_u64),
+            ("primitive_mismatches", Value::is_u64),
+            ("unexplained_mismatches", Value::is_u64),
+            ("max_t_error_ulp", Value::is_u64),
+            ("pixels_differing", Value::is_u64),
+            ("max_channel_difference", Value::is_u64),
+            ("passed", Value::is_boolean),
+        ],
+    );
+    assert_eq!((&result["unexplained_mismatches"], &result["passed"]), (&0.into(), &true.into()));
+    assert!(result["rays_compared"].as_u64() > Some(150 * 110 * 2));
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_heat_map_is_a_picture_of_the_scenes_size() {
+    let folder = Folder::with(SPHERE);
+    folder.run("validate scene.toml --heatmap heat.png --json v.json").good();
+    assert_eq!(pixels(&folder.read("heat.png")).0, (64, 48));
+    serde_json::from_slice::<Value>(&folder.read("v.json")).unwrap();
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_leaves_no_other_file() {
+    let folder = Folder::with(SPHERE);
+    folder.run("validate scene.toml").good();
+    assert_eq!(folder.names(), ["scene.toml"]);
+}
+
+#[test]
+#[cfg(not(feature = "embree"))]
+fn validate_in_a_build_without_embree_says_so() {
+    let message = Folder::with(SPHERE).run("validate scene.toml").refused();
+    assert!(message.contains("built without Embree"), "{message}");
+}
+
+// Diff
+
+/// A folder with `a.png` and `b.png`, which differ by 10 of 255 in one channel of one pixel.
+fn two_pictures() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.png", import_common::png(&[[0, 0, 0, 255], [9, 9, 9, 255]]));
+    folder.write("b.png", import_common::png(&[[10, 0, 0, 255], [9, 9, 9, 255]]));
+    folder
+}
+
+#[test]
+fn diff_of_equal_pictures_exits_with_0() {
+    two_pictures().run("diff a.png a.png").good();
+}
+
+#[test]
+fn diff_of_different_pictures_exits_with_1() {
+    let run = two_pictures().run("diff a.png b.png");
+    assert_eq!((run.status, &*run.stderr), (Some(1), ""));
+    assert!(run.stdout.contains("1 pixels differ") || run.stdout.contains("1 pixel differs"));
+}
+
+#[test]
+fn diff_within_the_tolerance_exits_with_0() {
+    two_pictures().run("diff a.png b.png --tolerance 0.04").good();
+}
+
+#[test]
+fn diff_beyond_the_tolerance_exits_with_1() {
+    assert_eq!(two_pictures().run("diff a.png b.png --tolerance 0.039").status, Some(1));
+}
+
+#[test]
+fn diff_json_has_every_field() {
+    let run = two_pictures().run("diff a.png b.png --json -");
+    let result = run.json();
+    assert_fields(
+        &result,
+        &[
+            ("rmse", Value::is_f64),
+            ("psnr", Value::is_f64),
+            ("max", Value::is_f64),
+            ("pixels_differing", Value::is_u64),
+        ],
+    );
+    assert_eq!(run.status, Some(1));
+    let (max, rmse) = (result["max"].as_f64().unwrap(), result["rmse"].as_f64().unwrap());
+    assert!((max - 10.0 / 255.0).abs() < 1e-6, "{max}");
+    assert!((rmse - max / 6f64.sqrt()).abs() < 1e-6, "{rmse}");
+    assert_eq!(result["pixels_differing"], 1);
+}
+
+#[test]
+fn diff_psnr_of_equal_pictures_is_null() {
+    assert!(two_pictures().run("diff a.png a.png --json -").good().json()["psnr"].is_null());
+}
+
+#[test]
+fn diff_heat_map_is_white_where_the_difference_is_largest() {
+    let folder = two_pictures();
+    assert_eq!(folder.run("diff a.png b.png --heatmap h.png").status, Some(1));
+    assert_eq!(pixels(&folder.read("h.png")), ((2, 1), vec![255, 255, 255, 0, 0, 0]));
+}
+
+#[test]
+fn diff_refuses_sizes_that_differ() {
+    let folder = two_pictures();
+    folder.write("c.png", import_common::png(&[[0; 4]; 3]));
+    let message = folder.run("diff a.png c.png").refused();
+    assert!(message.contains("2x1") && message.contains("3x1"), "{message}");
+}
+
+#[test]
+fn diff_refuses_a_png_with_an_exr() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.png -o a.exr").good();
+    let message = folder.run("diff a.png a.exr").refused();
+    assert!(message.contains("PNG") && message.contains("EXR"), "{message}");
+}
+
+#[test]
+fn diff_refuses_views_that_differ() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.exr").good();
+    folder.run("render scene.toml -o z.exr --view depth").good();
+    let message = folder.run("diff a.exr z.exr").refused();
+    assert!(message.contains("channels"), "{message}");
+}
+
+#[test]
+fn diff_refuses_a_damaged_picture() {
+    let folder = two_pictures();
+    let png = folder.read("a.png");
+    folder.write("short.png", &png[..png.len() / 2]);
+    folder.write("short.exr", b"\x76\x2f\x31\x01");
+    assert!(folder.run("diff a.png short.png").refused().contains("short.png"));
+    assert!(folder.run("diff short.exr short.exr").refused().contains("short.exr"));
+}
+
+#[test]
+fn diff_refuses_a_tolerance_below_0_or_no_number() {
+    for bad in ["-1", "nan", "x"] {
+        two_pictures().run(&format!("diff a.png b.png --tolerance={bad}")).refused();
+    }
+}
+
+#[test]
+fn diff_refuses_a_picture_that_is_not_there() {
+    assert!(two_pictures().run("diff a.png none.png").refused().contains("none.png"));
+}
+
+// Info
+
+#[test]
+fn info_says_what_is_in_a_scene() {
+    let stdout = Folder::with_everything().run("info scene.toml").good().stdout;
+    for line in ["spheres    2", "planes     1", "triangles  9 in 3 instances of 2 meshes"] {
+        assert!(stdout.contains(line), "{line} in {stdout}");
+    }
+}
+
+#[test]
+fn info_says_what_will_be_skipped() {
+    let stdout = Folder::with(SPHERE).run("info scene.toml").good().stdout;
+    assert!(stdout.contains("\nskips      instance level"), "{stdout}");
+    assert!(!stdout.contains("skips      shadow rays"), "{stdout}");
+}
+
+#[test]
+fn info_json_says_the_same() {
+    let info = Folder::with_everything().run("info scene.toml --json -").good().json();
+    let expected = serde_json::json!({"spheres": 2, "triangles": 9, "planes": 1, "instances": 3});
+    assert_eq!(info["geometry"], expected);
+    assert_eq!(info["size"], serde_json::json!([150, 110]));
+    assert_eq!(info["lights"].as_array().unwrap().len(), 4);
+    assert_eq!(info["cameras"].as_array().unwrap().len(), 2);
+    assert!(texts(&info["skipped"]) && texts(&info["warnings"]));
+}
+
+#[test]
+fn info_json_goes_to_a_file() {
+    let folder = Folder::with(SPHERE);
+    folder.run("info scene.toml --json i.json").good();
+    serde_json::from_slice::<Value>(&folder.read("i.json")).unwrap();
+}

@@ -1,0 +1,76 @@
+//! What is done and probably not meant: said on stderr, with the likely cause.
+
+use super::*;
+
+const LIGHT: &str = "[[light]]\nkind = \"point\"\nposition = [3, 5, 4]\n";
+
+/// The one warning of a picture that is made all the same.
+#[track_caller]
+fn warned(scene: &str) -> String {
+    let folder = Folder::with(scene);
+    let run = folder.run("render scene.toml -o a.png");
+    assert_eq!(run.status, Some(0), "{}", run.stderr);
+    assert!(run.stderr.starts_with("warning: "), "{}", run.stderr);
+    assert_eq!(run.stderr.lines().count(), 1, "{}", run.stderr);
+    assert!(folder.has("a.png"));
+    run.stderr
+}
+
+#[test]
+fn a_scene_without_light_is_told_how_to_get_one() {
+    let warning = warned(&SPHERE.replace(LIGHT, ""));
+    assert!(warning.contains("no light") && warning.contains("[[light]]"), "{warning}");
+}
+
+#[test]
+fn a_camera_that_looks_away_is_told_where_the_scene_is() {
+    let turned = SPHERE
+        .replace("[0, 1, 5]", "[0, 1, 50]")
+        .replace("look_at = [0, 0.5, 0]", "look_at = [0, 99, 50.1]");
+    let warning = warned(&turned);
+    assert!(warning.contains("empty") && warning.contains("[0, 0.5, 0]"), "{warning}");
+}
+
+#[test]
+fn the_camera_that_is_warned_of_is_the_one_that_was_asked_for() {
+    let away = "[[camera]]\nname = \"away\"\nposition = [0, 77, 0]\nlook_at = [0, 99, 1]\n";
+    let folder = Folder::with(&format!("{}{away}", SPHERE.replace("[camera]", "[[camera]]")));
+    let run = folder.run("render scene.toml --camera away");
+    assert!(run.stderr.contains("[0, 77, 0]"), "{}", run.stderr);
+}
+
+#[test]
+fn a_scene_with_nothing_in_it_is_told_so() {
+    let warning = warned("[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, 1]\n");
+    assert!(warning.contains("nothing stands in the scene"), "{warning}");
+}
+
+#[test]
+fn a_black_picture_is_told_the_likely_cause() {
+    let dark = SPHERE.replace("background = \"#203040\"\n", "");
+    let warning = warned(&dark.replace("position = [3, 5, 4]", "position = [0, -5, 0]"));
+    assert!(warning.contains("wholly black") && warning.contains("behind"), "{warning}");
+}
+
+#[test]
+fn warnings_stand_in_the_statistics_too() {
+    let folder = Folder::with(&SPHERE.replace(LIGHT, ""));
+    let run = folder.run("render scene.toml --stats -");
+    let warnings = run.json()["warnings"].clone();
+    assert_eq!(warnings.as_array().unwrap().len(), 1);
+    assert_eq!(run.stderr, format!("warning: {}\n", warnings[0].as_str().unwrap()));
+}
+
+#[test]
+fn a_missing_texture_is_a_warning() {
+    let folder = Folder::new();
+    folder.write("m.mtl", "newmtl a\nmap_Kd gone.png\n");
+    folder.write("m.obj", format!("mtllib m.mtl\nusemtl a\n{TETRAHEDRON}"));
+    let run = folder.run("render m.obj --size 20x20");
+    assert_eq!(run.status, Some(0));
+    assert!(
+        run.stderr.starts_with("warning: ") && run.stderr.contains("gone.png"),
+        "{}",
+        run.stderr
+    );
+}
