@@ -6,6 +6,10 @@ PREFIX ?= $(HOME)/.local
 override PREFIX := $(patsubst ~/%,$(HOME)/%,$(PREFIX))
 CARGO ?= cargo
 
+ENVERS = $${CARGO_TARGET_DIR:-target}/release/envers
+TUTORIAL = $(sort $(wildcard assets/scenes/tutorial/*.toml))
+SCENES = $(sort $(wildcard assets/scenes/*.toml))
+
 # The other build that must always work: no Embree, no libclang.
 PURE_RUST = --no-default-features --features cli
 
@@ -17,9 +21,22 @@ help: ## list the targets
 setup: ## find or fetch Embree and libclang (the others call it where they need it)
 	@scripts/setup
 
+# The last lines list each file with its seconds, and what validate says of each scene.
 demo: setup ## build, and render and validate the demo scenes into out/
 	$(CARGO) build --release --locked
-	$(CARGO) run --release --locked --quiet --example demo
+	@mkdir -p out && rm -f out/demo.txt
+	@set -e; for scene in $(TUTORIAL); do \
+	    $(ENVERS) render $$scene -o out/$$(basename $$scene .toml).png | tee -a out/demo.txt; \
+	done
+	@set -e; for scene in $(SCENES); do \
+	    out=out/$$(basename $$scene .toml); \
+	    $(ENVERS) render $$scene -o $$out.png -o $$out.exr | tee -a out/demo.txt; \
+	done
+	@status=0; for scene in $(TUTORIAL) $(SCENES); do \
+	    verdict=$$($(ENVERS) validate $$scene) || status=1; \
+	    echo "$$scene: $$verdict" | tee -a out/demo.txt; \
+	done; \
+	echo; cat out/demo.txt; rm -f out/demo.txt; exit $$status
 
 # One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
@@ -43,7 +60,8 @@ install: setup ## build and install under PREFIX (default: ~/.local), with Embre
 	@rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
 	@if [ -z "$$EMBREE_DIR" ] && [ -f .deps/embree/stamp ]; then \
 	    mkdir -p '$(DESTDIR)$(PREFIX)/lib/envers' && \
-	    cp .deps/embree/lib*.so.* '$(DESTDIR)$(PREFIX)/lib/envers/' && \
+	    cp .deps/embree/lib*.so.* LICENSE-APACHE THIRD_PARTY.md \
+	        '$(DESTDIR)$(PREFIX)/lib/envers/' && \
 	    echo 'Embree is in $(DESTDIR)$(PREFIX)/lib/envers'; \
 	fi
 

@@ -8,14 +8,20 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::write;
 
+/// What the files of scenes and pictures end in.
+const SCENES_AND_PICTURES: [&str; 13] =
+    ["toml", "gltf", "glb", "bin", "obj", "mtl", "png", "jpg", "jpeg", "webp", "tga", "bmp", "exr"];
+
 /// Checks that JSON could be written to `path`.
 ///
 /// # Errors
 /// When it could not.
 pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
     let Some(path) = path.filter(|path| !is_stdout(path)) else { return Ok(()) };
-    // Of what a scene is read from, nothing ends in .json: none of it can be overwritten.
-    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) {
+    // What scenes and pictures are made of keeps its names to itself: a slip of the hand must not
+    // overwrite it.
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if SCENES_AND_PICTURES.contains(&&*extension) {
         return Err(Error::input("JSON is not written to a file of this name")
             .at(path)
             .help("name it .json, or - for standard output"));
