@@ -26,11 +26,13 @@ demo: setup ## build, and render and validate the demo scenes into out/
 	$(CARGO) build --release --locked
 	@mkdir -p out && rm -f out/demo.txt
 	@set -e; for scene in $(TUTORIAL); do \
-	    $(ENVERS) render $$scene -o out/$$(basename $$scene .toml).png | tee -a out/demo.txt; \
+	    wrote=$$($(ENVERS) render $$scene -o out/$$(basename $$scene .toml).png); \
+	    echo "$$wrote" | tee -a out/demo.txt; \
 	done
 	@set -e; for scene in $(SCENES); do \
 	    out=out/$$(basename $$scene .toml); \
-	    $(ENVERS) render $$scene -o $$out.png -o $$out.exr | tee -a out/demo.txt; \
+	    wrote=$$($(ENVERS) render $$scene -o $$out.png -o $$out.exr); \
+	    echo "$$wrote" | tee -a out/demo.txt; \
 	done
 	@status=0; for scene in $(TUTORIAL) $(SCENES); do \
 	    verdict=$$($(ENVERS) validate $$scene) || status=1; \
