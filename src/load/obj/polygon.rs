@@ -5,6 +5,9 @@ use glam::DVec3;
 /// Corners of a polygon up to which ears are cut, which takes time with the square of them.
 const MAX_EARS: usize = 20_000;
 
+/// Corners up to which cutting ears never takes long, whatever the polygon.
+const FEW: usize = 100;
+
 /// The triangles of a polygon, as indices of its corners, wound as it is.
 ///
 /// A convex polygon becomes a fan around its first corner, as everywhere; a concave one has its
@@ -24,6 +27,9 @@ pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
         // The other diagonal is all that is left to try.
         let turned = cross(b, c, d) >= 0.0 && cross(b, d, a) >= 0.0;
         return if turned { vec![[1, 2, 3], [1, 3, 0]] } else { fan() };
+    }
+    if flat.len() > FEW && is_tangled(&flat) {
+        return fan();
     }
     let point = |i: usize| flat.get(i).copied().unwrap_or_default();
     let twice_area = |t: &[usize; 3]| cross(point(t[0]), point(t[1]), point(t[2]));
@@ -67,6 +73,27 @@ fn is_convex(flat: &[[f64; 2]]) -> bool {
     let turns_left = (0..flat.len()).all(|i| cross(at(i), at(i + 1), at(i + 2)) >= 0.0);
     // A pentagram turns left everywhere too: it is told by the fan's triangles.
     turns_left && (2..flat.len()).all(|i| cross(at(0), at(i - 1), at(i)) >= 0.0)
+}
+
+/// Whether a polygon crosses itself, or comes back to its corners again and again. Ears have no
+/// right answer then, and looking for one takes time with the cube of the corners.
+fn is_tangled(flat: &[[f64; 2]]) -> bool {
+    let mut distinct: Vec<[u64; 2]> = flat.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
+    distinct.sort_unstable();
+    distinct.dedup();
+    if distinct.len() < flat.len() / 2 {
+        return true;
+    }
+    let mut edges: Vec<_> =
+        flat.iter().copied().zip(flat.iter().copied().cycle().skip(1)).collect();
+    let left = |edge: &([f64; 2], [f64; 2])| edge.0[0].min(edge.1[0]);
+    edges.sort_unstable_by(|e, f| left(e).total_cmp(&left(f)));
+    edges.iter().enumerate().any(|(i, &(a, b))| {
+        let within = |edge: &&([f64; 2], [f64; 2])| left(edge) <= a[0].max(b[0]);
+        edges.iter().skip(i + 1).take_while(within).any(|&(c, d)| {
+            cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0
+        })
+    })
 }
 
 /// Twice the signed area of a triangle.
@@ -142,6 +169,18 @@ mod tests {
         assert!(areas.iter().all(|a| *a <= 0.0), "{areas:?}");
         // The teeth; the bar below reaches to 10 and slopes up to the last tooth's foot at 9.
         assert!((areas.iter().sum::<f64>() + 5.0 * 3.0 + 9.5).abs() < 1e-9, "{areas:?}");
+    }
+
+    #[test]
+    fn tangled_polygons_do_not_hang() {
+        let n = 9_999;
+        let star =
+            |i: usize| (std::f64::consts::TAU * (i * (n / 2 - 1)) as f64 / n as f64).sin_cos();
+        let star: Vec<DVec3> = (0..n).map(star).map(|(y, x)| DVec3::new(x, y, 0.0)).collect();
+        let square = [DVec3::ZERO, DVec3::X, DVec3::X + DVec3::Y, DVec3::Y];
+        for corners in [star, square.repeat(n / 4)] {
+            assert_eq!(triangulate(&corners).len(), corners.len() - 2);
+        }
     }
 
     #[test]
