@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 use crate::error::{Error, Result};
 use crate::scene::{Camera, Lens, LightKind, Mesh, Scene, Texture};
 
-/// The largest picture, in pixels: 2³⁰, as many as four bytes a pixel fill 4 GiB.
-pub const MAX_PIXELS: u64 = 1 << 30;
+/// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
+pub const MAX_PIXELS: u64 = 1 << 28;
 /// The most samples a pixel can have.
 pub const MAX_SPP: u32 = 1 << 16;
 /// The greatest absolute coordinate in world space; Embree ignores what lies beyond 1.8e18, and
