@@ -1,0 +1,36 @@
+//! Every demo scene, through both intersectors: no hit that nothing explains.
+#![cfg(all(feature = "embree", feature = "measure"))]
+
+use std::path::Path;
+
+use envers::load::load_for;
+use envers::measure::validate;
+
+fn passes(name: &str, size: [u32; 2]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);
+    let mut scene = load_for(&path, Some(size)).unwrap();
+    scene.film.spp = 1;
+    let found = validate(&scene, 0, 0).unwrap();
+    assert!(found.passed && found.unexplained_mismatches == 0, "{found}");
+    assert!(found.rays_compared > found.pixels, "no shadow ray was compared: {found}");
+}
+
+#[test]
+fn room_passes() {
+    passes("room.toml", [640, 360]);
+}
+
+#[test]
+fn vase_passes() {
+    passes("vase.toml", [640, 360]);
+}
+
+#[test]
+fn lambert_passes() {
+    passes("tutorial/3-2-lambert.toml", [1000, 500]);
+}
+
+#[test]
+fn phong_passes() {
+    passes("tutorial/3-3-phong.toml", [1000, 500]);
+}
