@@ -1,0 +1,61 @@
+//! The committed models are what `examples/make_assets.rs` makes, and the scenes that use them
+//! load without a warning.
+
+#[path = "../examples/make_assets.rs"]
+mod make_assets;
+
+use std::path::Path;
+
+use envers::load::load;
+
+/// The largest model that is committed, in bytes.
+const LIMIT: usize = 500_000;
+
+/// Byte by byte on every platform: the generator asks its mathematics library for nothing but
+/// square roots.
+#[test]
+fn committed_models_are_those_of_the_generator() {
+    for (name, bytes) in make_assets::files() {
+        assert!(bytes.len() < LIMIT, "{name} is {} bytes long", bytes.len());
+        let committed = std::fs::read(make_assets::folder().join(name)).unwrap_or_default();
+        assert!(
+            committed == bytes,
+            "assets/models/{name} is not what the generator makes; run `cargo run --example \
+             make_assets`, and look at the scenes that use it"
+        );
+    }
+}
+
+#[test]
+fn no_model_is_committed_that_the_generator_does_not_make() {
+    let made: Vec<_> = make_assets::files().into_iter().map(|(name, _)| name).collect();
+    for entry in std::fs::read_dir(make_assets::folder()).expect("assets/models is there") {
+        let name = entry.expect("the folder can be read").file_name();
+        assert!(made.iter().any(|made| name == *made), "{}", name.display());
+    }
+}
+
+#[test]
+fn demo_scenes_and_models_load_without_a_warning() {
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    for name in ["scenes/room.toml", "scenes/vase.toml", "models/room.glb", "models/vase.obj"] {
+        let scene = load(&assets.join(name)).expect(name);
+        assert_eq!(scene.warnings, [""; 0], "{name}");
+    }
+}
+
+/// What the room is there to show: instances of one mesh, textures, lights and a camera of its own.
+#[test]
+fn room_uses_what_gltf_offers() {
+    let scene = load(&make_assets::folder().join("room.glb")).expect("the room loads");
+    assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
+    assert_eq!((scene.lights.len(), scene.textures.len()), (2, 3));
+    assert_eq!(scene.cameras[0].name, "view");
+}
+
+/// What the vase is there to show: two materials, one with a texture, on smooth polygons.
+#[test]
+fn vase_uses_what_obj_offers() {
+    let scene = load(&make_assets::folder().join("vase.obj")).expect("the vase loads");
+    assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));
+}
