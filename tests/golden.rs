@@ -1,0 +1,148 @@
+//! Small pictures of every scene in `assets/scenes/`, against those committed in `tests/golden/`,
+//! through every backend of this build: no channel of any pixel may differ by more than 1 of 255.
+//!
+//! `ENVERS_BLESS=1 cargo test --test golden` writes them anew, and fails all the same: look at
+//! them, and run the tests again without it. On a mismatch, `target/golden-failures/` shows the
+//! expected picture, the difference and the actual one side by side.
+
+use std::path::{Path, PathBuf};
+
+use envers::intersect::Backend;
+use envers::load::load_for;
+use envers::render::{Options, render};
+use envers::write::{Settings, png_bytes};
+use image::{Rgb, RgbImage};
+
+/// The most that a channel may differ, of 255.
+const TOLERANCE: u8 = 1;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Renders `assets/scenes/NAME.toml` small.
+fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) -> RgbImage {
+    let path = root().join("assets/scenes").join(name).with_extension("toml");
+    let mut scene = load_for(&path, Some([width, height])).expect("the scene loads");
+    scene.film.spp = spp;
+    let options = Options { backend, ..Options::default() };
+    let film = render(&scene, &options, &|_| {}).expect("the scene renders").film;
+    let settings = Settings { transfer: scene.film.transfer, ..Settings::default() };
+    RgbImage::from_raw(width, height, png_bytes(&film, &settings)).expect("ok: three bytes a pixel")
+}
+
+/// Holds a scene to its golden picture, through one backend.
+fn compare(name: &str, golden: &Path, actual: &RgbImage, backend: &str) -> Result<(), String> {
+    let expected = image::open(golden)
+        .map_err(|e| {
+            let golden = golden.display();
+            format!("{golden}: {e}\nENVERS_BLESS=1 makes it; then look at it")
+        })?
+        .into_rgb8();
+    if expected.dimensions() != actual.dimensions() {
+        return Err(format!("{}: the golden picture is of another size", golden.display()));
+    }
+    let differences = || {
+        let pixels = expected.pixels().zip(actual.pixels());
+        pixels.map(|(a, b)| [0, 1, 2].map(|i| a[i].abs_diff(b[i])))
+    };
+    let over = differences().filter(|d| d.iter().any(|&d| d > TOLERANCE)).count();
+    if over == 0 {
+        return Ok(());
+    }
+    let largest = differences().flatten().max().unwrap_or(0);
+    let triptych = triptych(&expected, actual);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("golden-failures");
+    let file = folder.join(format!("{}-{backend}.png", name.replace('/', "-")));
+    std::fs::create_dir_all(&folder).map_err(|e| e.to_string())?;
+    triptych.save(&file).map_err(|e| e.to_string())?;
+    Err(format!(
+        "{over} pixels of {name} differ with {backend}, by at most {largest} of 255: expected, \
+         difference and actual are in {}",
+        file.display()
+    ))
+}
+
+/// Expected, difference and actual side by side; differences are magnified, so that 1 shows.
+fn triptych(expected: &RgbImage, actual: &RgbImage) -> RgbImage {
+    let (width, height) = expected.dimensions();
+    RgbImage::from_fn(3 * width, height, |x, y| {
+        let (a, b) = (expected.get_pixel(x % width, y), actual.get_pixel(x % width, y));
+        match x / width {
+            0 => *a,
+            1 => Rgb([0, 1, 2].map(|i| a[i].abs_diff(b[i]).saturating_mul(32))),
+            _ => *b,
+        }
+    })
+}
+
+/// One scene, through all backends of this build.
+fn check(name: &str, size: [u32; 2], spp: u32) {
+    let golden: PathBuf = root().join("tests/golden").join(name.replace('/', "-") + ".png");
+    let rust = picture(name, size, spp, Backend::Rust);
+    if std::env::var_os("ENVERS_BLESS").is_some() {
+        rust.save(&golden).expect("the golden picture can be written");
+        panic!("{} is written: look at it, and run again without ENVERS_BLESS", golden.display());
+    }
+    let mut results = vec![compare(name, &golden, &rust, "rust")];
+    #[cfg(feature = "embree")]
+    results.push(compare(name, &golden, &picture(name, size, spp, Backend::Embree), "embree"));
+    let failures: Vec<_> = results.into_iter().filter_map(Result::err).collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn circle() {
+    check("tutorial/3-1-circle", [160, 80], 1);
+}
+
+#[test]
+fn lambert() {
+    check("tutorial/3-2-lambert", [160, 80], 1);
+}
+
+#[test]
+fn phong() {
+    check("tutorial/3-3-phong", [160, 80], 1);
+}
+
+#[test]
+fn alpha_10() {
+    check("tutorial/3-3-alpha-10", [160, 80], 1);
+}
+
+#[test]
+fn alpha_30() {
+    check("tutorial/3-3-alpha-30", [160, 80], 1);
+}
+
+#[test]
+fn alpha_100() {
+    check("tutorial/3-3-alpha-100", [160, 80], 1);
+}
+
+#[test]
+fn room() {
+    check("room", [160, 90], 4);
+}
+
+#[test]
+fn vase() {
+    check("vase", [160, 90], 4);
+}
+
+/// A scene added to `assets/scenes/` needs a golden picture.
+#[test]
+fn every_scene_has_a_golden_picture() {
+    for (folder, prefix) in [("assets/scenes", ""), ("assets/scenes/tutorial", "tutorial-")] {
+        for entry in std::fs::read_dir(root().join(folder)).expect("the folder is there") {
+            let path = entry.expect("the folder can be read").path();
+            if path.extension().is_none_or(|e| e != "toml") {
+                continue;
+            }
+            let stem = path.file_stem().expect("ok: it has an extension").display();
+            let golden = root().join(format!("tests/golden/{prefix}{stem}.png"));
+            assert!(golden.exists(), "{} is missing", golden.display());
+        }
+    }
+}
