@@ -165,12 +165,13 @@ pub fn glb() -> Vec<u8> {
     let (inner, outer) = (HALF - 0.2, HALF + 0.24);
     let half_bay = BAY / 2.0;
     let walls = Shape::default().cuboid([inner, 0.0, END - 0.3], [outer, TOP, FRONT], 1.0).cuboid(
-        [-outer, TOP, END - 0.3],
-        [outer, TOP + 0.3, FRONT],
+        [-outer, 0.0, FRONT],
+        [outer, TOP, FRONT + 0.3],
         1.0,
     );
+    let (low, high) = ([-outer, TOP, END - 0.3], [outer, TOP + 0.3, FRONT]);
+    let boards = Shape::default().cuboid(low, high, 0.8);
     let niches = Shape::default()
-        .cuboid([-outer, 0.0, FRONT], [outer, TOP, FRONT + 0.3], 1.0)
         .cuboid([-outer, 0.0, END - 0.3], [-half_bay + 0.1, TOP, END], 1.0)
         .cuboid([half_bay - 0.1, 0.0, END - 0.3], [outer, TOP, END], 1.0)
         .cuboid([-half_bay - 0.1, 0.0, END], [-half_bay + 0.1, TOP, BACK - 0.2], 1.0)
@@ -181,8 +182,10 @@ pub fn glb() -> Vec<u8> {
         .cuboid([inner - 0.05, 1.03, BACK], [inner, 1.09, FRONT], 1.0)
         .cuboid([inner - 0.05, 0.0, BACK], [inner, 0.08, FRONT], 1.0)
         .cuboid([-HALF, TOP - 0.3, BACK + 0.22], [inner, TOP - 0.2, BACK + 0.3], 1.0);
-    let walls =
-        glb.mesh("walls", &[(&walls, plaster), (&niches, red), (&dado, tile), (&cornice, stone)]);
+    let walls = glb.mesh(
+        "walls",
+        &[(&walls, plaster), (&boards, wood), (&niches, red), (&dado, tile), (&cornice, stone)],
+    );
     glb.place("walls", None, walls, at(0.0, 0.0, 0.0));
 
     let beam = Shape::default().cuboid([-HALF, TOP - 0.2, -0.09], [inner, TOP, 0.09], 0.6);
