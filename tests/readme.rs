@@ -12,8 +12,9 @@ fn scene_file_of_the_readme_loads() {
     let readme = read("README.md");
     let scene = readme.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let model = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/room.glb");
-    fs::copy(model, folder.path().join("room.glb")).unwrap();
+    let model = "assets/models/room.glb";
+    fs::create_dir_all(folder.path().join(model).parent().unwrap()).unwrap();
+    fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(model), folder.path().join(model)).unwrap();
     let path = folder.path().join("scene.toml");
     fs::write(&path, scene).unwrap();
     let scene = envers::load::load(&path).unwrap();
