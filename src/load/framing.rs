@@ -34,10 +34,11 @@ pub fn frame(scene: &mut Scene) {
     let target = bounds.center();
     let position = target + DVec3::new(0.55, 0.45, 1.0).normalize() * distance;
     let lens = Lens::FovY(2.0 * HALF_FOV);
-    let mut camera = Camera::look_at(position, target, DVec3::Y, lens)
-        .expect("ok: the distance is above 0 and the view is not along y");
-    camera.name = "framing".to_owned();
-    scene.cameras.push(camera);
+    // Fails only where the scene is not finite, which `Scene::check` then says.
+    if let Ok(mut camera) = Camera::look_at(position, target, DVec3::Y, lens) {
+        camera.name = "framing".to_owned();
+        scene.cameras.push(camera);
+    }
 }
 
 /// A key light from the upper left, a weaker fill from the right, and a little from everywhere.
@@ -83,6 +84,14 @@ mod tests {
                 assert!(past.length() > 2.0, "{size:?} cuts the sphere");
             }
         }
+    }
+
+    #[test]
+    fn a_scene_that_is_not_finite_gets_no_camera() {
+        let mut scene = Scene::default();
+        scene.spheres.push(Sphere::new(DVec3::INFINITY, 2.0, MaterialId(0)));
+        frame(&mut scene);
+        assert_eq!(scene.cameras, []);
     }
 
     #[test]
