@@ -107,6 +107,22 @@ fn validate_passes_a_good_scene() {
     assert!(stdout.starts_with("passed: "), "{stdout}");
 }
 
+/// Two floors in one plane: at every ray the two intersectors choose between equal distances, which
+/// is explained each time and far too often.
+#[test]
+#[cfg(feature = "embree")]
+fn validate_fails_where_too_many_hits_differ() {
+    let folder = Folder::with_everything();
+    folder.write("floor.obj", "v -9 0 9\nv 9 0 9\nv 9 0 -9\nv -9 0 -9\nf 1 2 3 4\n");
+    let scene = "[camera]\nposition = [0, 3, 5]\nlook_at = [0, 0, 0]\n\
+                 [[model]]\nfile = \"floor.obj\"\n\
+                 [[model]]\nfile = \"floor.obj\"\nrotate = [0, 33, 0]\n";
+    folder.write("floors.toml", scene);
+    let run = folder.run("validate floors.toml --size 200x100");
+    assert_eq!(run.status, Some(1), "{}{}", run.stdout, run.stderr);
+    assert!(run.stdout.starts_with("FAILED: "), "{}", run.stdout);
+}
+
 #[test]
 #[cfg(feature = "embree")]
 fn validate_json_has_every_field() {
