@@ -6,7 +6,7 @@
 
 use envers::error::Result;
 use envers::geometry::Ray;
-use envers::intersect::{Backend, Bvh, Coherence, Intersector};
+use envers::intersect::{Backend, Bvh, Coherence, Intersector, Precision};
 use envers::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 
@@ -22,8 +22,10 @@ fn main() -> Result<()> {
     let rays: Vec<Ray> = (0..5)
         .map(|i| Ray::new(eye, DVec3::new(10.0, -2.0 + 0.125 * f64::from(i), 0.0).normalize()))
         .collect();
-    let backends: [Box<dyn Intersector>; 2] =
-        [Backend::default().build(&scene, 0)?, Box::new(Bvh::build(&scene))];
+    let backends: [Box<dyn Intersector>; 2] = [
+        Backend::default().build(&scene, Precision::Fast, 0)?,
+        Box::new(Bvh::build(&scene, Precision::Fast)),
+    ];
     for backend in backends {
         let mut hits = vec![None; rays.len()];
         backend.closest(&rays, Coherence::Coherent, &mut hits);

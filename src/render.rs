@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, STRIP_ROWS, Scratch};
-use crate::intersect::{Backend, Intersector};
+use crate::intersect::{Backend, Intersector, Precision};
 use crate::scene::Scene;
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
@@ -17,6 +17,8 @@ use crate::scene::Scene;
 pub struct Options {
     /// Who finds the hits.
     pub backend: Backend,
+    /// How far the hits can be trusted.
+    pub precision: Precision,
     /// How many threads; 0 means all there are.
     pub threads: usize,
     /// Which of the scene's cameras.
@@ -39,6 +41,8 @@ pub struct Rendering {
 pub struct Statistics {
     /// The intersector's name and version.
     pub backend: (&'static str, String),
+    /// How far the hits can be trusted.
+    pub precision: Precision,
     /// Threads used.
     pub threads: usize,
     /// Rays and other counts.
@@ -64,12 +68,15 @@ pub fn render(
     check_camera(scene, options.camera)?;
     in_pool(options.threads, || {
         let start = Instant::now();
-        let intersector = options.backend.build(scene, rayon::current_num_threads())?;
+        let intersector =
+            options.backend.build(scene, options.precision, rayon::current_num_threads())?;
         let build = start.elapsed();
         let (film, counts, render) = with_intersector(scene, options, &*intersector, progress);
         let backend = (intersector.name(), intersector.version());
         let threads = rayon::current_num_threads();
-        Ok(Rendering { film, statistics: Statistics { backend, threads, counts, build, render } })
+        let precision = options.precision;
+        let statistics = Statistics { backend, precision, threads, counts, build, render };
+        Ok(Rendering { film, statistics })
     })
 }
 

@@ -4,7 +4,7 @@ mod common;
 
 use common::{random_rays, random_scene};
 use envers::geometry::{Hit, Ray};
-use envers::intersect::{BruteForce, Bvh, Coherence, Intersector};
+use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::scene::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -42,8 +42,10 @@ fn each_scene(mut check: impl FnMut(u64, &Scene, &[Ray])) {
 #[test]
 fn bvh_equals_brute_force_to_the_bit() {
     each_scene(|seed, scene, rays| {
-        let (expected, found) =
-            (closest(&BruteForce::new(scene), rays), closest(&Bvh::build(scene), rays));
+        let (expected, found) = (
+            closest(&BruteForce::new(scene, Precision::Fast), rays),
+            closest(&Bvh::build(scene, Precision::Fast), rays),
+        );
         let hits = expected.iter().flatten().count();
         assert!(hits > RAYS / 10, "scene {seed}: too few hits to compare, {hits}");
         for (i, (a, b)) in expected.iter().zip(&found).enumerate() {
@@ -57,9 +59,9 @@ fn bvh_occlusion_equals_brute_force() {
     each_scene(|seed, scene, rays| {
         let rays: Vec<Ray> =
             rays[..RAYS / 4].iter().map(|r| Ray::between(r.origin, r.at(0.7))).collect();
-        let expected = occluded(&BruteForce::new(scene), &rays);
+        let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
         assert!(expected.contains(&true) && expected.contains(&false), "scene {seed}: all alike");
-        assert_eq!(expected, occluded(&Bvh::build(scene), &rays), "scene {seed}");
+        assert_eq!(expected, occluded(&Bvh::build(scene, Precision::Fast), &rays), "scene {seed}");
     });
 }
 
@@ -73,7 +75,8 @@ mod embree {
     /// Compares with brute force; returns how many rays differ for a reason that f32 explains.
     fn explained(seed: u64, scene: &Scene, embree: &Embree<'_>, rays: &[Ray]) -> usize {
         let disputes = Disputes { scene, margin: embree.margin() };
-        let (expected, found) = (closest(&BruteForce::new(scene), rays), closest(embree, rays));
+        let (expected, found) =
+            (closest(&BruteForce::new(scene, Precision::Fast), rays), closest(embree, rays));
         let mut count = 0;
         for (i, (a, b)) in expected.iter().zip(&found).enumerate().filter(|(_, (a, b))| a != b) {
             let cause = disputes.primary(&rays[i], a.as_ref(), b.as_ref());
@@ -87,7 +90,8 @@ mod embree {
     #[test]
     fn embree_packets_equal_brute_force_up_to_explained_mismatches() {
         each_scene(|seed, scene, rays| {
-            let found = explained(seed, scene, &Embree::build(scene, 1).unwrap(), rays);
+            let found =
+                explained(seed, scene, &Embree::build(scene, Precision::Fast, 1).unwrap(), rays);
             assert!(found <= RAYS / 10_000, "scene {seed}: {found} explained mismatches");
         });
     }
@@ -95,7 +99,7 @@ mod embree {
     #[test]
     fn embree_single_rays_equal_brute_force_up_to_explained_mismatches() {
         each_scene(|seed, scene, rays| {
-            let embree = Embree::build_single(scene, 1).unwrap();
+            let embree = Embree::build_single(scene, Precision::Fast, 1).unwrap();
             let found = explained(seed, scene, &embree, &rays[..RAYS / 4]);
             assert!(found <= RAYS / 40_000, "scene {seed}: {found} explained mismatches");
         });
@@ -104,11 +108,11 @@ mod embree {
     #[test]
     fn embree_occlusion_equals_brute_force_up_to_explained_mismatches() {
         each_scene(|seed, scene, rays| {
-            let embree = Embree::build(scene, 1).unwrap();
+            let embree = Embree::build(scene, Precision::Fast, 1).unwrap();
             let disputes = Disputes { scene, margin: embree.margin() };
             let rays: Vec<Ray> =
                 rays[..RAYS / 4].iter().map(|r| Ray::between(r.origin, r.at(0.7))).collect();
-            let expected = occluded(&BruteForce::new(scene), &rays);
+            let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
             let found = occluded(&embree, &rays);
             for (i, truth) in expected.iter().enumerate().filter(|(i, b)| found[*i] != **b) {
                 let cause = disputes.shadow(&rays[i], *truth);
@@ -122,9 +126,11 @@ mod embree {
         each_scene(|seed, scene, rays| {
             let mut spheres = scene.clone();
             spheres.instances.clear();
-            let embree = Embree::build(&spheres, 1).unwrap();
-            let (expected, found) =
-                (closest(&BruteForce::new(&spheres), rays), closest(&embree, rays));
+            let embree = Embree::build(&spheres, Precision::Fast, 1).unwrap();
+            let (expected, found) = (
+                closest(&BruteForce::new(&spheres, Precision::Fast), rays),
+                closest(&embree, rays),
+            );
             let hits = expected.iter().flatten().filter(|h| h.id.geometry == Geometry::Spheres);
             assert!(hits.count() > RAYS / 100, "scene {seed}: too few sphere hits");
             assert_eq!(expected, found, "scene {seed}");
@@ -138,8 +144,8 @@ mod embree {
             spheres.instances.clear();
             let rays: Vec<Ray> =
                 rays[..RAYS / 4].iter().map(|r| Ray::between(r.origin, r.at(0.7))).collect();
-            let expected = occluded(&BruteForce::new(&spheres), &rays);
-            let embree = Embree::build(&spheres, 1).unwrap();
+            let expected = occluded(&BruteForce::new(&spheres, Precision::Fast), &rays);
+            let embree = Embree::build(&spheres, Precision::Fast, 1).unwrap();
             assert_eq!(expected, occluded(&embree, &rays), "scene {seed}");
         });
     }

@@ -13,7 +13,7 @@ use std::time::Instant;
 use bare::{Bare, Packet, packets};
 use criterion::{Criterion, Throughput};
 use envers::geometry::{Hit, Ray};
-use envers::intersect::{Bvh, Coherence, Embree, Intersector};
+use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
 use envers::scene::{Arrival, Scene};
 use envers::surface::Surface;
 use glam::{DVec3, Vec3};
@@ -29,7 +29,7 @@ impl Case {
     fn new(name: &'static str, scene: Scene) -> Self {
         let primary = scenes::primary(&scene);
         let mut hits = vec![None; primary.len()];
-        Bvh::build(&scene).closest(&primary, Coherence::Coherent, &mut hits);
+        Bvh::build(&scene, Precision::Fast).closest(&primary, Coherence::Coherent, &mut hits);
         let light = DVec3::new(3.0, 5.0, 4.0);
         let mut shadow: Vec<Ray> = primary
             .iter()
@@ -64,8 +64,11 @@ fn occluded(intersector: &dyn Intersector, rays: &[Ray], blocked: &mut [bool]) {
 }
 
 fn criterion(c: &mut Criterion, case: &Case) {
-    let (embree, bvh) = (Embree::build(&case.scene, 1).unwrap(), Bvh::build(&case.scene));
-    let single = Embree::build_single(&case.scene, 1).unwrap();
+    let (embree, bvh) = (
+        Embree::build(&case.scene, Precision::Fast, 1).unwrap(),
+        Bvh::build(&case.scene, Precision::Fast),
+    );
+    let single = Embree::build_single(&case.scene, Precision::Fast, 1).unwrap();
     let intersectors: [(&str, &dyn Intersector); 3] =
         [("embree packets", &embree), ("embree single", &single), ("bvh", &bvh)];
     for (name, intersector) in intersectors {
@@ -110,7 +113,7 @@ fn bare_criterion<const W: usize>(c: &mut Criterion, case: &Case) {
 /// Ours and the bare loop of the same width in turn; the medians and their ratio.
 fn ratios<const W: usize>(case: &Case) {
     let bare = Bare::build(&case.scene, W);
-    let embree = Embree::build(&case.scene, 1).unwrap();
+    let embree = Embree::build(&case.scene, Precision::Fast, 1).unwrap();
     let center = case.scene.bounds().center();
     let primary: Vec<Packet<W>> = packets(&case.primary, center);
     let shadow: Vec<Packet<W>> = packets(&case.shadow, center);

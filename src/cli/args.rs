@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::cli::files;
 use crate::error::{Error, Result};
 use crate::film::View;
-use crate::intersect::Backend;
+use crate::intersect::{Backend, Precision};
 use crate::scene::Scene;
 use crate::scene::check::MAX_SPP;
 
@@ -57,6 +57,9 @@ pub struct Tracing {
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
+    /// How far hits can be trusted: fast is f64 formulas and f32 traversal, certified is proven
+    #[arg(long, value_enum, default_value = "fast")]
+    pub precision: PrecisionName,
     /// Threads [default: all there are]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -149,6 +152,21 @@ impl BackendName {
             #[cfg(not(feature = "embree"))]
             BackendName::Embree => Err(Error::input("this envers was built without Embree")
                 .help("use `--backend rust`, or build with the feature `embree`")),
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PrecisionName {
+    Fast,
+    Certified,
+}
+
+impl From<PrecisionName> for Precision {
+    fn from(name: PrecisionName) -> Precision {
+        match name {
+            PrecisionName::Fast => Precision::Fast,
+            PrecisionName::Certified => Precision::Certified,
         }
     }
 }

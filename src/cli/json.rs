@@ -86,7 +86,7 @@ impl Stats {
         let rays = statistics.counts.rays;
         Self {
             backend: Backend { name, version },
-            precision: "fast",
+            precision: statistics.precision.name(),
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,

@@ -11,6 +11,7 @@ use crate::cli::json::Stats;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;
+use crate::intersect::Precision;
 use crate::render::{self, Options, Rendering};
 use crate::scene::{Scene, Transfer};
 use crate::write::{self, Format, Settings};
@@ -32,7 +33,8 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
-    let options = Options { backend, threads, camera, view };
+    let precision = arguments.tracing.precision.into();
+    let options = Options { backend, precision, threads, camera, view };
     let progress = progress_bar(arguments.tracing.quiet);
     let rendering =
         render::render(&scene, &options, &|share| progress.set_position((share * 1000.0) as u64))?;
@@ -49,7 +51,7 @@ pub fn run(arguments: &Render) -> Outcome {
         transfer: scene.film.transfer,
         exposure: arguments.exposure,
         half: arguments.half,
-        metadata: metadata(&scene, camera, view),
+        metadata: metadata(&scene, camera, view, precision),
     };
     for path in &outputs {
         write::write(&rendering.film, path, &settings)?;
@@ -160,7 +162,12 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
 }
 
 /// What determines the picture; never the time, the host, the threads or the backend.
-fn metadata(scene: &Scene, camera: usize, view: View) -> Vec<(String, String)> {
+fn metadata(
+    scene: &Scene,
+    camera: usize,
+    view: View,
+    precision: Precision,
+) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
     let transfer = match scene.film.transfer {
         Transfer::Srgb => "srgb",
@@ -172,7 +179,7 @@ fn metadata(scene: &Scene, camera: usize, view: View) -> Vec<(String, String)> {
         ("spp", scene.film.spp.to_string()),
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
         ("view", format!("{view:?}").to_lowercase()),
-        ("precision", "fast".to_owned()),
+        ("precision", precision.name().to_owned()),
         ("png_transfer", transfer.to_owned()),
     ]
     .map(|(name, value)| (name.to_owned(), value))

@@ -5,6 +5,7 @@
 //! compiler vectorised the caller.
 
 mod bounds;
+mod estimate;
 mod hit;
 pub mod plane;
 mod ray;
@@ -12,5 +13,6 @@ pub mod sphere;
 pub mod triangle;
 
 pub use bounds::Bounds;
+pub use estimate::Estimate;
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use ray::{Departure, Ray, Side};

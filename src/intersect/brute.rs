@@ -1,32 +1,33 @@
 //! Every ray against every primitive: slow, and with nothing to go wrong.
 
 use crate::geometry::{Hit, PrimitiveId, Ray};
-use crate::intersect::{Coherence, Intersector, primitive};
+use crate::intersect::primitive::Primitives;
+use crate::intersect::{Coherence, Intersector, Precision};
 use crate::scene::Scene;
 
 /// The intersector that tries everything; for tests.
 pub struct BruteForce<'s> {
-    scene: &'s Scene,
+    primitives: Primitives<'s>,
 }
 
 impl<'s> BruteForce<'s> {
     /// An intersector of a checked scene.
-    pub fn new(scene: &'s Scene) -> Self {
-        Self { scene }
+    pub fn new(scene: &'s Scene, precision: Precision) -> Self {
+        Self { primitives: Primitives { scene, precision } }
     }
 
     /// Every hit of the ray, in no particular order.
     pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
-        let (scene, ray) = (self.scene, *ray);
+        let (primitives, ray) = (self.primitives, *ray);
+        let scene = primitives.scene;
         let inverse = 1.0 / ray.direction.length_squared();
         let spheres = (0..scene.spheres.len() as u32)
-            .filter_map(move |i| primitive::meet_sphere(scene, i, &ray, inverse));
-        let planes = (0..scene.planes.len() as u32)
-            .filter_map(move |i| primitive::meet_plane(scene, i, &ray));
+            .filter_map(move |i| primitives.sphere(i, &ray, inverse, f64::INFINITY));
+        let planes = (0..scene.planes.len() as u32).filter_map(move |i| primitives.plane(i, &ray));
         let triangles = (0..scene.instances.len() as u32).flat_map(move |instance| {
             let mesh = scene.instances[instance as usize].mesh.0;
             (0..scene.meshes[mesh as usize].triangles.len() as u32).filter_map(move |t| {
-                primitive::meet_triangle(scene, PrimitiveId::triangle(mesh, t, instance), &ray)
+                primitives.triangle(PrimitiveId::triangle(mesh, t, instance), &ray, f64::INFINITY)
             })
         });
         spheres.chain(planes).chain(triangles)
@@ -53,7 +54,7 @@ impl Intersector for BruteForce<'_> {
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.all(ray).any(|hit| self.scene.casts_shadow(hit.id));
+            *blocked = self.all(ray).any(|hit| self.primitives.scene.casts_shadow(hit.id));
         }
     }
 }

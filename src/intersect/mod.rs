@@ -53,6 +53,26 @@ pub trait Intersector: Send + Sync {
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
 }
 
+/// How far a hit can be trusted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// The formulas in f64, and on Embree triangles found by f32 rays.
+    #[default]
+    Fast,
+    /// The answer of exact arithmetic on the baked scene, for every ray.
+    Certified,
+}
+
+impl Precision {
+    /// What it is called: `fast` or `certified`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Precision::Fast => "fast",
+            Precision::Certified => "certified",
+        }
+    }
+}
+
 /// Which intersector to use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
@@ -78,13 +98,18 @@ impl Backend {
     ///
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
-    pub fn build(self, scene: &Scene, threads: usize) -> Result<Box<dyn Intersector + '_>> {
+    pub fn build(
+        self,
+        scene: &Scene,
+        precision: Precision,
+        threads: usize,
+    ) -> Result<Box<dyn Intersector + '_>> {
         match self {
             #[cfg(feature = "embree")]
-            Backend::Embree => Ok(Box::new(Embree::build(scene, threads)?)),
+            Backend::Embree => Ok(Box::new(Embree::build(scene, precision, threads)?)),
             Backend::Rust => {
                 let _ = threads; // The BVH is built on the caller's rayon pool.
-                Ok(Box::new(Bvh::build(scene)))
+                Ok(Box::new(Bvh::build(scene, precision)))
             }
         }
     }

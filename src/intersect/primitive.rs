@@ -7,54 +7,117 @@
 //! meets that plane at its origin and nowhere else.
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
+use crate::intersect::Precision;
 use crate::scene::Scene;
 use glam::DVec3;
 
-/// Where `ray` meets sphere `index`, with `inverse_length_squared` = 1 / |direction|².
-#[inline]
-pub fn meet_sphere(
-    scene: &Scene,
-    index: u32,
-    ray: &Ray,
-    inverse_length_squared: f64,
-) -> Option<Hit> {
-    let s = &scene.spheres[index as usize];
-    let id = PrimitiveId::sphere(index);
-    let inward = match ray.from {
-        Some(from) if from.id == id => match from.side {
-            Side::Front => return None, // A convex body is not met again from outside.
-            Side::Back => true,
-        },
-        _ => false,
-    };
-    let roots =
-        sphere::roots(s.center, s.radius, ray.origin, ray.direction, inverse_length_squared)?;
-    let t = sphere::first_root(roots, ray.tmax, inward)?;
-    Some(Hit { t, u: 0.0, v: 0.0, id })
+/// The primitives of a scene, as a precision tests them.
+#[derive(Clone, Copy, Debug)]
+pub struct Primitives<'s> {
+    /// The scene.
+    pub scene: &'s Scene,
+    /// By which arithmetic.
+    pub precision: Precision,
 }
 
-/// Where `ray` meets plane `index`.
-#[inline]
-pub fn meet_plane(scene: &Scene, index: u32, ray: &Ray) -> Option<Hit> {
-    let p = &scene.planes[index as usize];
-    let id = PrimitiveId::plane(index);
-    if ray.from.is_some_and(|from| from.id == id) {
-        return None;
+impl Primitives<'_> {
+    /// Where `ray` meets sphere `index`, with `inverse_length_squared` = 1 / |direction|². A hit
+    /// beyond `limit` may be left out.
+    #[inline]
+    pub fn sphere(
+        &self,
+        index: u32,
+        ray: &Ray,
+        inverse_length_squared: f64,
+        limit: f64,
+    ) -> Option<Hit> {
+        let s = &self.scene.spheres[index as usize];
+        let id = PrimitiveId::sphere(index);
+        let inward = match ray.from {
+            Some(from) if from.id == id => match from.side {
+                Side::Front => return None, // A convex body is not met again from outside.
+                Side::Back => true,
+            },
+            _ => false,
+        };
+        let (origin, direction) = (ray.origin, ray.direction);
+        let inverse = inverse_length_squared;
+        let t = match self.precision {
+            Precision::Fast => {
+                let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
+                sphere::first_root(roots, ray.tmax, inward)?
+            }
+            Precision::Certified => {
+                use sphere::certified::{estimate, first_root};
+                // The estimate is of the near root, which a ray that goes inward leaves out.
+                if !inward
+                    && estimate(s.center, s.radius, origin, direction, inverse).is_outside(limit)
+                {
+                    return None;
+                }
+                first_root(s.center, s.radius, origin, direction, ray.tmax, inward)?
+            }
+        };
+        Some(Hit { t, u: 0.0, v: 0.0, id })
     }
-    let t = plane::intersect(p.point, p.normal, ray.origin, ray.direction)?;
-    (t > 0.0 && t < ray.tmax).then_some(Hit { t, u: 0.0, v: 0.0, id })
-}
 
-/// Where `ray` meets the triangle `id`.
-#[inline]
-pub fn meet_triangle(scene: &Scene, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
-    if ray.from.is_some_and(|from| from.id == id) {
-        return None;
+    /// Where `ray` meets plane `index`.
+    #[inline]
+    pub fn plane(&self, index: u32, ray: &Ray) -> Option<Hit> {
+        let p = &self.scene.planes[index as usize];
+        let id = PrimitiveId::plane(index);
+        if ray.from.is_some_and(|from| from.id == id) {
+            return None;
+        }
+        let t = match self.precision {
+            Precision::Fast => plane::intersect(p.point, p.normal, ray.origin, ray.direction)
+                .filter(|&t| t > 0.0 && t < ray.tmax)?,
+            Precision::Certified => {
+                plane::certified::crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
+            }
+        };
+        Some(Hit { t, u: 0.0, v: 0.0, id })
     }
-    let corners = scene.triangle(id);
-    let hit = triangle::intersect(corners, ray.origin, ray.direction)?;
-    let within = hit.t > 0.0 && hit.t < ray.tmax;
-    (within && !starts_on(scene, corners, ray)).then_some(Hit { t: hit.t, u: hit.u, v: hit.v, id })
+
+    /// Where `ray` meets the triangle `id`. A hit beyond `limit` may be left out.
+    #[inline]
+    pub fn triangle(&self, id: PrimitiveId, ray: &Ray, limit: f64) -> Option<Hit> {
+        if ray.from.is_some_and(|from| from.id == id) {
+            return None;
+        }
+        let corners = self.scene.triangle(id);
+        let crossing = match self.precision {
+            Precision::Fast => triangle::intersect(corners, ray.origin, ray.direction)
+                .filter(|hit| hit.t > 0.0 && hit.t < ray.tmax)?,
+            Precision::Certified => {
+                use triangle::certified::{crossing, estimate};
+                if estimate(corners, ray.origin, ray.direction).is_outside(limit) {
+                    return None;
+                }
+                crossing(corners, ray.origin, ray.direction, ray.tmax)?
+            }
+        };
+        let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
+        (!starts_on(self.scene, corners, ray)).then_some(hit)
+    }
+
+    /// Merges the infinite planes into a hit on what is finite: they stand in no tree, since
+    /// nothing infinite can be bounded.
+    #[inline]
+    pub fn merge_planes(&self, ray: &Ray, best: &mut Option<Hit>) {
+        for index in 0..self.scene.planes.len() as u32 {
+            if let Some(hit) = self.plane(index, ray) {
+                Hit::keep_first(best, hit);
+            }
+        }
+    }
+
+    /// Whether a plane that casts a shadow stands in the ray's way.
+    #[inline]
+    pub fn planes_occlude(&self, ray: &Ray) -> bool {
+        (0..self.scene.planes.len() as u32)
+            .any(|i| self.scene.planes[i as usize].casts_shadow && self.plane(i, ray).is_some())
+    }
 }
 
 /// Whether the ray left a neighbour of the triangle with these corners, at a point of the
@@ -78,30 +141,16 @@ pub fn starts_on(scene: &Scene, corners: [DVec3; 3], ray: &Ray) -> bool {
     corners.iter().any(|c| left.contains(c))
 }
 
-/// Merges the infinite planes into a hit on what is finite: they stand in no tree, since nothing
-/// infinite can be bounded.
-#[inline]
-pub fn merge_planes(scene: &Scene, ray: &Ray, best: &mut Option<Hit>) {
-    for index in 0..scene.planes.len() as u32 {
-        if let Some(hit) = meet_plane(scene, index, ray) {
-            Hit::keep_first(best, hit);
-        }
-    }
-}
-
-/// Whether a plane that casts a shadow stands in the ray's way.
-#[inline]
-pub fn planes_occlude(scene: &Scene, ray: &Ray) -> bool {
-    (0..scene.planes.len() as u32)
-        .any(|i| scene.planes[i as usize].casts_shadow && meet_plane(scene, i, ray).is_some())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geometry::Departure;
     use crate::scene::{Instance, MaterialId, Mesh, Plane, Sphere};
     use glam::DAffine3;
+
+    fn fast(scene: &Scene) -> Primitives<'_> {
+        Primitives { scene, precision: Precision::Fast }
+    }
 
     fn roof() -> Scene {
         // Two triangles that share the edge x = 0 and rise away from it: a valley.
@@ -125,7 +174,7 @@ mod tests {
         let id = PrimitiveId::triangle(0, 0, 0);
         let origin = DVec3::new(0.5, 0.5 + 1e-17, 0.0);
         let ray = leaving(origin, DVec3::new(1.0, -1.0, 0.0), id, Side::Back);
-        assert_eq!(meet_triangle(&scene, id, &ray), None);
+        assert_eq!(fast(&scene).triangle(id, &ray, f64::INFINITY), None);
     }
 
     #[test]
@@ -137,7 +186,10 @@ mod tests {
             PrimitiveId::triangle(0, 0, 0),
             Side::Front,
         );
-        assert_eq!(meet_triangle(&scene, PrimitiveId::triangle(0, 1, 0), &ray), None);
+        assert_eq!(
+            fast(&scene).triangle(PrimitiveId::triangle(0, 1, 0), &ray, f64::INFINITY),
+            None
+        );
     }
 
     #[test]
@@ -149,7 +201,8 @@ mod tests {
             PrimitiveId::triangle(0, 0, 0),
             Side::Front,
         );
-        let hit = meet_triangle(&scene, PrimitiveId::triangle(0, 1, 0), &ray).unwrap();
+        let hit =
+            fast(&scene).triangle(PrimitiveId::triangle(0, 1, 0), &ray, f64::INFINITY).unwrap();
         assert_eq!(hit.t, 0.5);
     }
 
@@ -159,7 +212,7 @@ mod tests {
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let inside = DVec3::X * (1.0 - 1e-16);
         let ray = leaving(inside, DVec3::new(1e-9, 1.0, 0.0), PrimitiveId::sphere(0), Side::Front);
-        assert_eq!(meet_sphere(&scene, 0, &ray, 1.0), None);
+        assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY), None);
     }
 
     #[test]
@@ -167,7 +220,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let ray = leaving(DVec3::X, -DVec3::X, PrimitiveId::sphere(0), Side::Back);
-        assert_eq!(meet_sphere(&scene, 0, &ray, 1.0).unwrap().t, 2.0);
+        assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY).unwrap().t, 2.0);
     }
 
     #[test]
@@ -177,7 +230,7 @@ mod tests {
         let ray = Ray::new(DVec3::Y * 2.0, -DVec3::Y);
         for (t, expected) in [(1.0, 1.0), (3.0, 2.0)] {
             let mut best = Some(Hit { t, u: 0.0, v: 0.0, id: PrimitiveId::triangle(0, 0, 0) });
-            merge_planes(&scene, &ray, &mut best);
+            fast(&scene).merge_planes(&ray, &mut best);
             assert_eq!(best.unwrap().t, expected);
         }
     }
@@ -186,7 +239,7 @@ mod tests {
     fn end_of_a_segment_is_not_met() {
         let mut scene = Scene::default();
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0)));
-        assert!(!planes_occlude(&scene, &Ray::between(DVec3::Y, DVec3::ZERO)));
-        assert!(planes_occlude(&scene, &Ray::between(DVec3::Y, -DVec3::Y)));
+        assert!(!fast(&scene).planes_occlude(&Ray::between(DVec3::Y, DVec3::ZERO)));
+        assert!(fast(&scene).planes_occlude(&Ray::between(DVec3::Y, -DVec3::Y)));
     }
 }

@@ -87,14 +87,14 @@ pub fn validate(_: &Scene, _: usize, _: usize) -> Result<Validation> {
 /// When the scene is not valid, has no such camera, or Embree cannot be started.
 #[cfg(feature = "embree")]
 pub fn validate(scene: &Scene, camera: usize, threads: usize) -> Result<Validation> {
-    use crate::intersect::{Bvh, Embree};
+    use crate::intersect::{Bvh, Embree, Precision};
     use crate::render;
 
     scene.check()?;
     render::check_camera(scene, camera)?;
     render::in_pool(threads, || {
-        let embree = Embree::build(scene, rayon::current_num_threads())?;
-        let judge = Bvh::build(scene);
+        let embree = Embree::build(scene, Precision::Fast, rayon::current_num_threads())?;
+        let judge = Bvh::build(scene, Precision::Fast);
         Ok(compare::Comparer { scene, embree: &embree, judge: &judge, camera }.run())
     })
 }

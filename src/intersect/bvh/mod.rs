@@ -11,14 +11,15 @@ use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
-use crate::intersect::{Coherence, Intersector, primitive};
+use crate::intersect::primitive::Primitives;
+use crate::intersect::{Coherence, Intersector, Precision};
 use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
 use tree::{Line, Tree};
 
 /// The pure-Rust intersector.
 pub struct Bvh<'s> {
-    scene: &'s Scene,
+    primitives: Primitives<'s>,
     spheres: Tree,
     instances: Tree,
     /// For each instance, the way into its mesh's space.
@@ -35,7 +36,7 @@ struct Entry {
 
 impl<'s> Bvh<'s> {
     /// Builds the trees of a checked scene, on the current rayon pool.
-    pub fn build(scene: &'s Scene) -> Self {
+    pub fn build(scene: &'s Scene, precision: Precision) -> Self {
         let meshes: Vec<Tree> =
             scene.meshes.par_iter().map(|mesh| build(&triangle_bounds(mesh))).collect();
         let spheres: Vec<Bounds> = scene.spheres.iter().map(Sphere::bounds).collect();
@@ -61,7 +62,8 @@ impl<'s> Bvh<'s> {
             })
             .collect();
         let (spheres, instances) = (build(&spheres), build(&placed));
-        Self { scene, spheres, instances, entries, meshes }
+        let primitives = Primitives { scene, precision };
+        Self { primitives, spheres, instances, entries, meshes }
     }
 
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
@@ -70,14 +72,13 @@ impl<'s> Bvh<'s> {
         let inverse = 1.0 / ray.direction.length_squared();
         let line = Line::new(ray.origin, ray.direction, 1.0);
         let done = self.spheres.walk(&line, limit, |index, limit| {
-            primitive::meet_sphere(self.scene, index, ray, inverse)
-                .is_some_and(|hit| visit(hit, limit))
+            self.primitives.sphere(index, ray, inverse, *limit).is_some_and(|hit| visit(hit, limit))
         });
         if done {
             return;
         }
         self.instances.walk(&line, limit, |instance, limit| {
-            let mesh = self.scene.instances[instance as usize].mesh.0;
+            let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
             let entry = &self.entries[instance as usize];
             let local = Line::new(
                 entry.inverse.transform_point3(ray.origin),
@@ -86,7 +87,7 @@ impl<'s> Bvh<'s> {
             );
             self.meshes[mesh as usize].walk(&local, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
-                primitive::meet_triangle(self.scene, id, ray).is_some_and(|hit| visit(hit, limit))
+                self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))
             })
         });
     }
@@ -119,18 +120,18 @@ impl Intersector for Bvh<'_> {
                 *limit = limit.min(hit.t);
                 false
             });
-            primitive::merge_planes(self.scene, ray, best);
+            self.primitives.merge_planes(ray, best);
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = primitive::planes_occlude(self.scene, ray);
+            *blocked = self.primitives.planes_occlude(ray);
             if !*blocked {
                 let mut limit = ray.tmax;
                 self.visit(ray, &mut limit, |hit, _| {
-                    *blocked = self.scene.casts_shadow(hit.id);
+                    *blocked = self.primitives.scene.casts_shadow(hit.id);
                     *blocked
                 });
             }
@@ -156,7 +157,7 @@ mod tests {
         let scene = Scene::default();
         let mut hits = [None];
         let ray = [Ray::new(DVec3::ZERO, DVec3::X)];
-        Bvh::build(&scene).closest(&ray, Coherence::Coherent, &mut hits);
+        Bvh::build(&scene, Precision::Fast).closest(&ray, Coherence::Coherent, &mut hits);
         assert_eq!(hits, [None]);
     }
 
@@ -166,7 +167,7 @@ mod tests {
         let scene = Scene { spheres, ..Scene::default() };
         let mut hits = [None];
         let ray = [Ray::new(DVec3::ZERO, DVec3::Z)];
-        Bvh::build(&scene).closest(&ray, Coherence::Coherent, &mut hits);
+        Bvh::build(&scene, Precision::Fast).closest(&ray, Coherence::Coherent, &mut hits);
         let hit = hits[0].unwrap();
         assert_eq!((hit.id.geometry, hit.id.primitive), (Geometry::Spheres, 0));
     }

@@ -7,8 +7,9 @@
 use embree4_sys as sys;
 
 use crate::geometry::PrimitiveId;
+use crate::intersect::Precision;
 use crate::intersect::embree::layout::{Context, INVALID};
-use crate::intersect::primitive;
+use crate::intersect::primitive::Primitives;
 
 /// The fields of a hit, after `W` of each field of the ray.
 const PRIM: usize = 5;
@@ -64,5 +65,6 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     }
     let end = (context.exact.tmax[lane] - context.exact.start[lane]) * context.exact.unit[lane];
     let sure = t > context.doubt && f64::from(t) < end - f64::from(context.doubt);
-    sure || primitive::meet_triangle(context.scene, id, ray).is_some()
+    let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
+    sure || primitives.triangle(id, ray, f64::INFINITY).is_some()
 }

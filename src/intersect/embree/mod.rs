@@ -28,7 +28,7 @@ use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Ray};
-use crate::intersect::{Coherence, Intersector};
+use crate::intersect::{Coherence, Intersector, Precision};
 use crate::scene::{Instance, Mesh, Scene};
 use canary::failed;
 use frame::Frame;
@@ -41,6 +41,7 @@ pub struct Embree<'s> {
     scene: &'s Scene,
     frame: Frame,
     width: Width,
+    precision: Precision,
     /// For each geometry that is attached, the instance that stands there.
     instance_of: Vec<u32>,
     committed: CommittedScene,
@@ -61,8 +62,8 @@ impl<'s> Embree<'s> {
     ///
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
-    pub fn build(scene: &'s Scene, threads: usize) -> Result<Self> {
-        Self::with_width(scene, threads, None)
+    pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
+        Self::with_width(scene, precision, threads, None)
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -70,11 +71,16 @@ impl<'s> Embree<'s> {
     ///
     /// # Errors
     /// As [`Embree::build`].
-    pub fn build_single(scene: &'s Scene, threads: usize) -> Result<Self> {
-        Self::with_width(scene, threads, Some(Width::One))
+    pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
+        Self::with_width(scene, precision, threads, Some(Width::One))
     }
 
-    fn with_width(scene: &'s Scene, threads: usize, width: Option<Width>) -> Result<Self> {
+    fn with_width(
+        scene: &'s Scene,
+        precision: Precision,
+        threads: usize,
+        width: Option<Width>,
+    ) -> Result<Self> {
         static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
         CHECKED
             .get_or_init(|| canary::check().map_err(|e| e.to_string()))
@@ -98,7 +104,8 @@ impl<'s> Embree<'s> {
             .commit()
             .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
         let version = version_of(&device);
-        Ok(Self { scene, frame, width, instance_of, committed, version, _spheres: spheres })
+        let _spheres = spheres;
+        Ok(Self { scene, frame, width, precision, instance_of, committed, version, _spheres })
     }
 
     /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
@@ -115,6 +122,7 @@ impl<'s> Embree<'s> {
             instance_of: &self.instance_of,
             frame: &self.frame,
             width: self.width,
+            precision: self.precision,
         }
     }
 }
@@ -287,8 +295,8 @@ mod tests {
         let mut state = 7;
         let scene = scene(&mut state);
         let rays = rays(&mut state);
-        let embree = Embree::with_width(&scene, 1, Some(width)).unwrap();
-        let judge = Bvh::build(&scene);
+        let embree = Embree::with_width(&scene, Precision::Fast, 1, Some(width)).unwrap();
+        let judge = Bvh::build(&scene, Precision::Fast);
         let closest = |i: &dyn Intersector| {
             let mut hits = vec![None; rays.len()];
             i.closest(&rays, Coherence::Incoherent, &mut hits);

@@ -9,7 +9,8 @@ use crate::intersect::embree::frame::{Exact, Frame};
 use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
 use crate::intersect::embree::refine::refine;
 use crate::intersect::embree::width::Width;
-use crate::intersect::{Coherence, primitive};
+use crate::intersect::primitive::Primitives;
+use crate::intersect::{Coherence, Precision};
 use crate::scene::Scene;
 
 /// A committed Embree scene and what belongs to it.
@@ -20,9 +21,14 @@ pub struct Target<'a> {
     pub instance_of: &'a [u32],
     pub frame: &'a Frame,
     pub width: Width,
+    pub precision: Precision,
 }
 
 impl Target<'_> {
+    fn primitives(&self) -> Primitives<'_> {
+        Primitives { scene: self.scene, precision: self.precision }
+    }
+
     /// The closest hit of each ray.
     pub fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
         // SAFETY: the widths with target features are only chosen where the processor has them.
@@ -160,7 +166,7 @@ fn closest<const W: usize>(
         }
         if !target.scene.planes.is_empty() {
             for (ray, hit) in rays.iter().zip(hits) {
-                primitive::merge_planes(target.scene, ray, hit);
+                target.primitives().merge_planes(ray, hit);
             }
         }
     }
@@ -214,7 +220,7 @@ fn occluded<const W: usize>(
         }
         for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
             let found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
-            *blocked = found || primitive::planes_occlude(target.scene, ray);
+            *blocked = found || target.primitives().planes_occlude(ray);
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Ray and infinite plane.
 
+pub mod certified;
+
 use glam::DVec3;
 
 /// Where the line `origin + t·direction` meets the plane through `point` with normal `normal`

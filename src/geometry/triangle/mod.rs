@@ -7,6 +7,8 @@
 //! ray slips between them. Compare Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*
 //! (JCGT 2013).
 
+pub mod certified;
+
 use glam::DVec3;
 
 /// Where a line crosses a triangle: `t` in units of the direction, `u` and `v` the weights of the

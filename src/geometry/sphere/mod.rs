@@ -6,6 +6,8 @@
 //! Intersection* (Ray Tracing Gems, ch. 7): the discriminant is r² minus the squared distance of
 //! the centre from the line, and the root that would cancel comes from the other one's quotient.
 
+pub mod certified;
+
 use glam::DVec3;
 
 /// The two distances, lesser first, at which a line crosses a sphere.
