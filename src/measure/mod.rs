@@ -1,6 +1,7 @@
 //! What measures the renderer: one backend against the other, one picture against another.
 
 mod dispute;
+pub mod oracle;
 mod picture;
 mod validate;
 
