@@ -86,6 +86,12 @@ pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<Exact> {
     within(Exact::quotient(away, toward, scale - direction_scale), ray.tmax)
 }
 
+/// Where the ray meets the plane through three points, at 0 < t < `ray.tmax`; `None` also when the
+/// points lie on a line.
+pub fn plane_of(corners: [DVec3; 3], ray: &Ray) -> Option<Exact> {
+    Facet::new(corners, ray).t(ray.tmax)
+}
+
 /// Where the ray crosses the triangle at 0 < t < `ray.tmax`.
 ///
 /// A line along the triangle's plane does not cross it, and nothing crosses a degenerate one. A
@@ -93,28 +99,51 @@ pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<Exact> {
 /// moved by (ε, ε², ε³) with ε > 0 and beyond all measure small, so that of the triangles at an
 /// edge or a vertex exactly one of each sheet is crossed.
 pub fn triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Crossing> {
-    let [a, b, c] = corners;
-    let ([a, b, c, origin], scale) = common_scale_of([a, b, c, ray.origin]);
-    let ([direction], direction_scale) = common_scale_of([ray.direction]);
-    let normal = cross(&sub(&b, &a), &sub(&c, &a));
-    let toward = dot(&direction, &normal);
-    if toward.is_zero() {
-        return None;
-    }
-    let edges = [(&b, &c), (&c, &a), (&a, &b)].map(|(p, q)| Edge::new(p, q, &origin, &direction));
+    let facet = Facet::new(corners, ray);
+    let t = facet.t(ray.tmax)?;
+    let [a, b, c] = &facet.corners;
+    let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| Edge::new(p, q, &facet));
     if edges[0].side != edges[1].side || edges[1].side != edges[2].side {
         return None;
     }
-    let away = dot(&normal, &sub(&a, &origin));
-    let t = within(Exact::quotient(away, toward.clone(), scale - direction_scale), ray.tmax)?;
-    // The edge functions add up to the product that says how steep the ray is.
+    // The edge functions add up to d·n.
     let weight = |edge: &Edge| {
         if edge.function.is_zero() {
             return 0.0;
         }
-        Exact::quotient(edge.function.clone(), toward.clone(), 0).to_f64()
+        Exact::quotient(edge.function.clone(), facet.toward.clone(), 0).to_f64()
     };
     Some(Crossing { t, u: weight(&edges[1]), v: weight(&edges[2]) })
+}
+
+/// A ray and three points, in integers.
+struct Facet {
+    corners: [Vector; 3],
+    origin: Vector,
+    direction: Vector,
+    /// d·n, with n across the plane of the points.
+    toward: IBig,
+    /// n·(a − o): the distance is this over d·n.
+    away: IBig,
+    exponent: i64,
+}
+
+impl Facet {
+    fn new([a, b, c]: [DVec3; 3], ray: &Ray) -> Self {
+        let ([a, b, c, origin], scale) = common_scale_of([a, b, c, ray.origin]);
+        let ([direction], direction_scale) = common_scale_of([ray.direction]);
+        let normal = cross(&sub(&b, &a), &sub(&c, &a));
+        let (toward, away) = (dot(&direction, &normal), dot(&normal, &sub(&a, &origin)));
+        let exponent = scale - direction_scale;
+        Self { corners: [a, b, c], origin, direction, toward, away, exponent }
+    }
+
+    fn t(&self, tmax: f64) -> Option<Exact> {
+        if self.toward.is_zero() {
+            return None;
+        }
+        within(Exact::quotient(self.away.clone(), self.toward.clone(), self.exponent), tmax)
+    }
 }
 
 /// On which side a line passes an edge.
@@ -126,7 +155,8 @@ struct Edge {
 }
 
 impl Edge {
-    fn new(p: &Vector, q: &Vector, origin: &Vector, direction: &Vector) -> Self {
+    fn new(p: &Vector, q: &Vector, facet: &Facet) -> Self {
+        let Facet { origin, direction, .. } = facet;
         let function = dot(direction, &cross(&sub(p, origin), &sub(q, origin)));
         // Moving the origin by δ adds δ · (d × (q − p)); the powers of ε come one after another.
         let shift = cross(direction, &sub(q, p));
