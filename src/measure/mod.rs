@@ -3,6 +3,7 @@
 mod dispute;
 pub mod oracle;
 mod picture;
+pub mod stress;
 mod validate;
 
 pub use dispute::{Cause, Disputes};

@@ -113,7 +113,13 @@ impl fmt::Display for Table<'_> {
         writeln!(
             f,
             "goal  {:cell$}  {:method$}  {:>9}  {:>7}  {:>10}   {:20}  {:20}",
-            "cell", "method", "rays", "wrong", "worst", "fast: wrong, worst", "b²-4ac: wrong, worst"
+            "cell",
+            "method",
+            "rays",
+            "wrong",
+            "worst",
+            "fast: wrong, worst",
+            "b²-4ac: wrong, worst"
         )?;
         for row in self.0 {
             let t = &row.tally;

@@ -10,10 +10,7 @@ use crate::intersect::{Bvh, Coherence, Intersector, Precision};
 use crate::scene::{Mesh, Scene};
 
 /// The intersectors of this build, and what to call them together.
-pub fn intersectors(
-    scene: &Scene,
-    precision: Precision,
-) -> Result<Vec<Box<dyn Intersector + '_>>> {
+pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn Intersector + '_>>> {
     let rust: Box<dyn Intersector> = Box::new(Bvh::build(scene, precision));
     #[cfg(feature = "embree")]
     let embree: Box<dyn Intersector> =

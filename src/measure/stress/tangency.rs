@@ -9,16 +9,14 @@ use crate::geometry::Ray;
 
 /// The cells, for the certified distance or one that is to fail.
 pub fn cells(method: Method) -> Vec<Cell> {
-    let beside = (20..=52).map(|k| {
-        Cell {
-            max_ulp: 0.5,
-            ..Cell::new(format!("impact R (1 ± 4·2^-{k})"), "certified", move |draw| {
-                Ok(draw.each(|_, random, tally| {
-                    let (center, radius, ray) = almost_touching(k, random);
-                    judge(method, center, radius, &ray, tally);
-                }))
-            })
-        }
+    let beside = (20..=52).map(|k| Cell {
+        max_ulp: 0.5,
+        ..Cell::new(format!("impact R (1 ± 4·2^-{k})"), "certified", move |draw| {
+            Ok(draw.each(|_, random, tally| {
+                let (center, radius, ray) = almost_touching(k, random);
+                judge(method, center, radius, &ray, tally);
+            }))
+        })
     });
     let touching = Cell {
         max_ulp: 0.5,
