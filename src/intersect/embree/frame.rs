@@ -200,15 +200,15 @@ impl<const W: usize> Exact<W> {
             let (o, d) = self.line(i);
             let p = (o - frame.center).abs();
             far |= p.max_element() > REACH * frame.extent;
-            far |= !(d.abs().max_element() >= f64::MIN_POSITIVE);
+            far |= d.abs().max_element() < f64::MIN_POSITIVE;
         }
         self.clip.start = [0.0; W];
         if far {
             for i in 0..W {
                 let (o, d) = self.line(i);
                 let distance = (o - frame.center).abs().max_element();
-                let lost = !(distance <= FAR * frame.extent);
-                lanes.astray[i] = lost | !(d.abs().max_element() >= f64::MIN_POSITIVE);
+                let lost = distance > FAR * frame.extent;
+                lanes.astray[i] = lost | (d.abs().max_element() < f64::MIN_POSITIVE);
                 lanes.any_astray |= lanes.astray[i];
                 let (start, enters) = self.enter(i, frame);
                 self.clip.start[i] = start;

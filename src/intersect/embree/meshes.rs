@@ -14,6 +14,7 @@ use embree4_sys::RTCSceneFlags;
 /// What Embree keeps the addresses of.
 #[derive(Default)]
 pub struct Meshes<'s> {
+    #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
     tables: Vec<Box<Triangles<'s>>>,
     inner: Vec<InnerScene>,
     placements: Option<Box<Placements>>,

@@ -101,8 +101,7 @@ impl Placement {
         for i in 0..W {
             let (o, d) = world.line(i);
             exact.set_line(i, self.entry.line(o, d));
-            // Written so that what is not a number is lost too.
-            lost[i] = !(self.entry.error(o) <= self.own.spare());
+            lost[i] = self.entry.error(o) > self.own.spare();
         }
         let mut ray = RayHit::<W>::new();
         let mut tfar = [0.0; W];
