@@ -8,6 +8,7 @@ mod brute;
 mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
+mod entry;
 pub mod primitive;
 
 pub use brute::BruteForce;

@@ -101,6 +101,18 @@ impl Primitives<'_> {
         (!starts_on(self.scene, corners, ray)).then_some(hit)
     }
 
+    /// Where `ray` meets whatever `id` names.
+    pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+        match id.geometry {
+            Geometry::Spheres => {
+                let inverse = 1.0 / ray.direction.length_squared();
+                self.sphere(id.primitive, ray, inverse, f64::INFINITY)
+            }
+            Geometry::Planes => self.plane(id.primitive, ray),
+            Geometry::Mesh(_) => self.triangle(id, ray, f64::INFINITY),
+        }
+    }
+
     /// Merges the infinite planes into a hit on what is finite: they stand in no tree, since
     /// nothing infinite can be bounded.
     #[inline]

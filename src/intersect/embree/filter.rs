@@ -63,7 +63,7 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     if ray.from.is_some_and(|from| from.id == id) {
         return false;
     }
-    let end = (context.exact.tmax[lane] - context.exact.start[lane]) * context.exact.unit[lane];
+    let end = (context.exact.tmax[lane] - context.clip.start[lane]) * context.clip.unit[lane];
     let sure = t > context.doubt && f64::from(t) < end - f64::from(context.doubt);
     let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
     sure || primitives.triangle(id, ray, f64::INFINITY).is_some()
