@@ -8,6 +8,7 @@ mod brute;
 mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
+mod leaving;
 pub mod primitive;
 
 pub use brute::BruteForce;

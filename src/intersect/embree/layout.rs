@@ -85,8 +85,8 @@ pub struct Context<'a, const W: usize> {
     /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
     /// tested again in f64.
     pub doubt: f32,
-    /// Whether any ray of the packet left a sphere.
-    pub leaves_spheres: bool,
+    /// Whether any ray of the packet left a surface.
+    pub leaves: bool,
 }
 
 impl<'a, const W: usize> Context<'a, W> {
@@ -106,7 +106,7 @@ impl<'a, const W: usize> Context<'a, W> {
             sphere_t: exact.tmax,
             sphere: [INVALID; W],
             doubt,
-            leaves_spheres: false,
+            leaves: false,
         }
     }
 }

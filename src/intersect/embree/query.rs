@@ -3,7 +3,7 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray};
+use crate::geometry::{Hit, PrimitiveId, Ray};
 use crate::intersect::embree::filter::filter;
 use crate::intersect::embree::frame::{Exact, Frame};
 use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
@@ -115,10 +115,10 @@ fn closest<const W: usize>(
         record.geom = [INVALID; W];
         record.inst = [INVALID; W];
         let valid = lanes(rays.len(), inside);
-        let filtered = rays.iter().any(|ray| ray.from.is_some());
+        let filtered = any_spawned(rays);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
-        context.leaves_spheres = filtered && leaves_spheres(rays);
+        context.leaves = filtered;
         let mut args = sys::RTCIntersectArguments {
             flags: query_flags(coherence, filtered),
             feature_mask: ALL_FEATURES,
@@ -187,7 +187,7 @@ fn occluded<const W: usize>(
         let valid = lanes(rays.len(), inside);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
-        context.leaves_spheres = leaves_spheres(rays);
+        context.leaves = any_spawned(rays);
         let mut args = sys::RTCOccludedArguments {
             flags: query_flags(coherence, true),
             feature_mask: ALL_FEATURES,
@@ -225,6 +225,6 @@ fn occluded<const W: usize>(
     }
 }
 
-fn leaves_spheres(rays: &[Ray]) -> bool {
-    rays.iter().any(|ray| ray.from.is_some_and(|from| from.id.geometry == Geometry::Spheres))
+fn any_spawned(rays: &[Ray]) -> bool {
+    rays.iter().any(|ray| ray.from.is_some())
 }
