@@ -123,6 +123,7 @@ impl<'s> Embree<'s> {
             frame: &self.frame,
             width: self.width,
             precision: self.precision,
+            careful: false,
         }
     }
 }

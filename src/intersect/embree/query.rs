@@ -22,6 +22,8 @@ pub struct Target<'a> {
     pub frame: &'a Frame,
     pub width: Width,
     pub precision: Precision,
+    /// Whether rays that left nothing are filtered, too.
+    pub careful: bool,
 }
 
 impl Target<'_> {
@@ -115,7 +117,7 @@ fn closest<const W: usize>(
         record.geom = [INVALID; W];
         record.inst = [INVALID; W];
         let valid = lanes(rays.len(), inside);
-        let filtered = any_spawned(rays);
+        let filtered = target.careful || any_spawned(rays);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
         context.leaves = filtered;
@@ -157,7 +159,13 @@ fn closest<const W: usize>(
                 ),
             }
         }
-        refine(target.scene, target.instance_of, &exact, &record, hits);
+        let all_within = refine(target.scene, target.instance_of, &exact, &record, hits);
+        if !all_within && !filtered {
+            // A ray that starts on a triangle, which hides what lies behind it: the filter drops
+            // it and lets Embree look on.
+            Target { careful: true, ..*target }.closest(rays, coherence, hits);
+            continue;
+        }
         for (i, hit) in hits.iter_mut().enumerate() {
             if context.sphere[i] != INVALID {
                 let id = PrimitiveId::sphere(context.sphere[i]);
