@@ -130,7 +130,7 @@ fn moved(scene: &Scene, turn: DQuat, by: DVec3) -> Scene {
     let direction = |d: &mut DVec3| *d = turn * *d;
     for camera in &mut scene.cameras {
         point(&mut camera.position);
-        [&mut camera.forward, &mut camera.right, &mut camera.up].map(direction);
+        [&mut camera.forward, &mut camera.right, &mut camera.up].into_iter().for_each(direction);
     }
     scene.spheres.iter_mut().for_each(|s| point(&mut s.center));
     for plane in &mut scene.planes {

@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench intersect` runs criterion over every case and then prints the ratios to
 //! the ceiling: medians of runs taken in turn, ours and the bare loop's. `-- ratios` prints the
-//! ratios only.
+//! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
 mod bare;
 mod scenes;
@@ -14,9 +14,10 @@ use bare::{Bare, Packet, packets};
 use criterion::{Criterion, Throughput};
 use envers::geometry::{Hit, Ray};
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
+use envers::render::{self, Options};
 use envers::scene::{Arrival, Scene};
 use envers::surface::Surface;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 struct Case {
     name: &'static str,
@@ -30,13 +31,12 @@ impl Case {
         let primary = scenes::primary(&scene);
         let mut hits = vec![None; primary.len()];
         Bvh::build(&scene, Precision::Fast).closest(&primary, Coherence::Coherent, &mut hits);
-        let light = DVec3::new(3.0, 5.0, 4.0);
         let mut shadow: Vec<Ray> = primary
             .iter()
             .zip(&hits)
             .filter_map(|(ray, hit)| {
                 let surface = Surface::new(&scene, ray, hit.as_ref()?);
-                let toward = light - surface.position;
+                let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
                 let arrival = Arrival { toward, bounded: true, intensity: Vec3::ONE };
                 lit.then(|| surface.shadow_ray(&arrival))
@@ -142,7 +142,64 @@ fn ratios<const W: usize>(case: &Case) {
     );
 }
 
-fn report(name: &str, width: usize, rays: usize, mut ours: impl FnMut(), mut bare: impl FnMut()) {
+/// What `certified` costs: its rays and whole frames beside those of `fast`, in turn.
+fn price(case: &Case) {
+    let build = |precision| Embree::build(&case.scene, precision, 1).unwrap();
+    let single = |precision| Embree::build_single(&case.scene, precision, 1).unwrap();
+    let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
+    let singles = (single(Precision::Fast), single(Precision::Certified));
+    let mut hits = [vec![None; case.primary.len()], vec![None; case.primary.len()]];
+    let mut blocked = [vec![false; case.shadow.len()], vec![false; case.shadow.len()]];
+    for (kind, fast, certified) in
+        [("packets", &fast, &certified), ("single", &singles.0, &singles.1)]
+    {
+        let [a, b] = &mut hits;
+        beside(
+            &format!("{} primary, {kind}", case.name),
+            ["certified", "fast"],
+            case.primary.len(),
+            || closest(certified, &case.primary, a),
+            || closest(fast, &case.primary, b),
+        );
+        let [a, b] = &mut blocked;
+        beside(
+            &format!("{} shadow, {kind}", case.name),
+            ["certified", "fast"],
+            case.shadow.len(),
+            || occluded(certified, &case.shadow, a),
+            || occluded(fast, &case.shadow, b),
+        );
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let options = Options::default();
+    let frame = |intersector: &Embree<'_>| {
+        pool.install(|| {
+            black_box(render::with_intersector(&case.scene, &options, intersector, &|_| {}));
+        });
+    };
+    let (_, counts, _) =
+        pool.install(|| render::with_intersector(&case.scene, &options, &fast, &|_| {}));
+    beside(
+        &format!("{} frame", case.name),
+        ["certified", "fast"],
+        counts.rays.total() as usize,
+        || frame(&certified),
+        || frame(&fast),
+    );
+}
+
+fn report(name: &str, width: usize, rays: usize, ours: impl FnMut(), bare: impl FnMut()) {
+    beside(name, ["envers", &format!("bare {width:>2}")], rays, ours, bare);
+}
+
+/// Times two in turn; prints the medians of their rates, and the median of their ratio.
+fn beside(
+    name: &str,
+    [first, second]: [&str; 2],
+    rays: usize,
+    mut ours: impl FnMut(),
+    mut bare: impl FnMut(),
+) {
     let time = |work: &mut dyn FnMut()| {
         let start = Instant::now();
         work();
@@ -164,15 +221,16 @@ fn report(name: &str, width: usize, rays: usize, mut ours: impl FnMut(), mut bar
     let (a, b, ratio) = (a[a.len() / 2], b[b.len() / 2], each[each.len() / 2]);
     let rate = |seconds: f64| rays as f64 / seconds * 1e-6;
     println!(
-        "{name:<12} envers {:7.2} Mrays/s, bare {width:>2} {:7.2} Mrays/s, ratio {ratio:.2}",
+        "{name:<20} {first} {:7.2} Mrays/s, {second} {:7.2} Mrays/s, ratio {ratio:.2} (1/{:.2})",
         rate(a),
-        rate(b)
+        rate(b),
+        1.0 / ratio
     );
 }
 
 fn main() {
     let cases = [Case::new("M", scenes::knot(2000, 250)), Case::new("S", scenes::spheres())];
-    let ratios_only = std::env::args().any(|a| a == "ratios");
+    let ratios_only = std::env::args().any(|a| a == "ratios" || a == "certified");
     // `cargo test --benches` runs this too: it must not take long, and measures nothing.
     if std::env::args().any(|a| a == "--test") {
         return;
@@ -181,6 +239,11 @@ fn main() {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         cases.iter().for_each(|case| criterion(&mut c, case));
         c.final_summary();
+    }
+    if std::env::args().any(|a| a == "certified") {
+        println!("what certified costs, one thread, medians of 37 in turn");
+        cases.iter().for_each(price);
+        return;
     }
     println!("ratio to the bare loop of the native width, one thread, medians of 37 in turn");
     for case in &cases {

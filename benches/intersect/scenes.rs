@@ -1,8 +1,9 @@
 //! The two scenes of the benches, made by formula, and the rays of their pictures.
 
 use envers::geometry::Ray;
-use envers::scene::{Camera, Instance, Lens, Material, Mesh, Scene, Sphere};
-use glam::{DAffine3, DVec3};
+use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind};
+use envers::scene::{Material, Mesh, Scene, Sphere};
+use glam::{DAffine3, DVec3, Vec3};
 
 /// Width and height of the pictures that are traced.
 pub const SIZE: [u32; 2] = [1000, 500];
@@ -62,9 +63,18 @@ fn finish(mut scene: Scene, eye: DVec3) -> Scene {
     scene.film.size = SIZE;
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.9));
     scene.cameras.push(camera.expect("the eye is not at the origin"));
+    scene.lights.push(Light {
+        name: String::new(),
+        kind: LightKind::Point { position: LIGHT, falloff: Falloff::None, range: f64::INFINITY },
+        intensity: Vec3::ONE,
+        casts_shadow: true,
+    });
     scene.check().expect("the benches' scenes are valid");
     scene
 }
+
+/// Where the light stands, to which shadow rays go.
+pub const LIGHT: DVec3 = DVec3::new(3.0, 5.0, 4.0);
 
 /// The primary rays of a picture in squares of four by four, as the renderer sends them.
 pub fn primary(scene: &Scene) -> Vec<Ray> {

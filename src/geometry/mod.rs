@@ -5,7 +5,9 @@
 //! compiler vectorised the caller.
 
 mod bounds;
+mod double;
 mod estimate;
+mod exact;
 mod hit;
 pub mod plane;
 mod ray;

@@ -16,6 +16,18 @@ impl<'s> BruteForce<'s> {
         Self { primitives: Primitives { scene, precision } }
     }
 
+    /// The closest hit of the ray, planes and all.
+    pub(crate) fn first(&self, ray: &Ray) -> Option<Hit> {
+        let mut best = None;
+        self.all(ray).for_each(|hit| Hit::keep_first(&mut best, hit));
+        best
+    }
+
+    /// Whether anything that casts a shadow stands in the ray's way.
+    pub(crate) fn blocks(&self, ray: &Ray) -> bool {
+        self.all(ray).any(|hit| self.primitives.scene.casts_shadow(hit.id))
+    }
+
     /// Every hit of the ray, in no particular order.
     pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let (primitives, ray) = (self.primitives, *ray);
@@ -46,15 +58,14 @@ impl Intersector for BruteForce<'_> {
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         for (ray, best) in rays.iter().zip(hits) {
-            *best = None;
-            self.all(ray).for_each(|hit| Hit::keep_first(best, hit));
+            *best = self.first(ray);
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.all(ray).any(|hit| self.primitives.scene.casts_shadow(hit.id));
+            *blocked = self.blocks(ray);
         }
     }
 }

@@ -8,6 +8,7 @@ mod brute;
 mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
+mod entry;
 mod leaving;
 pub mod primitive;
 

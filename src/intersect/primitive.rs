@@ -3,7 +3,7 @@
 //! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`leaving`],
 //! [`starts_in_plane`] and [`starts_on`] say which those are.
 
-use crate::geometry::{Hit, PrimitiveId, Ray, plane, sphere, triangle};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, plane, sphere, triangle};
 use crate::intersect::Precision;
 pub use crate::intersect::leaving::{Leaving, leaving, starts_in_plane, starts_on};
 use crate::scene::Scene;
@@ -97,6 +97,18 @@ impl Primitives<'_> {
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
         (!starts_on(self.scene, corners, ray)).then_some(hit)
+    }
+
+    /// Where `ray` meets whatever `id` names.
+    pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+        match id.geometry {
+            Geometry::Spheres => {
+                let inverse = 1.0 / ray.direction.length_squared();
+                self.sphere(id.primitive, ray, inverse, f64::INFINITY)
+            }
+            Geometry::Planes => self.plane(id.primitive, ray),
+            Geometry::Mesh(_) => self.triangle(id, ray, f64::INFINITY),
+        }
     }
 
     /// Merges the infinite planes into a hit on what is finite: they stand in no tree, since

@@ -1,8 +1,18 @@
 //! Ray and infinite plane, proven: the answer of exact arithmetic.
 
+use std::cmp::Ordering::Equal;
+
 use glam::DVec3;
+use num_bigint::BigInt;
+
+use crate::geometry::double::{Double, OMEGA, difference, dot, in_range};
+use crate::geometry::exact::{self, Rounded, Scale, minus, sign};
 
 /// Where the ray meets the plane with 0 < t < `tmax`, exactly, correctly rounded.
+///
+/// The numbers given are taken as they stand and the comparisons are those of the exact t; what
+/// is returned is the nearest f64 (ties to even), but neither 0 nor infinite. A ray within the
+/// plane or parallel to it does not meet it, nor does one that is not finite.
 pub fn crossing(
     point: DVec3,
     normal: DVec3,
@@ -10,5 +20,38 @@ pub fn crossing(
     direction: DVec3,
     tmax: f64,
 ) -> Option<f64> {
-    super::intersect(point, normal, origin, direction).filter(|&t| t > 0.0 && t < tmax)
+    // Each operation has the relative error ω, so that a sum of three products of components of
+    // at most α and β is off by 3ωαβ in its terms and 5ωαβ in its sums: 8ωαβ, doubled here.
+    let between = difference(point, origin);
+    let size = between.iter().fold(0.0, |size: f64, x| size.max(x.hi.abs()));
+    let (height, way) = (normal.abs().max_element(), direction.abs().max_element());
+    let n = normal.to_array();
+    let d = direction.to_array().map(|hi| Double { hi, lo: 0.0 });
+    let (divisor, bound) = (dot(d, n), 16.0 * OMEGA * height);
+    let (t, error) = dot(between, n).quotient(bound * size, divisor, bound * way);
+    let certain = 2.0 * bound * way <= divisor.hi.abs()
+        && t.rounds_to_hi(error)
+        && [size, height, way].into_iter().all(in_range);
+    // Where the rounded t is tmax itself, the exact one may lie on either side.
+    if certain && t.hi != tmax {
+        return (t.hi > 0.0 && t.hi < tmax).then_some(t.hi);
+    }
+    exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
+}
+
+/// The same in integers, however far.
+fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
+    if ![point, normal, origin, direction].into_iter().all(DVec3::is_finite) {
+        return None;
+    }
+    let place = Scale::of(point.to_array().into_iter().chain(origin.to_array()));
+    let (way, up) = (Scale::of(direction.to_array()), Scale::of(normal.to_array()));
+    let n = up.vector::<BigInt>(normal);
+    let numerator = exact::dot(&n, &minus(&place.vector(point), &place.vector(origin)));
+    let divisor = exact::dot(&n, &way.vector(direction));
+    if sign(&numerator) == Equal || sign(&numerator) != sign(&divisor) {
+        return None;
+    }
+    let exponent = i64::from(place.exponent) - i64::from(way.exponent);
+    Some(Rounded::quotient(&numerator, &divisor, exponent))
 }

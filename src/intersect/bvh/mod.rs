@@ -7,10 +7,11 @@
 mod build;
 mod tree;
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
+use crate::intersect::entry::Entry;
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{Coherence, Intersector, Precision};
 use crate::scene::{Mesh, Scene, Sphere};
@@ -25,13 +26,6 @@ pub struct Bvh<'s> {
     /// For each instance, the way into its mesh's space.
     entries: Vec<Entry>,
     meshes: Vec<Tree>,
-}
-
-/// The way into an instance.
-struct Entry {
-    inverse: DAffine3,
-    /// ‖M‖·‖M⁻¹‖, by which the rounding of a transformed ray grows.
-    condition: f64,
 }
 
 impl<'s> Bvh<'s> {
@@ -49,18 +43,7 @@ impl<'s> Bvh<'s> {
                 bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
             })
             .collect();
-        let entries = scene
-            .instances
-            .iter()
-            .map(|i| {
-                let inverse = i.transform.inverse();
-                let norm = |m: &DAffine3| {
-                    let m = &m.matrix3;
-                    m.x_axis.length() + m.y_axis.length() + m.z_axis.length()
-                };
-                Entry { inverse, condition: norm(&i.transform) * norm(&inverse) }
-            })
-            .collect();
+        let entries = scene.instances.iter().zip(&placed).map(|(i, b)| Entry::new(i, b)).collect();
         let (spheres, instances) = (build(&spheres), build(&placed));
         let primitives = Primitives { scene, precision };
         Self { primitives, spheres, instances, entries, meshes }
@@ -70,7 +53,7 @@ impl<'s> Bvh<'s> {
     /// keeps, until it returns true.
     fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
         let inverse = 1.0 / ray.direction.length_squared();
-        let line = Line::new(ray.origin, ray.direction, 1.0);
+        let line = Line::new(ray.origin, ray.direction, 0.0);
         let done = self.spheres.walk(&line, limit, |index, limit| {
             self.primitives.sphere(index, ray, inverse, *limit).is_some_and(|hit| visit(hit, limit))
         });
@@ -80,11 +63,8 @@ impl<'s> Bvh<'s> {
         self.instances.walk(&line, limit, |instance, limit| {
             let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
             let entry = &self.entries[instance as usize];
-            let local = Line::new(
-                entry.inverse.transform_point3(ray.origin),
-                entry.inverse.transform_vector3(ray.direction),
-                entry.condition,
-            );
+            let (origin, direction) = entry.line(ray.origin, ray.direction);
+            let local = Line::new(origin, direction, entry.error(ray.origin));
             self.meshes[mesh as usize].walk(&local, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
                 self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))

@@ -24,31 +24,26 @@ pub struct Node {
     pub(super) count: u32,
 }
 
+/// The error of the slab test, relative to the coordinates, with room to spare.
+const SLAB: f64 = 64.0 * f64::EPSILON;
+
 /// A line as the walk needs it: with reciprocals, and a margin for what was rounded.
 pub struct Line {
     inverse: DVec3,
-    /// The origin moved outward by the margin, as the lower and as the upper faces see it.
     origin: DVec3,
-    /// How far off, relative to the coordinates, origin and direction may be.
-    relative: f64,
-    /// The same for the origin's own coordinates.
+    /// By how much boxes are widened, for what does not depend on their own coordinates.
     margin: f64,
 }
 
 impl Line {
-    /// A line whose origin and direction are right to `condition` roundings.
+    /// A line that may be off by `error` on each axis, anywhere that matters.
     ///
-    /// The slab test below is off by a few ulp of |origin| + |box|, and a line that was taken
-    /// into an instance's space by about `condition` times as much: each box is widened by 64
-    /// times that, so that no box is missed whose primitive is hit.
-    pub fn new(origin: DVec3, direction: DVec3, condition: f64) -> Self {
-        let relative = 64.0 * f64::EPSILON * condition;
-        Self {
-            inverse: direction.recip(),
-            origin,
-            relative,
-            margin: relative * origin.abs().max_element(),
-        }
+    /// The slab test below is off by a few ulp of |origin| + |box|: each box is widened by
+    /// [`SLAB`] times that, and by the line's own error, so that no box is missed whose primitive
+    /// is hit.
+    pub fn new(origin: DVec3, direction: DVec3, error: f64) -> Self {
+        let margin = error + SLAB * origin.abs().max_element();
+        Self { inverse: direction.recip(), origin, margin }
     }
 
     /// Where the line enters the box, if it passes through it at some t in \[0, `limit`\].
@@ -82,7 +77,7 @@ impl Tree {
         mut test: impl FnMut(u32, &mut f64) -> bool,
     ) -> bool {
         let Some(root) = self.nodes.first() else { return false };
-        let margin = line.margin + line.relative * root.bounds.max_abs();
+        let margin = line.margin + SLAB * root.bounds.max_abs();
         let mut stack = [(0u32, 0.0f64); MAX_DEPTH + 1];
         let mut top = 0;
         let mut current = line.enters(&root.bounds, margin, *limit).map(|_| 0u32);

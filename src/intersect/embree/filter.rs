@@ -84,7 +84,7 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     if ray.from.is_some_and(|from| from.id == id) {
         return false;
     }
-    let end = (context.exact.tmax[lane] - context.exact.start[lane]) * context.exact.unit[lane];
+    let end = (context.exact.tmax[lane] - context.clip.start[lane]) * context.clip.unit[lane];
     // A ray that grazes a triangle in whose plane it starts or ends may seem to cross it anywhere.
     let height = context.doubt / 512.0;
     let clear =

@@ -22,6 +22,9 @@ use glam::DVec3;
 
 use crate::geometry::{Bounds, Ray};
 
+/// How far from the scene's centre, in units of L, a ray may start for f64 to move it to the box:
+/// the three roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to spare.
+const FAR: f64 = (1u32 << 27) as f64;
 /// How far from the scene's centre, in units of L, an f32 ray may start.
 const REACH: f64 = 4.0;
 /// By how much boxes of user geometry are widened, in units of L.
@@ -70,6 +73,16 @@ impl Frame {
         PAD * self.extent
     }
 
+    /// What of the padding is left for a ray that f64 itself places only so well, in this frame.
+    pub fn spare(&self) -> f64 {
+        2.0 / f64::from(1u32 << 24) * self.extent
+    }
+
+    /// The longest side of the box.
+    pub fn extent(&self) -> f64 {
+        self.extent
+    }
+
     /// Distance, in units of an f32 ray's direction, within which its t says nothing about which
     /// side of a surface it starts on: the errors above, with the direction at least 1 long and
     /// a triangle seen at a grazing angle allowed for.
@@ -86,10 +99,45 @@ pub struct Exact<const W: usize> {
     pub tmax: [f64; W],
     /// 1 / |direction|².
     pub inverse_length_squared: [f64; W],
+    /// Where on them the f32 rays lie.
+    pub clip: Clip<W>,
+}
+
+/// Where on the exact rays of a packet their f32 copies lie.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub struct Clip<const W: usize> {
     /// t at which the f32 ray starts.
     pub start: [f64; W],
     /// What a unit of t is along the f32 ray: a power of two.
     pub unit: [f64; W],
+}
+
+impl<const W: usize> Clip<W> {
+    /// The exact t of an f32 ray's t.
+    #[inline(always)]
+    pub fn widen(&self, i: usize, t: f32) -> f64 {
+        self.start[i] + f64::from(t) / self.unit[i]
+    }
+
+    /// An exact t along the f32 ray, with more slack than the f32 arithmetic on both sides of a
+    /// comparison with it can use up; never below 0.
+    #[inline(always)]
+    pub fn narrow(&self, i: usize, t: f64) -> f32 {
+        let t = (t - self.start[i]) * self.unit[i];
+        round_up(t.max(0.0) * (1.0 + 1.0 / (1 << 20) as f64))
+    }
+}
+
+/// Which rays of a packet to trace.
+pub struct Lanes<const W: usize> {
+    /// Those that come into the box at all.
+    pub inside: [bool; W],
+    /// Those that no f32 ray can stand for: they start too far away, or their direction is so
+    /// short that f64 has lost its digits. They count as not inside.
+    pub astray: [bool; W],
+    /// Whether there is one of these.
+    pub any_astray: bool,
 }
 
 impl<const W: usize> Exact<W> {
@@ -99,8 +147,7 @@ impl<const W: usize> Exact<W> {
             direction: [[0.0; W]; 3],
             tmax: [0.0; W],
             inverse_length_squared: [0.0; W],
-            start: [0.0; W],
-            unit: [1.0; W],
+            clip: Clip { start: [0.0; W], unit: [1.0; W] },
         }
     }
 
@@ -111,6 +158,15 @@ impl<const W: usize> Exact<W> {
         (at(&self.origin), at(&self.direction))
     }
 
+    /// Sets the ray in lane `i`: its origin and direction.
+    #[inline(always)]
+    pub fn set_line(&mut self, i: usize, (origin, direction): (DVec3, DVec3)) {
+        for axis in 0..3 {
+            self.origin[axis][i] = origin[axis];
+            self.direction[axis][i] = direction[axis];
+        }
+    }
+
     /// Takes up `rays`, at most `W` of them; the lanes left over repeat the last one.
     ///
     /// # Panics
@@ -119,10 +175,7 @@ impl<const W: usize> Exact<W> {
     pub fn load(&mut self, rays: &[Ray]) {
         for i in 0..W {
             let ray = &rays[i.min(rays.len() - 1)];
-            for axis in 0..3 {
-                self.origin[axis][i] = ray.origin[axis];
-                self.direction[axis][i] = ray.direction[axis];
-            }
+            self.set_line(i, (ray.origin, ray.direction));
             self.tmax[i] = ray.tmax;
         }
         for i in 0..W {
@@ -133,7 +186,6 @@ impl<const W: usize> Exact<W> {
 
     /// Sets up the f32 rays: where they start, how long their directions are, where they end.
     ///
-    /// Returns which lanes need tracing: those whose ray comes into the scene's box at all.
     #[inline(always)]
     pub fn set_up(
         &mut self,
@@ -141,19 +193,26 @@ impl<const W: usize> Exact<W> {
         org: &mut [[f32; W]; 3],
         dir: &mut [[f32; W]; 3],
         tfar: &mut [f32; W],
-    ) -> [bool; W] {
-        let mut inside = [true; W];
+    ) -> Lanes<W> {
+        let mut lanes = Lanes { inside: [true; W], astray: [false; W], any_astray: false };
         let mut far = false;
         for i in 0..W {
-            let p = (self.line(i).0 - frame.center).abs();
+            let (o, d) = self.line(i);
+            let p = (o - frame.center).abs();
             far |= p.max_element() > REACH * frame.extent;
+            far |= d.abs().max_element() < f64::MIN_POSITIVE;
         }
-        self.start = [0.0; W];
+        self.clip.start = [0.0; W];
         if far {
-            for (i, inside) in inside.iter_mut().enumerate() {
+            for i in 0..W {
+                let (o, d) = self.line(i);
+                let distance = (o - frame.center).abs().max_element();
+                let lost = distance > FAR * frame.extent;
+                lanes.astray[i] = lost | (d.abs().max_element() < f64::MIN_POSITIVE);
+                lanes.any_astray |= lanes.astray[i];
                 let (start, enters) = self.enter(i, frame);
-                self.start[i] = start;
-                *inside = enters;
+                self.clip.start[i] = start;
+                lanes.inside[i] = enters & !lanes.astray[i];
             }
         }
         for i in 0..W {
@@ -163,16 +222,16 @@ impl<const W: usize> Exact<W> {
             let exponent = (largest.to_bits() >> 52).clamp(1, 2045);
             let unit = f64::from_bits(exponent << 52);
             let shrink = f64::from_bits((2046 - exponent) << 52);
-            self.unit[i] = unit;
-            let start = o - frame.center + d * self.start[i];
+            self.clip.unit[i] = unit;
+            let start = o - frame.center + d * self.clip.start[i];
             for axis in 0..3 {
                 let component = d[axis] * shrink;
                 dir[axis][i] = if component.abs() < NEGLIGIBLE { 0.0 } else { component as f32 };
                 org[axis][i] = start[axis] as f32;
             }
-            tfar[i] = round_up((self.tmax[i] - self.start[i]) * unit);
+            tfar[i] = round_up((self.tmax[i] - self.clip.start[i]) * unit);
         }
-        inside
+        lanes
     }
 
     /// t at which ray `i` enters the scene's box, and whether it does before it ends.
@@ -186,20 +245,6 @@ impl<const W: usize> Exact<W> {
         let start = near.max_element().max(0.0);
         let end = far.min_element().min(self.tmax[i]);
         if start <= end { (start, true) } else { (0.0, false) }
-    }
-
-    /// The exact t of an f32 ray's t.
-    #[inline(always)]
-    pub fn widen(&self, i: usize, t: f32) -> f64 {
-        self.start[i] + f64::from(t) / self.unit[i]
-    }
-
-    /// An exact t along the f32 ray, with more slack than the f32 arithmetic on both sides of a
-    /// comparison with it can use up; never below 0.
-    #[inline(always)]
-    pub fn narrow(&self, i: usize, t: f64) -> f32 {
-        let t = (t - self.start[i]) * self.unit[i];
-        round_up(t.max(0.0) * (1.0 + 1.0 / (1 << 20) as f64))
     }
 }
 
@@ -224,7 +269,7 @@ mod tests {
         let mut exact = Exact::<1>::new();
         exact.load(&[ray]);
         let (mut org, mut dir, mut tfar) = ([[0.0]; 3], [[0.0]; 3], [0.0]);
-        let inside = exact.set_up(frame, &mut org, &mut dir, &mut tfar)[0];
+        let inside = exact.set_up(frame, &mut org, &mut dir, &mut tfar).inside[0];
         (exact, org.map(|a| a[0]), dir.map(|a| a[0]), tfar[0], inside)
     }
 
@@ -262,7 +307,7 @@ mod tests {
         let frame = unit_frame(DVec3::ZERO);
         let ray = Ray::between(DVec3::ZERO, DVec3::X * 0.1);
         let (exact, _, _, tfar, _) = single(&frame, ray);
-        assert!(exact.widen(0, tfar) >= 1.0 && exact.widen(0, tfar) < 1.000001);
+        assert!((1.0..1.000001).contains(&exact.clip.widen(0, tfar)));
     }
 
     #[test]
@@ -289,7 +334,7 @@ mod tests {
             prop_assert!(inside);
             // The exact point of the ray nearest the target, and the f32 ray there.
             let t = (offset + to - ray.origin).dot(direction) / direction.length_squared();
-            let along = (t - exact.start[0]) * exact.unit[0];
+            let along = (t - exact.clip.start[0]) * exact.clip.unit[0];
             let p = DVec3::from(org.map(f64::from)) + DVec3::from(dir.map(f64::from)) * along;
             let error = (p - (ray.at(t) - frame.center)).abs().max_element();
             prop_assert!(error <= 0.5 * PAD, "{error:e}");

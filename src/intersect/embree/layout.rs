@@ -6,7 +6,8 @@
 //! `canary` proves at start that the library agrees.
 
 use crate::geometry::Ray;
-use crate::intersect::embree::frame::Exact;
+use crate::intersect::embree::frame::{Clip, Exact};
+use crate::intersect::embree::nearest::Nearest;
 use crate::scene::Scene;
 
 /// What Embree writes where there is no geometry or no instance.
@@ -77,11 +78,15 @@ pub struct Context<'a, const W: usize> {
     pub rays: &'a [Ray],
     /// The same, side by side.
     pub exact: &'a Exact<W>,
+    /// Where on the exact rays the f32 rays lie that are being traced; within an instance they
+    /// are its own.
+    pub clip: Clip<W>,
+    /// The instance whose mesh is being traced in its own space.
+    pub instance: u32,
     /// For each geometry of the Embree scene the instance that stands there.
     pub instance_of: &'a [u32],
-    /// The nearest sphere of each ray so far: its distance, exactly, or infinity, and its index.
-    pub sphere_t: [f64; W],
-    pub sphere: [u32; W],
+    /// What the callbacks have found: in precision `fast` spheres, in `certified` everything.
+    pub nearest: Nearest<W>,
     /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
     /// tested again in f64.
     pub doubt: f32,
@@ -102,11 +107,12 @@ impl<'a, const W: usize> Context<'a, W> {
             scene,
             rays,
             exact,
+            clip: exact.clip,
+            instance: INVALID,
             instance_of,
-            sphere_t: exact.tmax,
-            sphere: [INVALID; W],
+            nearest: Nearest::new(exact.tmax),
             doubt,
-            leaves: false,
+            leaves: rays.iter().any(|ray| ray.from.is_some()),
         }
     }
 }

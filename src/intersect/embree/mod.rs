@@ -1,38 +1,51 @@
-//! The Embree intersector, precision `fast`.
+//! The Embree intersector.
 //!
-//! Embree traverses recentred f32 copies of the rays (`frame`); spheres are one user geometry
-//! whose callbacks compute in f64 from the exact rays (`spheres`); the triangles that Embree
-//! reports are intersected again in f64 (`refine`); planes are merged as for every backend. What
-//! this does not promise is which of two triangles is hit where f32 cannot tell: along edges and
-//! at equal depths.
+//! Embree traverses recentred f32 copies of the rays (`frame`); planes are merged as for every
+//! backend.
+//!
+//! Precision `fast`: spheres are one user geometry whose callbacks compute in f64 from the exact
+//! rays (`spheres`); the triangles that Embree reports (`native`) are intersected again in f64
+//! (`refine`). What this does not promise is which of two triangles is hit where f32 cannot tell:
+//! along edges and at equal depths.
+//!
+//! Precision `certified`: spheres, triangles and instances are all user geometry (`meshes`,
+//! `placements`), in boxes that no exact ray can miss with its f32 copy; each is tested in f64
+//! with an error bound, and exactly where that cannot tell (`certified`).
 //!
 //! embree4-rs owns device, scene, meshes and their lifetimes. Its ray queries are not used: they
 //! take records smaller than the library writes (`layout`).
 
 mod canary;
+mod certified;
 mod filter;
 mod frame;
 mod layout;
+mod meshes;
+mod native;
+mod nearest;
+mod placements;
 mod query;
 mod raw;
 mod refine;
 mod spheres;
+mod triangles;
+mod user;
 mod width;
 
 use std::sync::OnceLock;
 
-use embree4_rs::geometry::{Geometry, TriangleMeshGeometry};
+use embree4_rs::geometry::Geometry;
 use embree4_rs::{CommittedScene, Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
-use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Ray};
 use crate::intersect::{Coherence, Intersector, Precision};
-use crate::scene::{Instance, Mesh, Scene};
+use crate::scene::Scene;
 use canary::failed;
 use frame::Frame;
-use raw::{DeviceHandle, InnerScene, InstanceGeometry, scene_handle};
+use meshes::Meshes;
+use raw::{DeviceHandle, scene_handle};
 use spheres::SphereTable;
 use width::Width;
 
@@ -48,6 +61,7 @@ pub struct Embree<'s> {
     version: String,
     /// Read by the callbacks; dropped after the scene that calls them.
     _spheres: Option<Box<SphereTable>>,
+    _meshes: Meshes<'s>,
 }
 
 // SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
@@ -94,18 +108,35 @@ impl<'s> Embree<'s> {
         let frame = Frame::around(scene.bounds());
         let width = width.unwrap_or_else(|| Width::native(&device));
 
-        let instance_of = attach_meshes(scene, &top, &device, &frame)?;
-        let spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
-        if let Some(table) = &spheres {
-            let geometry = spheres::geometry(&top.device, &device, table, width)?;
-            top.attach_geometry(&geometry).map_err(failed)?;
+        let mut instance_of = Vec::new();
+        let mut _meshes = Meshes::default();
+        match precision {
+            Precision::Fast => instance_of = native::attach_meshes(scene, &top, &device, &frame)?,
+            Precision::Certified => _meshes.attach(scene, &top, &device, frame, width)?,
+        }
+        let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
+        if let Some(table) = &_spheres {
+            let callbacks = match precision {
+                Precision::Fast => spheres::callbacks(width),
+                Precision::Certified => certified::spheres(width),
+            };
+            attach(&top, &user::geometry(&top.device, &device, &**table, callbacks)?)?;
         }
         let committed = top
             .commit()
             .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
         let version = version_of(&device);
-        let _spheres = spheres;
-        Ok(Self { scene, frame, width, precision, instance_of, committed, version, _spheres })
+        Ok(Self {
+            scene,
+            frame,
+            width,
+            precision,
+            instance_of,
+            committed,
+            version,
+            _spheres,
+            _meshes,
+        })
     }
 
     /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
@@ -134,67 +165,15 @@ fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS
 }
 
-/// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
-/// stands several times through Embree's instances. Says which instance each geometry is.
-fn attach_meshes(
-    scene: &Scene,
-    top: &embree4_rs::Scene,
-    device: &DeviceHandle,
-    frame: &Frame,
-) -> Result<Vec<u32>> {
-    let mut uses = vec![0u32; scene.meshes.len()];
-    scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
-    // An instanced mesh is recentred too: a model may stand far from its own origin.
-    let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
-    let mut instance_of = Vec::new();
-    for (index, instance) in scene.instances.iter().enumerate() {
-        let at = instance.mesh.0 as usize;
-        let mesh = &scene.meshes[at];
-        if mesh.triangles.is_empty() {
-            continue;
-        }
-        if uses[at] == 1 {
-            let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
-            attach(top, &geometry)?;
-        } else {
-            if inner[at].is_none() {
-                let center = mesh.bounds().center();
-                let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
-                let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
-                inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
-            }
-            if let Some((built, center)) = &inner[at] {
-                let columns = columns(instance, *center, frame);
-                attach(top, &InstanceGeometry::new(device, built, &columns)?)?;
-            }
-        }
-        instance_of.push(index as u32);
-    }
-    Ok(instance_of)
-}
-
 fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<()> {
     top.attach_geometry(geometry).map(|_| ()).map_err(failed)
 }
 
-fn upload(
-    device: &Device,
-    mesh: &Mesh,
-    place: impl Fn([f32; 3]) -> [f32; 3],
-) -> Result<TriangleMeshGeometry> {
-    let vertices: Vec<(f32, f32, f32)> = mesh.positions.iter().map(|&p| place(p).into()).collect();
-    let triangles: Vec<(u32, u32, u32)> = mesh.triangles.iter().map(|&t| t.into()).collect();
-    TriangleMeshGeometry::try_new(device, &vertices, &triangles)
-        .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
-}
-
-/// The matrix from the mesh's space, recentred on `center`, to the recentred world.
-fn columns(instance: &Instance, center: DVec3, frame: &Frame) -> [[f32; 3]; 4] {
-    let m = DAffine3::from_translation(-frame.center)
-        * instance.transform
-        * DAffine3::from_translation(center);
-    [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
-        .map(|column| column.as_vec3().to_array())
+/// How often each mesh stands in the scene.
+fn uses(scene: &Scene) -> Vec<u32> {
+    let mut uses = vec![0; scene.meshes.len()];
+    scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
+    uses
 }
 
 fn version_of(device: &DeviceHandle) -> String {
@@ -242,7 +221,8 @@ mod tests {
     use super::*;
     use crate::geometry::{Departure, PrimitiveId, Side};
     use crate::intersect::Bvh;
-    use crate::scene::{MaterialId, Sphere};
+    use crate::scene::{Instance, MaterialId, Mesh, Sphere};
+    use glam::{DAffine3, DVec3};
 
     /// Numbers in [-1, 1) from a linear congruence (Knuth's MMIX constants).
     fn random(state: &mut u64) -> f64 {
@@ -293,11 +273,16 @@ mod tests {
     }
 
     fn check(width: Width) {
+        compare(width, Precision::Fast);
+        compare(width, Precision::Certified);
+    }
+
+    fn compare(width: Width, precision: Precision) {
         let mut state = 7;
         let scene = scene(&mut state);
         let rays = rays(&mut state);
-        let embree = Embree::with_width(&scene, Precision::Fast, 1, Some(width)).unwrap();
-        let judge = Bvh::build(&scene, Precision::Fast);
+        let embree = Embree::with_width(&scene, precision, 1, Some(width)).unwrap();
+        let judge = Bvh::build(&scene, precision);
         let closest = |i: &dyn Intersector| {
             let mut hits = vec![None; rays.len()];
             i.closest(&rays, Coherence::Incoherent, &mut hits);

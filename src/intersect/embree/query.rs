@@ -10,7 +10,7 @@ use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
 use crate::intersect::embree::refine::refine;
 use crate::intersect::embree::width::Width;
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{Coherence, Precision};
+use crate::intersect::{BruteForce, Coherence, Precision};
 use crate::scene::Scene;
 
 /// A committed Embree scene and what belongs to it.
@@ -29,6 +29,11 @@ pub struct Target<'a> {
 impl Target<'_> {
     fn primitives(&self) -> Primitives<'_> {
         Primitives { scene: self.scene, precision: self.precision }
+    }
+
+    /// What rays are left to that no f32 ray can stand for.
+    fn brute_force(&self) -> BruteForce<'_> {
+        BruteForce::new(self.scene, self.precision)
     }
 
     /// The closest hit of each ray.
@@ -59,25 +64,25 @@ impl Target<'_> {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn closest_8(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
     closest::<8>(target, rays, c, hits);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
 fn closest_16(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
     closest::<16>(target, rays, c, hits);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn occluded_8(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
     occluded::<8>(target, rays, c, blocked);
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
 fn occluded_16(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
     occluded::<16>(target, rays, c, blocked);
 }
@@ -94,7 +99,7 @@ fn query_flags(coherence: Coherence, filtered: bool) -> sys::RTCRayQueryFlags {
 const ALL_FEATURES: sys::RTCFeatureFlags = sys::RTCFeatureFlags(u32::MAX);
 
 #[inline(always)]
-fn lanes<const W: usize>(count: usize, inside: [bool; W]) -> Valid<W> {
+fn lanes<const W: usize>(count: usize, inside: &[bool; W]) -> Valid<W> {
     let mut valid = Valid([0; W]);
     for i in 0..W {
         valid.0[i] = if inside[i] & (i < count) { -1 } else { 0 };
@@ -113,14 +118,13 @@ fn closest<const W: usize>(
     let mut record = RayHit::<W>::new();
     for (rays, hits) in rays.chunks(W).zip(hits.chunks_mut(W)) {
         exact.load(rays);
-        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
         record.geom = [INVALID; W];
         record.inst = [INVALID; W];
-        let valid = lanes(rays.len(), inside);
-        let filtered = target.careful || any_spawned(rays);
+        let valid = lanes(rays.len(), &entry.inside);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
-        context.leaves = filtered;
+        let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
         let mut args = sys::RTCIntersectArguments {
             flags: query_flags(coherence, filtered),
             feature_mask: ALL_FEATURES,
@@ -159,17 +163,29 @@ fn closest<const W: usize>(
                 ),
             }
         }
-        let all_within = refine(target.scene, target.instance_of, &exact, &record, hits);
-        if !all_within && !filtered {
-            // A ray that starts on a triangle, which hides what lies behind it: the filter drops
-            // it and lets Embree look on.
-            Target { careful: true, ..*target }.closest(rays, coherence, hits);
-            continue;
-        }
-        for (i, hit) in hits.iter_mut().enumerate() {
-            if context.sphere[i] != INVALID {
-                let id = PrimitiveId::sphere(context.sphere[i]);
-                Hit::keep_first(hit, Hit { t: context.sphere_t[i], u: 0.0, v: 0.0, id });
+        match target.precision {
+            Precision::Fast => {
+                let all_within = refine(target.scene, target.instance_of, &exact, &record, hits);
+                if !all_within && !filtered {
+                    // A ray that starts on a triangle, which hides what lies behind it: the filter
+                    // drops it and lets Embree look on.
+                    Target { careful: true, ..*target }.closest(rays, coherence, hits);
+                    continue;
+                }
+                for (i, hit) in hits.iter_mut().enumerate() {
+                    if context.nearest.primitive[i] != INVALID {
+                        let id = PrimitiveId::sphere(context.nearest.primitive[i]);
+                        Hit::keep_first(hit, Hit { t: context.nearest.t[i], u: 0.0, v: 0.0, id });
+                    }
+                }
+            }
+            Precision::Certified => {
+                context.finish(hits);
+                if entry.any_astray {
+                    for i in (0..rays.len()).filter(|&i| entry.astray[i]) {
+                        hits[i] = target.brute_force().first(&rays[i]);
+                    }
+                }
             }
         }
         if !target.scene.planes.is_empty() {
@@ -191,16 +207,16 @@ fn occluded<const W: usize>(
     let mut record = RayHit::<W>::new();
     for (rays, blocked) in rays.chunks(W).zip(blocked.chunks_mut(W)) {
         exact.load(rays);
-        let inside = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
-        let valid = lanes(rays.len(), inside);
+        let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let valid = lanes(rays.len(), &entry.inside);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
-        context.leaves = any_spawned(rays);
+        let filtered = target.precision == Precision::Fast;
         let mut args = sys::RTCOccludedArguments {
-            flags: query_flags(coherence, true),
+            flags: query_flags(coherence, filtered),
             feature_mask: ALL_FEATURES,
             context: std::ptr::from_mut(&mut context).cast(),
-            filter: Some(filter::<W, true>),
+            filter: if filtered { Some(filter::<W, true>) } else { None },
             occluded: None,
         };
         let record_ptr = std::ptr::from_mut(&mut record);
@@ -227,12 +243,11 @@ fn occluded<const W: usize>(
             }
         }
         for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
-            let found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
+            let mut found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
+            if entry.any_astray && entry.astray[i] && target.precision == Precision::Certified {
+                found = target.brute_force().blocks(ray);
+            }
             *blocked = found || target.primitives().planes_occlude(ray);
         }
     }
-}
-
-fn any_spawned(rays: &[Ray]) -> bool {
-    rays.iter().any(|ray| ray.from.is_some())
 }

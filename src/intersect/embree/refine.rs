@@ -68,7 +68,7 @@ pub fn refine<const W: usize>(
             if !(t > 0.0 && t < exact.tmax[i]) {
                 all_within = false;
                 let last = exact.tmax[i].next_down();
-                t = exact.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
+                t = exact.clip.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
             }
             let (mut u, mut v) = (us[i], vs[i]);
             if !(u.is_finite() && v.is_finite()) {

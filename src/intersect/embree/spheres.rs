@@ -1,18 +1,16 @@
-//! The spheres as one user geometry, and the callbacks that Embree calls for it.
+//! The spheres as one user geometry, and the callbacks of precision `fast` for it.
 //!
 //! The callbacks compute in f64 from the exact rays that travel in the query context; of Embree's
 //! own ray they only lower `tfar`, rounded up, so that what lies behind is skipped. The nearest
 //! sphere stays in the context. They are arithmetic only: nothing in them allocates or unwinds.
 #![allow(unsafe_code)]
 
-use embree4_rs::geometry::{Geometry, UserGeometry, UserGeometryImpl};
 use embree4_sys as sys;
 
-use crate::error::{Error, Result};
-use crate::geometry::sphere;
+use crate::geometry::{Bounds, sphere};
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit};
-use crate::intersect::embree::raw::DeviceHandle;
+use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
 use crate::intersect::primitive::{Leaving, leaving};
 use crate::scene::Scene;
@@ -21,14 +19,15 @@ use glam::DVec3;
 /// What the callbacks need of the spheres.
 pub struct SphereTable {
     frame: Frame,
-    spheres: Vec<Entry>,
+    pub spheres: Vec<Entry>,
 }
 
+/// A sphere without what only shading needs.
 #[derive(Clone, Copy)]
-struct Entry {
-    center: DVec3,
-    radius: f64,
-    casts_shadow: bool,
+pub struct Entry {
+    pub center: DVec3,
+    pub radius: f64,
+    pub casts_shadow: bool,
 }
 
 impl SphereTable {
@@ -43,112 +42,28 @@ impl SphereTable {
     }
 }
 
-/// Takes the place of a value in embree4-rs's own user geometry, whose callbacks are replaced.
-struct Unused;
-
-impl UserGeometryImpl for Unused {
-    fn bounds(&self) -> sys::RTCBounds {
-        sys::RTCBounds::default()
+impl Table for SphereTable {
+    fn len(&self) -> usize {
+        self.spheres.len()
     }
 
-    fn intersect(&self, _: u32, _: u32, _: &sys::RTCRayQueryContext, _: &mut sys::RTCRayHit) {}
-}
-
-/// The user geometry over `table`, which must outlive the scene that it is attached to.
-pub fn geometry(
-    device: &embree4_rs::Device,
-    errors: &DeviceHandle,
-    table: &SphereTable,
-    width: Width,
-) -> Result<impl Geometry + use<>> {
-    let geometry = UserGeometry::try_new(device, &Unused)
-        .map_err(|e| Error::failed(format!("Embree failed while making the spheres: {e}")))?;
-    let count = u32::try_from(table.spheres.len())
-        .map_err(|_| Error::input("more than 4,294,967,295 spheres"))?;
-    let (intersect, occluded) = callbacks(width);
-    let handle = geometry.handle;
-    // SAFETY: the handle is live; the table stays where it is until the scene is gone; the
-    // callbacks read it as what it is, and the contexts are those that `query` passes.
-    unsafe {
-        sys::rtcSetGeometryUserPrimitiveCount(handle, count);
-        sys::rtcSetGeometryUserData(handle, std::ptr::from_ref(table).cast_mut().cast());
-        sys::rtcSetGeometryBoundsFunction(handle, Some(bounds), std::ptr::null_mut());
-        sys::rtcSetGeometryIntersectFunction(handle, Some(intersect));
-        sys::rtcSetGeometryOccludedFunction(handle, Some(occluded));
-        sys::rtcCommitGeometry(handle);
-    }
-    errors.check("making the spheres")?;
-    Ok(geometry)
-}
-
-type Intersect = unsafe extern "C" fn(*const sys::RTCIntersectFunctionNArguments);
-type Occluded = unsafe extern "C" fn(*const sys::RTCOccludedFunctionNArguments);
-
-/// The callbacks for packets of `width`, compiled for a processor that has such packets.
-fn callbacks(width: Width) -> (Intersect, Occluded) {
-    match width {
-        Width::One => (one::intersect, one::occluded),
-        Width::Four => (four::intersect, four::occluded),
-        #[cfg(target_arch = "x86_64")]
-        Width::Eight => (eight::intersect, eight::occluded),
-        #[cfg(target_arch = "x86_64")]
-        Width::Sixteen => (sixteen::intersect, sixteen::occluded),
+    fn bounds(&self, index: u32) -> (Bounds, &Frame) {
+        let s = &self.spheres[index as usize];
+        (Bounds { lower: s.center - s.radius, upper: s.center + s.radius }, &self.frame)
     }
 }
 
-/// The two callbacks for one width, with the processor features that it comes with.
-macro_rules! callbacks_for {
-    ($name:ident, $width:literal, $(#[$attribute:meta])*) => {
-        mod $name {
-            use super::*;
-
-            // SAFETY, for both: Embree calls them with what it was given in `geometry` and in
-            // `query`; those with target features are only chosen by `Width::native`, which asks
-            // the processor.
-
-            $(#[$attribute])*
-            pub unsafe extern "C" fn intersect(args: *const sys::RTCIntersectFunctionNArguments) {
-                unsafe { super::intersect::<$width>(&*args) }
-            }
-
-            $(#[$attribute])*
-            pub unsafe extern "C" fn occluded(args: *const sys::RTCOccludedFunctionNArguments) {
-                unsafe { super::occluded::<$width>(&*args) }
-            }
-        }
-    };
-}
-
-callbacks_for!(one, 1,);
-callbacks_for!(four, 4,);
-#[cfg(target_arch = "x86_64")]
-callbacks_for!(eight, 8, #[target_feature(enable = "avx2")]);
-#[cfg(target_arch = "x86_64")]
-callbacks_for!(sixteen, 16, #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]);
-
-unsafe extern "C" fn bounds(args: *const sys::RTCBoundsFunctionArguments) {
-    // SAFETY: Embree passes the user data set in `geometry` and a primitive below its count.
-    unsafe {
-        let args = &*args;
-        let table = &*args.geometryUserPtr.cast::<SphereTable>();
-        let s = table.spheres.get_unchecked(args.primID as usize);
-        let bounds =
-            crate::geometry::Bounds { lower: s.center - s.radius, upper: s.center + s.radius };
-        let (lower, upper) = table.frame.padded(&bounds);
-        (*args.bounds_o).lower_x = lower[0];
-        (*args.bounds_o).lower_y = lower[1];
-        (*args.bounds_o).lower_z = lower[2];
-        (*args.bounds_o).upper_x = upper[0];
-        (*args.bounds_o).upper_y = upper[1];
-        (*args.bounds_o).upper_z = upper[2];
-    }
+/// The callbacks for packets of `width`.
+pub fn callbacks(width: Width) -> Callbacks {
+    callbacks_for!(width)
 }
 
 /// Keeps the nearest sphere of each ray in the context.
 #[inline(always)]
-unsafe fn intersect<const W: usize>(args: &sys::RTCIntersectFunctionNArguments) {
+unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArguments) {
     // SAFETY: the pointers are Embree's, for `N` rays; the context is ours, for `W` of them.
     unsafe {
+        let args = &*args;
         let table = &*args.geometryUserPtr.cast::<SphereTable>();
         let s = table.spheres.get_unchecked(args.primID as usize);
         let context = &mut *args.context.cast::<Context<'_, W>>();
@@ -160,14 +75,15 @@ unsafe fn intersect<const W: usize>(args: &sys::RTCIntersectFunctionNArguments) 
                 let Some(ts) = crossings(context, s, valid, args.primID) else { return };
                 for i in 0..W {
                     // A tie goes to the sphere with the lesser index.
-                    let nearer = ts[i] < context.sphere_t[i]
-                        || (ts[i] == context.sphere_t[i] && args.primID < context.sphere[i]);
+                    let nearer = ts[i] < context.nearest.t[i]
+                        || (ts[i] == context.nearest.t[i]
+                            && args.primID < context.nearest.primitive[i]);
                     let nearer = nearer && ts[i] < context.exact.tmax[i];
                     if nearer {
-                        context.sphere_t[i] = ts[i];
-                        context.sphere[i] = args.primID;
+                        context.nearest.t[i] = ts[i];
+                        context.nearest.primitive[i] = args.primID;
                     }
-                    let end = context.exact.narrow(i, ts[i]);
+                    let end = context.clip.narrow(i, ts[i]);
                     if nearer && end < record.tfar[i] {
                         record.tfar[i] = end;
                     }
@@ -183,13 +99,13 @@ unsafe fn intersect<const W: usize>(args: &sys::RTCIntersectFunctionNArguments) 
             }
             let i = *floats.add(ID * n + slot).cast::<u32>() as usize;
             let t = crossing(context, s, args.primID, i);
-            let nearer = t < context.sphere_t[i]
-                || (t == context.sphere_t[i] && args.primID < context.sphere[i]);
+            let nearer = t < context.nearest.t[i]
+                || (t == context.nearest.t[i] && args.primID < context.nearest.primitive[i]);
             if nearer && t < context.exact.tmax[i] {
-                context.sphere_t[i] = t;
-                context.sphere[i] = args.primID;
+                context.nearest.t[i] = t;
+                context.nearest.primitive[i] = args.primID;
                 let tfar = floats.add(TFAR * n + slot);
-                *tfar = context.exact.narrow(i, t).min(*tfar);
+                *tfar = context.clip.narrow(i, t).min(*tfar);
             }
         }
     }
@@ -197,9 +113,10 @@ unsafe fn intersect<const W: usize>(args: &sys::RTCIntersectFunctionNArguments) 
 
 /// Marks the rays that the sphere keeps from their end.
 #[inline(always)]
-unsafe fn occluded<const W: usize>(args: &sys::RTCOccludedFunctionNArguments) {
+unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArguments) {
     // SAFETY: as in `intersect`; the ray part of the record is the same.
     unsafe {
+        let args = &*args;
         let table = &*args.geometryUserPtr.cast::<SphereTable>();
         let s = table.spheres.get_unchecked(args.primID as usize);
         if !s.casts_shadow {
@@ -232,20 +149,6 @@ unsafe fn occluded<const W: usize>(args: &sys::RTCOccludedFunctionNArguments) {
             }
         }
     }
-}
-
-/// The positions of `tfar` and `id` among the ray's fields.
-const TFAR: usize = 8;
-const ID: usize = 10;
-
-/// Whether the packet came as it was sent: ray `i` in lane `i`.
-#[inline(always)]
-fn in_order<const W: usize>(id: &[u32; W]) -> bool {
-    let mut moved = 0;
-    for (i, &id) in id.iter().enumerate() {
-        moved |= id ^ i as u32;
-    }
-    moved == 0
 }
 
 /// The first t > 0 at which each valid ray meets the sphere, or infinity; `None` when none does.

@@ -22,14 +22,19 @@ impl Width {
         let has = |property| device.property(property) != 0;
         #[cfg(target_arch = "x86_64")]
         {
-            let avx512 = is_x86_feature_detected!("avx512f")
+            let fma = is_x86_feature_detected!("fma");
+            let avx512 = fma
+                && is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512bw");
             if avx512 && has(RTCDeviceProperty::NATIVE_RAY16_SUPPORTED) {
                 return Width::Sixteen;
             }
-            if is_x86_feature_detected!("avx2") && has(RTCDeviceProperty::NATIVE_RAY8_SUPPORTED) {
+            if is_x86_feature_detected!("avx2")
+                && fma
+                && has(RTCDeviceProperty::NATIVE_RAY8_SUPPORTED)
+            {
                 return Width::Eight;
             }
         }

@@ -1,0 +1,112 @@
+//! One Newton step with a double-double residual: correctly rounded roots, without branches.
+//!
+//! Let g(t) = |f + t·d|² − r² and G = g(t₀), 2P = g'(t₀) = 2(f + t₀d)·d for a guess t₀. The roots
+//! are t₀ + δ with |d|²δ² + 2Pδ + G = 0. Where x = |d|²|G|/P² is at most 1/4 there are two of them,
+//! and the one on t₀'s side of their middle, the near one where P < 0, is
+//!
+//!   δ = −G/(2P) · 2/(1 + √(1 ∓ x)), whose last factor differs from 1 by less than x/2.
+//!
+//! So the step proves itself: whatever t₀ is, it shows that there is a root, which one, and how
+//! far from it the step may have ended. The parts of the error, with p = f + t₀d,
+//! M = |f|₁ + r + |t₀||d|₁ and ρ = r + |p|₁ + uM:
+//!
+//! - G: each component of p is off by 4u²M, which makes 8u²|p|₁M; the roundings of squares and
+//!   sums are below 50u²ρ²; the last sum's is u|G|. Bounded by 256u²ρM + 2u|G|.
+//! - P in f64: 4u|p|₁|d|₁, and 4u²M|d|₁ since p itself is off. Bounded by 16uρ|d|₁.
+//!
+//! With error(P) ≤ |P|/4 and x̂ ≤ 1/8, the true x is below 1/4, and δ is off by at most
+//! (error(G) + |G|(error(P)/|P| + x̂ + 4u))/|P|, of which a third is to spare.
+
+use glam::DVec3;
+
+use crate::geometry::double::{Double, U, difference, in_range};
+use crate::geometry::sphere::certified::Line;
+
+/// A root as [`round`] found it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rounded {
+    /// The distance, in units of |direction|.
+    pub t: f64,
+    /// Whether `t` is proven: the ray meets the sphere there, first, and the exact distance rounds
+    /// to `t`. Otherwise `t` means nothing.
+    pub certain: bool,
+}
+
+/// The first root above 0, or with `inward` the far root, correctly rounded where `certain`.
+///
+/// Free of branches, for loops over the lanes of a packet. Where it is not certain,
+/// [`first_root`](super::first_root) knows; where it is, both say the same.
+#[inline(always)]
+pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
+    let inverse = 1.0 / direction.length_squared();
+    let line = Line::new(center, radius, origin, direction, inverse);
+    step(&line, line.guess(inward), inward)
+}
+
+/// Up to three steps, for what is nearly a tangent.
+pub(super) fn refined(line: &Line, inward: bool) -> Rounded {
+    let mut rounded = step(line, line.guess(inward), inward);
+    for _ in 0..2 {
+        if rounded.certain || !rounded.t.is_finite() {
+            break;
+        }
+        rounded = step(line, rounded.t, inward);
+    }
+    rounded
+}
+
+/// One Newton step from `guess`.
+#[inline(always)]
+fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
+    let (d, r) = (line.direction, line.radius);
+    let f = difference(line.origin, line.center);
+    let p = [0, 1, 2].map(|i| {
+        let along = Double::product(guess, d[i]);
+        let sum = Double::sum(f[i].hi, along.hi);
+        Double::sum(sum.hi, sum.lo + (f[i].lo + along.lo))
+    });
+    let [x, y, z] = p.map(|p| {
+        let square = Double::product(p.hi, p.hi);
+        Double { hi: square.hi, lo: square.lo + 2.0 * p.hi * p.lo }
+    });
+    let r2 = Double::product(r, r);
+    let xy = Double::sum(x.hi, y.hi);
+    let xyz = Double::sum(xy.hi, z.hi);
+    let all = Double::difference(xyz.hi, r2.hi);
+    let low = ((x.lo + y.lo) + (z.lo - r2.lo)) + ((xy.lo + xyz.lo) + all.lo);
+    let g = all.hi + low;
+
+    let slope = p[0].hi * d.x + p[1].hi * d.y + p[2].hi * d.z;
+    let p1 = p[0].hi.abs() + p[1].hi.abs() + p[2].hi.abs();
+    let d1 = d.x.abs() + d.y.abs() + d.z.abs();
+    let f1 = f[0].hi.abs() + f[1].hi.abs() + f[2].hi.abs();
+    let r_abs = r.abs();
+    let size = f1 + r_abs + guess.abs() * d1;
+    let rho = r_abs + p1 + U * size;
+
+    let inverse = 1.0 / slope.abs();
+    let g_error = 256.0 * U * U * rho * size + 2.0 * U * g.abs();
+    let g_most = g.abs() + g_error;
+    let slope_error = 16.0 * U * rho * d1;
+    let x = d.dot(d) * g_most * inverse * inverse;
+    let relative = slope_error * inverse + x + 4.0 * U;
+    let error = (g_error + g_most * relative) * inverse;
+
+    let delta = -0.5 * g * inverse.copysign(slope);
+    let t = Double::sum(guess, delta);
+
+    // Whether this is the first root above 0: the near one, or the far one seen from inside.
+    let f2 = line.offset.dot(line.offset);
+    let inside = r * r - f2 > 8.0 * U * (f2 + r * r);
+    let near = slope < 0.0;
+    let first = if near { !inward } else { inward | inside };
+    let certain = first
+        & (t.hi > 0.0)
+        & (slope_error * inverse <= 0.25)
+        & (x <= 0.125)
+        & t.rounds_to_hi(error)
+        & in_range(r_abs)
+        & in_range(d1)
+        & in_range(size);
+    Rounded { t: t.hi, certain }
+}

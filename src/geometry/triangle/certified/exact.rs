@@ -1,0 +1,106 @@
+//! Ray and triangle in integers, with the tie rule.
+
+use std::cmp::Ordering::{self, Equal};
+
+use glam::DVec3;
+use num_bigint::BigInt;
+
+use crate::geometry::exact::{Integer, Rounded, Scale, cross, dot, minus, sign};
+use crate::geometry::triangle::Crossing;
+
+/// The scales of the positions and of the direction.
+struct Scales {
+    place: Scale,
+    way: Scale,
+}
+
+impl Scales {
+    fn of(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
+        let [a, b, c] = triangle.map(|p| p.to_array());
+        let places = [a, b, c, origin.to_array()];
+        Self {
+            place: Scale::of(places.into_iter().flatten()),
+            way: Scale::of(direction.to_array()),
+        }
+    }
+
+    /// Whether i128 holds d·(p × q) for differences of positions: a difference has one bit more
+    /// than a position, and the six products of the sum have three more.
+    fn fit_i128(&self) -> bool {
+        self.way.bits + 2 * (self.place.bits + 1) + 3 <= 127
+    }
+
+    /// The vertices relative to the origin, and the direction.
+    fn integers<I: Integer>(
+        &self,
+        triangle: [DVec3; 3],
+        origin: DVec3,
+        direction: DVec3,
+    ) -> ([[I; 3]; 3], [I; 3]) {
+        let origin = self.place.vector(origin);
+        (triangle.map(|p| minus(&self.place.vector(p), &origin)), self.way.vector(direction))
+    }
+}
+
+/// Whether the line crosses the triangle, by the tie rule. All the numbers must be finite.
+pub(super) fn crosses(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> bool {
+    let scales = Scales::of(triangle, origin, direction);
+    if scales.fit_i128() {
+        let (relative, d) = scales.integers::<i128>(triangle, origin, direction);
+        inside(&relative, &d)
+    } else {
+        let (relative, d) = scales.integers::<BigInt>(triangle, origin, direction);
+        inside(&relative, &d)
+    }
+}
+
+/// Whether the three edges see the line on the same side, of vertices relative to its origin.
+fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3]) -> bool {
+    let edges = [(b, c), (c, a), (a, b)];
+    let functions = edges.map(|(p, q)| dot(d, &cross(p, q)));
+    // Their sum is d·n, which is 0 where the line is parallel. If it is not, but all have one
+    // sign, so has the sum.
+    if functions.iter().all(|f| sign(f) == Equal) {
+        return false;
+    }
+    let [x, y, z] = [0, 1, 2].map(|i| match sign(&functions[i]) {
+        Equal => beside(d, edges[i]),
+        decided => decided,
+    });
+    x == y && y == z && x != Equal
+}
+
+/// The sign of the edge function for an origin moved by (ε, ε², ε³); equal for an edge along the
+/// direction, whose triangle is parallel to the line.
+fn beside<I: Integer>(d: &[I; 3], (p, q): (&[I; 3], &[I; 3])) -> Ordering {
+    let [x, y, z] = cross(d, &minus(q, p));
+    sign(&x).then(sign(&y)).then(sign(&z))
+}
+
+/// The crossing of a line that crosses, with 0 < t < `tmax`.
+pub(super) fn crossing(
+    triangle: [DVec3; 3],
+    origin: DVec3,
+    direction: DVec3,
+    tmax: f64,
+) -> Option<Crossing> {
+    let scales = Scales::of(triangle, origin, direction);
+    let ([a, b, c], d) = scales.integers::<BigInt>(triangle, origin, direction);
+    let (first, second) = (minus(&b, &a), minus(&c, &a));
+    let normal = cross(&first, &second);
+    let divisor = dot(&normal, &d);
+    let moment = cross(&a, &d);
+
+    let numerator = dot(&normal, &a);
+    if sign(&numerator) == Equal || sign(&numerator) != sign(&divisor) {
+        return None;
+    }
+    let exponent = i64::from(scales.place.exponent) - i64::from(scales.way.exponent);
+    let t = Rounded::quotient(&numerator, &divisor, exponent);
+    let weight = |x: BigInt| match sign(&x) {
+        Equal => 0.0,
+        _ => Rounded::quotient(&x, &divisor, 0).nearest,
+    };
+    let (u, v) = (weight(dot(&moment, &second)), weight(-dot(&moment, &first)));
+    t.is_below(tmax).then_some(Crossing { t: t.nearest, u, v })
+}

@@ -1,0 +1,300 @@
+//! The callbacks of precision `certified`: every sphere and every triangle that Embree offers is
+//! tested in f64 with an error bound, and exactly where that cannot tell.
+//!
+//! Of Embree's own ray they only lower `tfar`, with slack, so that what lies behind is skipped.
+#![allow(unsafe_code)]
+
+use embree4_sys as sys;
+use glam::DVec3;
+
+use crate::geometry::{Estimate, Hit, PrimitiveId, sphere, triangle};
+use crate::intersect::Precision;
+use crate::intersect::embree::layout::{Context, INVALID, RayHit};
+use crate::intersect::embree::spheres::SphereTable;
+use crate::intersect::embree::triangles::Triangles;
+use crate::intersect::embree::user::{Callbacks, ID, TFAR, callbacks_for, in_order};
+use crate::intersect::embree::width::Width;
+use crate::intersect::primitive::{Leaving, Primitives, leaving, starts_on};
+
+/// A primitive as the callbacks test it.
+trait Shape {
+    /// Primitive `index` of the geometry with this user data.
+    ///
+    /// # Safety
+    /// `user` must be what the geometry was made with.
+    unsafe fn of<const W: usize>(
+        user: *const std::ffi::c_void,
+        index: u32,
+        context: &Context<'_, W>,
+    ) -> Self;
+
+    fn id(&self) -> PrimitiveId;
+
+    fn casts_shadow(&self) -> bool;
+
+    /// What f64 says of the first t > 0, for a ray that left no surface.
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
+
+    /// Whether a ray that left a surface, and that this primitive is in the way of by its
+    /// estimate, starts on it and so may not meet it.
+    fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool;
+}
+
+struct Ball {
+    index: u32,
+    center: DVec3,
+    radius: f64,
+    casts_shadow: bool,
+}
+
+impl Shape for Ball {
+    #[inline(always)]
+    unsafe fn of<const W: usize>(
+        user: *const std::ffi::c_void,
+        index: u32,
+        _: &Context<'_, W>,
+    ) -> Self {
+        // SAFETY: the user data of the spheres' geometry is their table.
+        let table = unsafe { &*user.cast::<SphereTable>() };
+        let s = &table.spheres[index as usize];
+        Ball { index, center: s.center, radius: s.radius, casts_shadow: s.casts_shadow }
+    }
+
+    #[inline(always)]
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::sphere(self.index)
+    }
+
+    #[inline(always)]
+    fn casts_shadow(&self) -> bool {
+        self.casts_shadow
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse: f64) -> Estimate {
+        sphere::certified::estimate(self.center, self.radius, origin, direction, inverse)
+    }
+
+    fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
+        leaving(context.scene, self.index, &context.rays[lane]) != Leaving::No
+    }
+}
+
+struct Face {
+    id: PrimitiveId,
+    corners: [DVec3; 3],
+    casts_shadow: bool,
+}
+
+impl Shape for Face {
+    #[inline(always)]
+    unsafe fn of<const W: usize>(
+        user: *const std::ffi::c_void,
+        index: u32,
+        context: &Context<'_, W>,
+    ) -> Self {
+        // SAFETY: the user data of a mesh's geometry is its table.
+        let table = unsafe { &*user.cast::<Triangles<'_>>() };
+        let instance = if table.instance == INVALID { context.instance } else { table.instance };
+        let id = PrimitiveId::triangle(table.mesh, index, instance);
+        let casts_shadow = context.scene.instances[instance as usize].casts_shadow;
+        Face { id, corners: context.scene.triangle(id), casts_shadow }
+    }
+
+    #[inline(always)]
+    fn id(&self) -> PrimitiveId {
+        self.id
+    }
+
+    #[inline(always)]
+    fn casts_shadow(&self) -> bool {
+        self.casts_shadow
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, _: f64) -> Estimate {
+        triangle::certified::estimate(self.corners, origin, direction)
+    }
+
+    fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
+        let ray = &context.rays[lane];
+        ray.from.is_some_and(|from| from.id == self.id)
+            || starts_on(context.scene, self.corners, ray)
+    }
+}
+
+/// The callbacks of the spheres, for packets of `width`.
+pub fn spheres(width: Width) -> Callbacks {
+    callbacks_for!(width, Ball)
+}
+
+/// The callbacks of meshes.
+pub fn triangles(width: Width) -> Callbacks {
+    callbacks_for!(width, Face)
+}
+
+/// Keeps the nearest hit of each ray in the context.
+///
+/// # Safety
+/// To be called by Embree, for a geometry of such shapes, in a query with a context of ours.
+#[inline(always)]
+unsafe fn intersect<S: Shape, const W: usize>(args: *const sys::RTCIntersectFunctionNArguments) {
+    // SAFETY: the pointers are Embree's, for `N` rays; the context is ours, for `W` of them.
+    unsafe {
+        let args = &*args;
+        let context = &mut *args.context.cast::<Context<'_, W>>();
+        let shape = S::of(args.geometryUserPtr, args.primID, context);
+        let (n, valid) = (args.N as usize, args.valid.cast_const());
+        if n == W {
+            let record = &mut *args.rayhit.cast::<RayHit<W>>();
+            if in_order(&record.id) {
+                context.offer(&shape, &*valid.cast::<[i32; W]>(), &mut record.tfar);
+                return;
+            }
+        }
+        let floats = args.rayhit.cast::<f32>();
+        for slot in (0..n).filter(|&slot| *valid.add(slot) != 0) {
+            let lane = *floats.add(ID * n + slot).cast::<u32>() as usize;
+            context.settle(lane, shape.id());
+            let tfar = floats.add(TFAR * n + slot);
+            *tfar = context.clip.narrow(lane, context.nearest.upper(lane)).min(*tfar);
+        }
+    }
+}
+
+/// Marks the rays that the primitive keeps from their end.
+///
+/// # Safety
+/// As `intersect`.
+#[inline(always)]
+unsafe fn occluded<S: Shape, const W: usize>(args: *const sys::RTCOccludedFunctionNArguments) {
+    // SAFETY: as in `intersect`; the ray part of the record is the same.
+    unsafe {
+        let args = &*args;
+        let context = &mut *args.context.cast::<Context<'_, W>>();
+        let shape = S::of(args.geometryUserPtr, args.primID, context);
+        if !shape.casts_shadow() {
+            return;
+        }
+        let (n, valid) = (args.N as usize, args.valid.cast_const());
+        let floats = args.ray.cast::<f32>();
+        if n == W && in_order(&*floats.add(ID * W).cast::<[u32; W]>()) {
+            let tfar = &mut *floats.add(TFAR * W).cast::<[f32; W]>();
+            context.block(&shape, &*valid.cast::<[i32; W]>(), tfar);
+            return;
+        }
+        for slot in (0..n).filter(|&slot| *valid.add(slot) != 0) {
+            let lane = *floats.add(ID * n + slot).cast::<u32>() as usize;
+            if context.test(lane, shape.id()).is_some() {
+                *floats.add(TFAR * n + slot) = f32::NEG_INFINITY;
+            }
+        }
+    }
+}
+
+impl<const W: usize> Context<'_, W> {
+    /// The exact answer for one ray and one primitive.
+    fn test(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
+        let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
+        primitives.test(id, self.rays.get(lane)?)
+    }
+
+    /// What f64 says of each valid ray and the primitive; `None` when all certainly miss.
+    #[inline(always)]
+    fn estimates(&self, shape: &impl Shape, valid: &[i32; W]) -> Option<[Estimate; W]> {
+        let mut estimates = [Estimate::MISS; W];
+        let mut any = false;
+        for i in 0..W {
+            let (origin, direction) = self.exact.line(i);
+            let inverse = self.exact.inverse_length_squared[i];
+            let e = shape.estimate(origin, direction, inverse);
+            let upper = self.nearest.upper(i);
+            any |= (valid[i] != 0) & !e.is_outside(upper);
+            estimates[i] = e;
+        }
+        any.then_some(estimates)
+    }
+
+    /// Keeps the primitive for those rays that it is the nearest of.
+    #[inline(always)]
+    fn offer(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
+        let Some(estimates) = self.estimates(shape, valid) else { return };
+        for i in 0..W {
+            let e = estimates[i];
+            if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
+                continue;
+            }
+            let nearer = e.upper() < self.nearest.t[i] - self.nearest.error[i];
+            let clear = e.lower() > 0.0 && nearer;
+            if !clear || (self.leaves && shape.may_be_left(self, i)) {
+                self.settle(i, shape.id());
+            } else {
+                self.nearest.set(i, e, shape.id());
+            }
+            tfar[i] = self.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
+        }
+    }
+
+    /// Decides exactly whether `id` is the nearest of one ray.
+    #[cold]
+    #[inline(never)]
+    fn settle(&mut self, lane: usize, id: PrimitiveId) {
+        let Some(hit) = self.test(lane, id) else { return };
+        let best = self.nearest.id(self.scene, lane);
+        if let Some(best) = best
+            && self.nearest.error[lane] != 0.0
+            && let Some(exact) = self.test(lane, best)
+        {
+            self.nearest.t[lane] = exact.t;
+            self.nearest.error[lane] = 0.0;
+        }
+        let t = self.nearest.t[lane];
+        // Without a hit so far `t` is the ray's end, which the exact test knows.
+        if best.is_none_or(|best| hit.is_before(&Hit { t, u: 0.0, v: 0.0, id: best })) {
+            self.nearest.set(lane, Estimate { t: hit.t, error: 0.0 }, id);
+        }
+    }
+
+    /// Decides exactly about every triangle of an instance, for one ray.
+    pub fn settle_all(&mut self, lane: usize, instance: u32) {
+        let mesh = self.scene.instances[instance as usize].mesh.0;
+        for triangle in 0..self.scene.meshes[mesh as usize].triangles.len() as u32 {
+            self.settle(lane, PrimitiveId::triangle(mesh, triangle, instance));
+        }
+    }
+
+    /// Whether one ray meets any triangle of an instance.
+    pub fn meets_any(&self, lane: usize, instance: u32) -> bool {
+        let mesh = self.scene.instances[instance as usize].mesh.0;
+        let count = self.scene.meshes[mesh as usize].triangles.len() as u32;
+        (0..count).any(|t| self.test(lane, PrimitiveId::triangle(mesh, t, instance)).is_some())
+    }
+
+    /// Marks the rays that the primitive keeps from their end.
+    #[inline(always)]
+    fn block(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
+        let Some(estimates) = self.estimates(shape, valid) else { return };
+        for i in 0..W {
+            let e = estimates[i];
+            if valid[i] == 0 || e.is_outside(self.exact.tmax[i]) {
+                continue;
+            }
+            let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];
+            let blocked = if clear && !(self.leaves && shape.may_be_left(self, i)) {
+                true
+            } else {
+                self.test(i, shape.id()).is_some()
+            };
+            if blocked {
+                tfar[i] = f32::NEG_INFINITY;
+            }
+        }
+    }
+
+    /// The hits that were found, exactly.
+    pub fn finish(&self, hits: &mut [Option<Hit>]) {
+        for (i, hit) in hits.iter_mut().enumerate() {
+            *hit = self.nearest.id(self.scene, i).and_then(|id| self.test(i, id));
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! The meshes of precision `certified`: user geometry, in world space or in spaces of their own.
+
+use crate::error::Result;
+use crate::geometry::Bounds;
+use crate::intersect::embree::frame::Frame;
+use crate::intersect::embree::placements::{self, Placements};
+use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
+use crate::intersect::embree::triangles::Triangles;
+use crate::intersect::embree::width::Width;
+use crate::intersect::embree::{QUALITY, attach, certified, user, uses};
+use crate::scene::{Mesh, Scene};
+use embree4_sys::RTCSceneFlags;
+
+/// What Embree keeps the addresses of.
+#[derive(Default)]
+pub struct Meshes<'s> {
+    #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
+    tables: Vec<Box<Triangles<'s>>>,
+    inner: Vec<InnerScene>,
+    placements: Option<Box<Placements>>,
+}
+
+/// A mesh whose triangles are smaller than this share of the scene gets a space of its own: the
+/// scene's padding would make its boxes overlap.
+const SMALL: f64 = 1e-4;
+
+impl<'s> Meshes<'s> {
+    /// Attaches every instance: a mesh that stands once, and is not small, in world space, the
+    /// others as placements.
+    pub fn attach(
+        &mut self,
+        scene: &'s Scene,
+        top: &embree4_rs::Scene,
+        device: &DeviceHandle,
+        frame: Frame,
+        width: Width,
+    ) -> Result<()> {
+        let uses = uses(scene);
+        let mut own: Vec<Option<(usize, Frame)>> = vec![None; scene.meshes.len()];
+        let mut placed = Box::new(Placements::new(frame));
+        for (index, instance) in (0..).zip(&scene.instances) {
+            let at = instance.mesh.0 as usize;
+            let mesh = &scene.meshes[at];
+            if mesh.triangles.is_empty() {
+                continue;
+            }
+            let local = mesh.bounds();
+            let bounds = local.transformed(&instance.transform);
+            // A baked vertex may round to just outside the transformed box.
+            let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
+            if uses[at] == 1 && !is_small(mesh, &bounds, &frame) {
+                let table = Triangles::placed(scene, index, frame);
+                let callbacks = certified::triangles(width);
+                attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;
+                self.tables.push(table);
+                continue;
+            }
+            let (inner, own) = match own[at] {
+                Some(there) => there,
+                None => {
+                    let frame = Frame::around(local);
+                    let table = Triangles::own(scene, instance.mesh.0, frame);
+                    let callbacks = certified::triangles(width);
+                    let geometry = user::geometry(&top.device, device, &*table, callbacks)?;
+                    let flags = RTCSceneFlags::NONE;
+                    self.inner.push(InnerScene::new(device, QUALITY, flags, &geometry)?);
+                    self.tables.push(table);
+                    *own[at].insert((self.inner.len() - 1, frame))
+                }
+            };
+            placed.add(scene, index, bounds, &self.inner[inner], own);
+        }
+        if !placed.is_empty() {
+            let callbacks = placements::callbacks(width);
+            attach(top, &user::geometry(&top.device, device, &*placed, callbacks)?)?;
+            self.placements = Some(placed);
+        }
+        Ok(())
+    }
+}
+
+/// Whether a mesh that takes up `bounds` in the world has small triangles for the scene.
+fn is_small(mesh: &Mesh, bounds: &Bounds, frame: &Frame) -> bool {
+    let across = (mesh.triangles.len() as f64).sqrt();
+    bounds.diagonal() < SMALL * frame.extent() * across && bounds.diagonal() < 0.25 * frame.extent()
+}

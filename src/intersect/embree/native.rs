@@ -1,0 +1,69 @@
+//! The meshes of precision `fast`: Embree's own triangles and instances.
+
+use embree4_rs::Device;
+use embree4_rs::geometry::TriangleMeshGeometry;
+use glam::{DAffine3, DVec3};
+
+use crate::error::{Error, Result};
+use crate::intersect::embree::frame::Frame;
+use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
+use crate::intersect::embree::{QUALITY, attach, flags, uses};
+use crate::scene::{Instance, Mesh, Scene};
+
+/// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
+/// stands several times through Embree's instances. Says which instance each geometry is.
+pub fn attach_meshes(
+    scene: &Scene,
+    top: &embree4_rs::Scene,
+    device: &DeviceHandle,
+    frame: &Frame,
+) -> Result<Vec<u32>> {
+    let uses = uses(scene);
+    // An instanced mesh is recentred too: a model may stand far from its own origin.
+    let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
+    let mut instance_of = Vec::new();
+    for (index, instance) in scene.instances.iter().enumerate() {
+        let at = instance.mesh.0 as usize;
+        let mesh = &scene.meshes[at];
+        if mesh.triangles.is_empty() {
+            continue;
+        }
+        if uses[at] == 1 {
+            let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
+            attach(top, &geometry)?;
+        } else {
+            if inner[at].is_none() {
+                let center = mesh.bounds().center();
+                let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
+                let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
+                inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
+            }
+            if let Some((built, center)) = &inner[at] {
+                let columns = columns(instance, *center, frame);
+                attach(top, &InstanceGeometry::new(device, built, &columns)?)?;
+            }
+        }
+        instance_of.push(index as u32);
+    }
+    Ok(instance_of)
+}
+
+fn upload(
+    device: &Device,
+    mesh: &Mesh,
+    place: impl Fn([f32; 3]) -> [f32; 3],
+) -> Result<TriangleMeshGeometry> {
+    let vertices: Vec<(f32, f32, f32)> = mesh.positions.iter().map(|&p| place(p).into()).collect();
+    let triangles: Vec<(u32, u32, u32)> = mesh.triangles.iter().map(|&t| t.into()).collect();
+    TriangleMeshGeometry::try_new(device, &vertices, &triangles)
+        .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
+}
+
+/// The matrix from the mesh's space, recentred on `center`, to the recentred world.
+fn columns(instance: &Instance, center: DVec3, frame: &Frame) -> [[f32; 3]; 4] {
+    let m = DAffine3::from_translation(-frame.center)
+        * instance.transform
+        * DAffine3::from_translation(center);
+    [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
+        .map(|column| column.as_vec3().to_array())
+}

@@ -1,0 +1,234 @@
+//! Meshes in spaces of their own, for precision `certified`: an instance is a user primitive that
+//! takes the exact ray into the mesh's space in f64, and traces the mesh's own scene with the f32
+//! copy made there. (Embree's own instances transform the f32 ray, in f32.)
+//!
+//! A mesh has a space of its own when it stands several times, and when it is so small in the
+//! scene that the scene's padding would drown its triangles.
+#![allow(unsafe_code)]
+
+use embree4_sys as sys;
+
+use crate::geometry::Bounds;
+use crate::intersect::embree::frame::{Exact, Frame};
+use crate::intersect::embree::layout::{Context, RayHit, Valid};
+use crate::intersect::embree::raw::InnerScene;
+use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
+use crate::intersect::embree::width::Width;
+use crate::intersect::entry::Entry;
+use crate::scene::Scene;
+
+/// The instances that stand there as such.
+pub struct Placements {
+    frame: Frame,
+    placements: Vec<Placement>,
+}
+
+/// One of them.
+struct Placement {
+    instance: u32,
+    /// The mesh's scene, which must live as long as the placement.
+    inner: sys::RTCScene,
+    /// Where that scene's f32 copies live.
+    own: Frame,
+    entry: Entry,
+    /// The box in the world.
+    bounds: Bounds,
+}
+
+impl Placements {
+    pub fn new(frame: Frame) -> Self {
+        Self { frame, placements: Vec::new() }
+    }
+
+    /// Adds an instance that takes up `bounds` in the world; `inner` holds its mesh in `own`.
+    pub fn add(
+        &mut self,
+        scene: &Scene,
+        instance: u32,
+        bounds: Bounds,
+        inner: &InnerScene,
+        own: Frame,
+    ) {
+        let entry = Entry::new(&scene.instances[instance as usize], &bounds);
+        self.placements.push(Placement { instance, inner: inner.0, own, entry, bounds });
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.placements.is_empty()
+    }
+}
+
+impl Table for Placements {
+    fn len(&self) -> usize {
+        self.placements.len()
+    }
+
+    fn bounds(&self, index: u32) -> (Bounds, &Frame) {
+        (self.placements[index as usize].bounds, &self.frame)
+    }
+}
+
+/// The callbacks for packets of `width`.
+pub fn callbacks(width: Width) -> Callbacks {
+    callbacks_for!(width)
+}
+
+/// A packet in the space of a placement.
+struct Inside<const W: usize> {
+    exact: Exact<W>,
+    /// Of this only origins and directions are used.
+    ray: RayHit<W>,
+    tfar: [f32; W],
+    valid: Valid<W>,
+    /// Whether any lane is.
+    any: bool,
+    /// The rays that f64 cannot place there well enough; they try every triangle.
+    astray: [bool; W],
+}
+
+impl Placement {
+    /// Takes the valid rays, as far as their `limits`, into the mesh's space.
+    #[inline(always)]
+    fn enter<const W: usize>(
+        &self,
+        world: &Exact<W>,
+        valid: &[i32; W],
+        limits: [f64; W],
+    ) -> Inside<W> {
+        let mut exact = Exact::<W>::new();
+        exact.tmax = limits;
+        let mut lost = [false; W];
+        for i in 0..W {
+            let (o, d) = world.line(i);
+            exact.set_line(i, self.entry.line(o, d));
+            lost[i] = self.entry.error(o) > self.own.spare();
+        }
+        let mut ray = RayHit::<W>::new();
+        let mut tfar = [0.0; W];
+        let lanes = exact.set_up(&self.own, &mut ray.org, &mut ray.dir, &mut tfar);
+        let mut inside =
+            Inside { exact, ray, tfar, valid: Valid([0; W]), any: false, astray: [false; W] };
+        for i in 0..W {
+            let astray = lost[i] | lanes.astray[i];
+            let traced = (valid[i] != 0) & lanes.inside[i] & !astray;
+            inside.valid.0[i] = if traced { -1 } else { 0 };
+            inside.astray[i] = (valid[i] != 0) & astray;
+            inside.any |= traced;
+        }
+        inside
+    }
+}
+
+/// Traces the mesh of the placement with the rays that come into its box.
+///
+/// # Safety
+/// To be called by Embree, for `Placements`, in a query with a context of ours.
+#[inline(always)]
+unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArguments) {
+    // SAFETY: the pointers are Embree's, for `N` rays; the context is ours, for `W` of them. What
+    // is forwarded is as it would be in `query`, and no reference to context or record is used
+    // while Embree traces.
+    unsafe {
+        let (n, valid) = ((*args).N as usize, (*args).valid.cast_const());
+        let table = &*(*args).geometryUserPtr.cast::<Placements>();
+        let Some(placement) = table.placements.get((*args).primID as usize) else { return };
+        let context = (*args).context.cast::<Context<'_, W>>();
+        let floats = (*args).rayhit.cast::<f32>();
+        let tfar = floats.add(TFAR * n);
+        let ids = floats.add(ID * n).cast::<u32>();
+        if n != W || !in_order(&*ids.cast::<[u32; W]>()) {
+            for slot in (0..n).filter(|&slot| *valid.add(slot) != 0) {
+                let lane = *ids.add(slot) as usize;
+                (*context).settle_all(lane, placement.instance);
+                let end = (*context).clip.narrow(lane, (*context).nearest.upper(lane));
+                *tfar.add(slot) = end.min(*tfar.add(slot));
+            }
+            return;
+        }
+        let outer = *tfar.cast::<[f32; W]>();
+        let limits = std::array::from_fn(|i| (*context).nearest.upper(i));
+        let mut inside = placement.enter((*context).exact, &*valid.cast::<[i32; W]>(), limits);
+        for i in 0..W {
+            if inside.astray[i] {
+                (*context).settle_all(i, placement.instance);
+            }
+            if inside.valid.0[i] != 0 {
+                *tfar.add(i) = inside.tfar[i];
+            }
+        }
+        if inside.any {
+            let around = std::mem::replace(&mut (*context).clip, inside.exact.clip);
+            (*context).instance = placement.instance;
+            let (valid, ray) = (inside.valid.0.as_ptr(), std::ptr::from_mut(&mut inside.ray));
+            let (scene, id) = (placement.inner, placement.instance);
+            match W {
+                1 => sys::rtcForwardIntersect1(args, scene, ray.cast(), id),
+                4 => sys::rtcForwardIntersect4(valid, args, scene, ray.cast(), id),
+                8 => sys::rtcForwardIntersect8(valid, args, scene, ray.cast(), id),
+                _ => sys::rtcForwardIntersect16(valid, args, scene, ray.cast(), id),
+            }
+            (*context).clip = around;
+        }
+        for i in 0..W {
+            let end = (*context).clip.narrow(i, (*context).nearest.upper(i));
+            *tfar.add(i) = end.min(outer[i]);
+        }
+    }
+}
+
+/// Marks the rays that a triangle of the placement keeps from their end.
+///
+/// # Safety
+/// As `intersect`.
+#[inline(always)]
+unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArguments) {
+    // SAFETY: as in `intersect`; of the record only the ray part is there, and used.
+    unsafe {
+        let (n, valid) = ((*args).N as usize, (*args).valid.cast_const());
+        let table = &*(*args).geometryUserPtr.cast::<Placements>();
+        let Some(placement) = table.placements.get((*args).primID as usize) else { return };
+        let context = (*args).context.cast::<Context<'_, W>>();
+        let scene = (*context).scene;
+        if !scene.instances[placement.instance as usize].casts_shadow {
+            return;
+        }
+        let floats = (*args).ray.cast::<f32>();
+        let tfar = floats.add(TFAR * n);
+        let ids = floats.add(ID * n).cast::<u32>();
+        if n != W || !in_order(&*ids.cast::<[u32; W]>()) {
+            for slot in (0..n).filter(|&slot| *valid.add(slot) != 0) {
+                if (*context).meets_any(*ids.add(slot) as usize, placement.instance) {
+                    *tfar.add(slot) = f32::NEG_INFINITY;
+                }
+            }
+            return;
+        }
+        let outer = *tfar.cast::<[f32; W]>();
+        let exact = (*context).exact;
+        let mut inside = placement.enter(exact, &*valid.cast::<[i32; W]>(), exact.tmax);
+        for i in (0..W).filter(|&i| inside.valid.0[i] != 0) {
+            *tfar.add(i) = inside.tfar[i];
+        }
+        if inside.any {
+            let around = std::mem::replace(&mut (*context).clip, inside.exact.clip);
+            (*context).instance = placement.instance;
+            let (valid, ray) = (inside.valid.0.as_ptr(), std::ptr::from_mut(&mut inside.ray));
+            let (args, scene, id) = (args.cast(), placement.inner, placement.instance);
+            match W {
+                1 => sys::rtcForwardOccluded1(args, scene, ray.cast(), id),
+                4 => sys::rtcForwardOccluded4(valid, args, scene, ray.cast(), id),
+                8 => sys::rtcForwardOccluded8(valid, args, scene, ray.cast(), id),
+                _ => sys::rtcForwardOccluded16(valid, args, scene, ray.cast(), id),
+            }
+            (*context).clip = around;
+        }
+        for i in 0..W {
+            let met = if inside.astray[i] {
+                (*context).meets_any(i, placement.instance)
+            } else {
+                inside.valid.0[i] != 0 && *tfar.add(i) == f32::NEG_INFINITY
+            };
+            *tfar.add(i) = if met { f32::NEG_INFINITY } else { outer[i] };
+        }
+    }
+}
