@@ -1,7 +1,9 @@
 //! What measures the renderer: one backend against the other, one picture against another.
 
 mod dispute;
+pub mod oracle;
 mod picture;
+pub mod stress;
 mod validate;
 
 pub use dispute::{Cause, Disputes};
