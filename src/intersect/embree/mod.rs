@@ -154,6 +154,7 @@ impl<'s> Embree<'s> {
             frame: &self.frame,
             width: self.width,
             precision: self.precision,
+            careful: false,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! The oracle in an intersector's place.
 
-use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
-use crate::intersect::{Coherence, Intersector, primitive};
+use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray};
+use crate::intersect::primitive::{Leaving, leaving, starts_in_plane, starts_on};
+use crate::intersect::{Coherence, Intersector};
 use crate::scene::Scene;
 
 /// Tries every primitive in exact arithmetic; for small pictures that others are held against.
@@ -37,25 +38,31 @@ impl<'s> Oracle<'s> {
     }
 
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
-        let left = ray.from.filter(|from| from.id == id).map(|from| from.side);
+        if ray.from.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
+            return None;
+        }
         let (t, u, v) = match id.geometry {
             Geometry::Spheres => {
-                // A convex body is not met again from outside.
-                if left == Some(Side::Front) {
-                    return None;
-                }
+                let inward = match leaving(self.scene, id.primitive, ray) {
+                    Leaving::No => false,
+                    Leaving::Outward => return None,
+                    Leaving::Inward => true,
+                };
                 let s = &self.scene.spheres[id.primitive as usize];
-                (super::sphere(s.center, s.radius, ray, left.is_some())?, 0.0, 0.0)
+                (super::sphere(s.center, s.radius, ray, inward)?, 0.0, 0.0)
             }
-            _ if left.is_some() => return None,
             Geometry::Planes => {
                 let p = &self.scene.planes[id.primitive as usize];
-                (super::plane(p.point, p.normal, ray)?, 0.0, 0.0)
+                let t = super::plane(p.point, p.normal, ray)?;
+                if starts_in_plane(self.scene, id.primitive, ray) {
+                    return None;
+                }
+                (t, 0.0, 0.0)
             }
             Geometry::Mesh(_) => {
                 let corners = self.scene.triangle(id);
                 let crossing = super::triangle(corners, ray)?;
-                if primitive::starts_on(self.scene, corners, ray) {
+                if starts_on(self.scene, corners, ray) {
                     return None;
                 }
                 (crossing.t, crossing.u, crossing.v)
