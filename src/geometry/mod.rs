@@ -6,6 +6,8 @@
 
 mod bounds;
 mod double;
+#[cfg(test)]
+mod dyadic;
 mod estimate;
 mod exact;
 mod hit;

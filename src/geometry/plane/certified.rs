@@ -55,3 +55,88 @@ fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Opti
     let exponent = i64::from(place.exponent) - i64::from(way.exponent);
     Some(Rounded::quotient(&numerator, &divisor, exponent))
 }
+
+#[cfg(test)]
+mod tests {
+    use std::cmp::Ordering::{self, Equal, Less};
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geometry::dyadic::{self, Dyadic, vector, zip};
+
+    /// By bisection of the exact quotient.
+    fn reference(
+        point: DVec3,
+        normal: DVec3,
+        origin: DVec3,
+        direction: DVec3,
+        tmax: f64,
+    ) -> Option<f64> {
+        let n = vector(normal);
+        let numerator = dyadic::dot(&n, &zip(&vector(point), &vector(origin), |p, o| p - o));
+        let divisor = dyadic::dot(&n, &vector(direction));
+        if numerator.sign() == Equal || numerator.sign() != divisor.sign() {
+            return None;
+        }
+        let beside = |x: &Dyadic| -> Ordering {
+            let order = numerator.cmp(&(divisor.clone() * x.clone()));
+            if divisor.sign() == Less { order.reverse() } else { order }
+        };
+        let below = tmax == f64::INFINITY || beside(&Dyadic::new(tmax)) == Less;
+        (below && tmax > 0.0).then(|| dyadic::round(beside))
+    }
+
+    #[test]
+    fn both_ends_of_the_ray_are_left_out() {
+        let meet = |origin, tmax| crossing(DVec3::ZERO, DVec3::Y, origin, -DVec3::Y, tmax);
+        assert_eq!(meet(DVec3::Y, f64::INFINITY), Some(1.0));
+        assert_eq!(meet(DVec3::Y, 1.0), None);
+        assert_eq!(meet(DVec3::ZERO, f64::INFINITY), None);
+    }
+
+    #[test]
+    fn parallel_ray_misses() {
+        let meet = |origin| crossing(DVec3::ZERO, DVec3::Y, origin, DVec3::X, f64::INFINITY);
+        assert_eq!((meet(DVec3::Y), meet(DVec3::ZERO)), (None, None));
+    }
+
+    #[test]
+    fn ray_that_is_not_finite_meets_nothing() {
+        let meet = |direction| crossing(DVec3::ZERO, DVec3::Y, DVec3::Y, direction, f64::INFINITY);
+        assert_eq!((meet(DVec3::ZERO), meet(DVec3::NAN)), (None, None));
+        assert_eq!(meet(DVec3::NEG_INFINITY), None);
+    }
+
+    fn any_float() -> impl Strategy<Value = f64> {
+        prop_oneof![
+            -1.0..1.0f64,
+            any::<u64>().prop_map(f64::from_bits).prop_filter("finite", |x| x.is_finite()),
+            (-4i8..=4).prop_map(f64::from),
+        ]
+    }
+
+    fn any_vector() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(any_float()).prop_map(DVec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3_000))]
+
+        #[test]
+        fn distances_are_the_nearest_to_the_exact_ones(
+            point in any_vector(),
+            normal in any_vector(),
+            origin in any_vector(),
+            direction in any_vector(),
+            short in any::<bool>(),
+        ) {
+            let at = |tmax| reference(point, normal, origin, direction, tmax);
+            let tmax = match at(f64::INFINITY) {
+                Some(t) if short => t,
+                _ => f64::INFINITY,
+            };
+            prop_assert_eq!(crossing(point, normal, origin, direction, tmax), at(tmax));
+        }
+    }
+}

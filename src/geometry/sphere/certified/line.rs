@@ -126,7 +126,7 @@ impl Line {
 
         let outside = power > power_error;
         let inside = power < -power_error;
-        let ahead = self.middle > 0.0;
+        let ahead = far > 0.0;
         let takes_far = inside & ahead;
         let t = if takes_far { far } else { near };
         let error = if takes_far { far_error } else { near_error };

@@ -51,7 +51,8 @@ pub fn crossing(
     if estimate.upper() <= 0.0 || estimate.lower() >= tmax {
         return None;
     }
-    let finite = origin.is_finite() && direction.is_finite();
+    let finite =
+        triangle.iter().all(|p| p.is_finite()) && origin.is_finite() && direction.is_finite();
     if estimate.error == f64::INFINITY && !(finite && exact::crosses(triangle, origin, direction)) {
         return None;
     }
