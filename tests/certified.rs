@@ -54,8 +54,7 @@ fn all_agree(what: &str, scene: &Scene, rays: &[Ray], budget: usize) -> usize {
             assert_eq!(found[i], blocked[i], "{what}, {name}, occlusion: {ray:?}");
         }
     };
-    let primitives =
-        scene.triangle_count() as usize + scene.spheres.len() + scene.planes.len() + 1;
+    let primitives = scene.triangle_count() as usize + scene.spheres.len() + scene.planes.len() + 1;
     let few = (budget / primitives).min(rays.len());
     let brute = BruteForce::new(scene, Precision::Certified);
     same("brute force", &rays[..few], &closest(&brute, &rays[..few]));
