@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::integrator::RayCounts;
+use crate::integrator::{self, Counts, RayCounts};
 use crate::render::Statistics;
 use crate::scene::Scene;
 
@@ -16,6 +16,8 @@ pub struct Stats {
     pub spp: u32,
     pub geometry: Geometry,
     pub rays: Rays,
+    /// Samples that were left out, by what made them not finite.
+    pub not_finite: NotFinite,
     pub seconds: Seconds,
     /// All rays over the seconds of rendering.
     pub mrays_per_second: f64,
@@ -66,6 +68,20 @@ impl From<RayCounts> for Rays {
 }
 
 #[derive(Serialize)]
+pub struct NotFinite {
+    pub light: u64,
+    pub surface: u64,
+    pub sum: u64,
+}
+
+impl From<integrator::NotFinite> for NotFinite {
+    fn from(counts: integrator::NotFinite) -> Self {
+        let integrator::NotFinite { light, surface, sum } = counts;
+        Self { light, surface, sum }
+    }
+}
+
+#[derive(Serialize)]
 pub struct Seconds {
     pub load: f64,
     pub build: f64,
@@ -83,7 +99,7 @@ impl Stats {
     ) -> Self {
         let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
         let (name, version) = statistics.backend.clone();
-        let rays = statistics.counts.rays;
+        let Counts { rays, not_finite, .. } = statistics.counts;
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
@@ -92,6 +108,7 @@ impl Stats {
             spp: scene.film.spp,
             geometry: Geometry::of(scene),
             rays: rays.into(),
+            not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),

@@ -8,6 +8,7 @@ mod json;
 mod output;
 mod render;
 mod report;
+mod stress;
 mod validate;
 
 use std::process::ExitCode;
@@ -33,6 +34,7 @@ pub fn run() -> ExitCode {
     finish(match command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
     })

@@ -11,9 +11,10 @@ use crate::cli::json::Stats;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;
-use crate::intersect::Precision;
+use crate::integrator::NotFinite;
+use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering};
-use crate::scene::{Scene, Transfer};
+use crate::scene::{Scene, Transfer, detail};
 use crate::write::{self, Format, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -41,6 +42,8 @@ pub fn run(arguments: &Render) -> Outcome {
     progress.finish_and_clear();
 
     let mut warnings = scene.warnings.clone();
+    let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
+    warnings.extend(detail::lost(&scene, f32_rays));
     warnings.extend(oddities(&scene, camera, &rendering));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
@@ -125,12 +128,7 @@ fn progress_bar(quiet: bool) -> ProgressBar {
 fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> {
     let (film, counts) = (&rendering.film, &rendering.statistics.counts);
     let mut found = Vec::new();
-    if counts.not_finite > 0 {
-        found.push(format!(
-            "{} samples had a radiance that is not finite and were left out",
-            counts.not_finite
-        ));
-    }
+    found.extend(not_finite(&counts.not_finite));
     if counts.hits == 0 {
         let bounds = scene.bounds();
         found.push(if bounds.is_empty() && scene.planes.is_empty() {
@@ -159,6 +157,31 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
         }
     }
     found
+}
+
+/// Says of samples that are not finite how many they are and, for each cause, what helps.
+fn not_finite(counts: &NotFinite) -> impl Iterator<Item = String> {
+    let NotFinite { light, surface, sum } = *counts;
+    [
+        (
+            light,
+            "the light that reaches a surface is not finite: a light with \
+             `falloff = \"inverse_square\"` stands on it or very near it",
+        ),
+        (
+            surface,
+            "a surface's colour or position is not finite: its material times its vertex colours \
+             is beyond f32, or it is met too far out on a plane",
+        ),
+        (
+            sum,
+            "finite terms multiply or add up to more than f32 holds: lower the intensity of the \
+             lights, or what the materials reflect and emit",
+        ),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, why)| format!("{count} samples were left out of the picture, because {why}"))
 }
 
 /// What determines the picture; never the time, the host, the threads or the backend.

@@ -9,6 +9,7 @@ mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
 mod entry;
+mod leaving;
 pub mod primitive;
 
 pub use brute::BruteForce;

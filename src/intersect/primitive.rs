@@ -1,15 +1,12 @@
 //! One ray against one primitive, in f64 and in world space: what every backend means by a hit.
 //!
-//! Here stands also how a ray leaves the surface it was spawned on. Nothing is skipped by
-//! distance: the primitive that was left is left out by identity, a sphere that is left toward
-//! its inside is met at its far root, and a triangle that shares a vertex with the one that was
-//! left is passed over where the origin lies in its plane to within rounding, since such a ray
-//! meets that plane at its origin and nowhere else.
+//! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`leaving`],
+//! [`starts_in_plane`] and [`starts_on`] say which those are.
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, plane, sphere, triangle};
 use crate::intersect::Precision;
+pub use crate::intersect::leaving::{Leaving, leaving, starts_in_plane, starts_on};
 use crate::scene::Scene;
-use glam::DVec3;
 
 /// The primitives of a scene, as a precision tests them.
 #[derive(Clone, Copy, Debug)]
@@ -32,32 +29,33 @@ impl Primitives<'_> {
         limit: f64,
     ) -> Option<Hit> {
         let s = &self.scene.spheres[index as usize];
-        let id = PrimitiveId::sphere(index);
-        let inward = match ray.from {
-            Some(from) if from.id == id => match from.side {
-                Side::Front => return None, // A convex body is not met again from outside.
-                Side::Back => true,
-            },
-            _ => false,
-        };
         let (origin, direction) = (ray.origin, ray.direction);
         let inverse = inverse_length_squared;
         let t = match self.precision {
             Precision::Fast => {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
-                sphere::first_root(roots, ray.tmax, inward)?
+                let t = sphere::first_root(roots, ray.tmax, false)?;
+                match leaving(self.scene, index, ray) {
+                    Leaving::No => t,
+                    Leaving::Outward => return None,
+                    Leaving::Inward => sphere::first_root(roots, ray.tmax, true)?,
+                }
             }
             Precision::Certified => {
                 use sphere::certified::{estimate, first_root};
-                // The estimate is of the near root, which a ray that goes inward leaves out.
-                if !inward
-                    && estimate(s.center, s.radius, origin, direction, inverse).is_outside(limit)
-                {
+                // Where the first root lies outside, so does the far one.
+                if estimate(s.center, s.radius, origin, direction, inverse).is_outside(limit) {
                     return None;
                 }
+                let inward = match leaving(self.scene, index, ray) {
+                    Leaving::No => false,
+                    Leaving::Outward => return None,
+                    Leaving::Inward => true,
+                };
                 first_root(s.center, s.radius, origin, direction, ray.tmax, inward)?
             }
         };
+        let id = PrimitiveId::sphere(index);
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
@@ -65,10 +63,6 @@ impl Primitives<'_> {
     #[inline]
     pub fn plane(&self, index: u32, ray: &Ray) -> Option<Hit> {
         let p = &self.scene.planes[index as usize];
-        let id = PrimitiveId::plane(index);
-        if ray.from.is_some_and(|from| from.id == id) {
-            return None;
-        }
         let t = match self.precision {
             Precision::Fast => plane::intersect(p.point, p.normal, ray.origin, ray.direction)
                 .filter(|&t| t > 0.0 && t < ray.tmax)?,
@@ -76,6 +70,10 @@ impl Primitives<'_> {
                 plane::certified::crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
             }
         };
+        if starts_in_plane(self.scene, index, ray) {
+            return None;
+        }
+        let id = PrimitiveId::plane(index);
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
@@ -132,33 +130,12 @@ impl Primitives<'_> {
     }
 }
 
-/// Whether the ray left a neighbour of the triangle with these corners, at a point of the
-/// triangle's own plane.
-#[inline]
-pub fn starts_on(scene: &Scene, corners: [DVec3; 3], ray: &Ray) -> bool {
-    let Some(from) = ray.from else { return false };
-    if !matches!(from.id.geometry, Geometry::Mesh(_)) {
-        return false;
-    }
-    // The origin carries the rounding of its own coordinates and of the vertices it was made
-    // from: a few ulp of the largest of them.
-    let scale =
-        corners.iter().fold(ray.origin.abs().max_element(), |s, c| s.max(c.abs().max_element()));
-    let normal = triangle::area_normal(corners);
-    let height = normal.dot(ray.origin - corners[0]).abs();
-    if height > 32.0 * f64::EPSILON * scale * normal.length() {
-        return false;
-    }
-    let left = scene.triangle(from.id);
-    corners.iter().any(|c| left.contains(c))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Departure;
+    use crate::geometry::{Departure, Side};
     use crate::scene::{Instance, MaterialId, Mesh, Plane, Sphere};
-    use glam::DAffine3;
+    use glam::{DAffine3, DVec3};
 
     fn fast(scene: &Scene) -> Primitives<'_> {
         Primitives { scene, precision: Precision::Fast }
@@ -176,7 +153,7 @@ mod tests {
         scene
     }
 
-    fn leaving(origin: DVec3, direction: DVec3, id: PrimitiveId, side: Side) -> Ray {
+    fn spawned(origin: DVec3, direction: DVec3, id: PrimitiveId, side: Side) -> Ray {
         Ray { from: Some(Departure { id, side }), ..Ray::new(origin, direction) }
     }
 
@@ -185,14 +162,14 @@ mod tests {
         let scene = roof();
         let id = PrimitiveId::triangle(0, 0, 0);
         let origin = DVec3::new(0.5, 0.5 + 1e-17, 0.0);
-        let ray = leaving(origin, DVec3::new(1.0, -1.0, 0.0), id, Side::Back);
+        let ray = spawned(origin, DVec3::new(1.0, -1.0, 0.0), id, Side::Back);
         assert_eq!(fast(&scene).triangle(id, &ray, f64::INFINITY), None);
     }
 
     #[test]
     fn ray_from_the_shared_edge_does_not_meet_the_neighbour() {
         let scene = roof();
-        let ray = leaving(
+        let ray = spawned(
             DVec3::new(1e-17, 0.0, 0.25),
             DVec3::new(-1.0, 1.0 - 1e-15, 0.0),
             PrimitiveId::triangle(0, 0, 0),
@@ -207,7 +184,7 @@ mod tests {
     #[test]
     fn ray_across_the_valley_meets_the_neighbour() {
         let scene = roof();
-        let ray = leaving(
+        let ray = spawned(
             DVec3::new(0.25, 0.25, 0.0),
             DVec3::NEG_X,
             PrimitiveId::triangle(0, 0, 0),
@@ -223,7 +200,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let inside = DVec3::X * (1.0 - 1e-16);
-        let ray = leaving(inside, DVec3::new(1e-9, 1.0, 0.0), PrimitiveId::sphere(0), Side::Front);
+        let ray = spawned(inside, DVec3::new(1e-9, 1.0, 0.0), PrimitiveId::sphere(0), Side::Front);
         assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY), None);
     }
 
@@ -231,7 +208,7 @@ mod tests {
     fn sphere_left_inward_is_met_at_its_far_side() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
-        let ray = leaving(DVec3::X, -DVec3::X, PrimitiveId::sphere(0), Side::Back);
+        let ray = spawned(DVec3::X, -DVec3::X, PrimitiveId::sphere(0), Side::Back);
         assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY).unwrap().t, 2.0);
     }
 

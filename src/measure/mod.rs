@@ -1,9 +1,13 @@
 //! What measures the renderer: one backend against the other, one picture against another.
 
 mod dispute;
+pub mod oracle;
 mod picture;
+mod replay;
+pub mod stress;
 mod validate;
 
 pub use dispute::{Cause, Disputes};
 pub use picture::{Comparison, Picture, compare};
-pub use validate::{Causes, Validation, validate};
+pub use replay::{Answer, Hidden, Met, Replay, ray_from_text, ray_to_text, replay};
+pub use validate::{Causes, Validation, Worst, validate};

@@ -13,7 +13,7 @@ use crate::intersect::embree::spheres::SphereTable;
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
-use crate::intersect::primitive;
+use crate::intersect::primitive::{Leaving, leaving, starts_on};
 
 /// A primitive as the callbacks test it.
 pub trait Shape {
@@ -84,7 +84,7 @@ impl Shape for Ball {
     }
 
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
-        context.rays[lane].from.is_some_and(|from| from.id == self.id())
+        leaving(context.scene, self.index, &context.rays[lane]) != Leaving::No
     }
 }
 
@@ -132,7 +132,7 @@ impl Shape for Face {
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
         let ray = &context.rays[lane];
         ray.from.is_some_and(|from| from.id == self.id)
-            || primitive::starts_on(context.scene, self.corners, ray)
+            || starts_on(context.scene, self.corners, ray)
     }
 }
 

@@ -11,10 +11,13 @@ use crate::intersect::Precision;
 use crate::intersect::embree::layout::{Context, INVALID};
 use crate::intersect::primitive::Primitives;
 
-/// The fields of a hit, after `W` of each field of the ray.
+/// The fields of a hit: the normal, of any length, in the space of the triangle's own mesh.
+const NG: usize = 0;
 const PRIM: usize = 5;
 const GEOM: usize = 6;
 const INST: usize = 7;
+/// The fields of a ray.
+const DIR: usize = 4;
 const TFAR: usize = 8;
 const ID: usize = 10;
 
@@ -38,18 +41,36 @@ pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
             let lane = field(ray, ID) as usize;
             let t = f32::from_bits(field(ray, TFAR));
             let ids = [PRIM, GEOM, INST].map(|f| field(hit, f));
-            if !stands_in_the_way::<W, SHADOW>(context, lane, t, ids) {
+            let vector = |base, at| [0, 1, 2].map(|axis| f32::from_bits(field(base, at + axis)));
+            let rise = match ids[2] {
+                INVALID => rise(vector(hit, NG), vector(ray, DIR)),
+                _ => 0.0, // Normal and direction stand in two spaces.
+            };
+            if !stands_in_the_way::<W, SHADOW>(context, lane, t, rise, ids) {
                 *valid = 0;
             }
         }
     }
 }
 
+/// How far a ray rises over a triangle for each unit of t.
+fn rise(normal: [f32; 3], direction: [f32; 3]) -> f32 {
+    let (normal, direction) = (glam::Vec3::from(normal), glam::Vec3::from(direction));
+    normal.dot(direction).abs() / normal.length()
+}
+
 /// Whether the candidate that Embree's f32 arithmetic found at `t` counts for the ray in `lane`.
+///
+/// The f32 ray is off by at most the frame's margin, and twice that is [`Frame::doubt`] / 512: where
+/// its ends stand higher over the triangle than that, so do those of the exact ray, on the same
+/// sides.
+///
+/// [`Frame::doubt`]: crate::intersect::embree::frame::Frame::doubt
 fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     context: &Context<'_, W>,
     lane: usize,
     t: f32,
+    rise: f32,
     [prim, geom, inst]: [u32; 3],
 ) -> bool {
     let Some(ray) = context.rays.get(lane) else { return false };
@@ -64,7 +85,11 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
         return false;
     }
     let end = (context.exact.tmax[lane] - context.clip.start[lane]) * context.clip.unit[lane];
-    let sure = t > context.doubt && f64::from(t) < end - f64::from(context.doubt);
+    // A ray that grazes a triangle in whose plane it starts or ends may seem to cross it anywhere.
+    let height = context.doubt / 512.0;
+    let clear =
+        |way: f64| way > f64::from(context.doubt) && way * f64::from(rise) > f64::from(height);
+    let sure = clear(f64::from(t)) && clear(end - f64::from(t));
     let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
     sure || primitives.triangle(id, ray, f64::INFINITY).is_some()
 }

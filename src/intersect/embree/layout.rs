@@ -5,7 +5,7 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `canary` proves at start that the library agrees.
 
-use crate::geometry::{Geometry, Ray};
+use crate::geometry::Ray;
 use crate::intersect::embree::frame::{Clip, Exact};
 use crate::intersect::embree::nearest::Nearest;
 use crate::scene::Scene;
@@ -90,9 +90,8 @@ pub struct Context<'a, const W: usize> {
     /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
     /// tested again in f64.
     pub doubt: f32,
-    /// Whether any ray of the packet left a surface, and whether any left a sphere.
+    /// Whether any ray of the packet left a surface.
     pub leaves: bool,
-    pub leaves_spheres: bool,
 }
 
 impl<'a, const W: usize> Context<'a, W> {
@@ -114,13 +113,8 @@ impl<'a, const W: usize> Context<'a, W> {
             nearest: Nearest::new(exact.tmax),
             doubt,
             leaves: rays.iter().any(|ray| ray.from.is_some()),
-            leaves_spheres: rays.iter().any(leaves_sphere),
         }
     }
-}
-
-fn leaves_sphere(ray: &Ray) -> bool {
-    ray.from.is_some_and(|from| from.id.geometry == Geometry::Spheres)
 }
 
 const _: () = {

@@ -156,6 +156,7 @@ impl<'s> Embree<'s> {
             frame: &self.frame,
             width: self.width,
             precision: self.precision,
+            careful: false,
         }
     }
 }

@@ -22,6 +22,8 @@ pub struct Target<'a> {
     pub frame: &'a Frame,
     pub width: Width,
     pub precision: Precision,
+    /// Whether rays that left nothing are filtered, too.
+    pub careful: bool,
 }
 
 impl Target<'_> {
@@ -122,7 +124,7 @@ fn closest<const W: usize>(
         let valid = lanes(rays.len(), &entry.inside);
         let mut context =
             Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
-        let filtered = context.leaves && target.precision == Precision::Fast;
+        let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
         let mut args = sys::RTCIntersectArguments {
             flags: query_flags(coherence, filtered),
             feature_mask: ALL_FEATURES,
@@ -163,7 +165,13 @@ fn closest<const W: usize>(
         }
         match target.precision {
             Precision::Fast => {
-                refine(target.scene, target.instance_of, &exact, &record, hits);
+                let all_within = refine(target.scene, target.instance_of, &exact, &record, hits);
+                if !all_within && !filtered {
+                    // A ray that starts on a triangle, which hides what lies behind it: the filter
+                    // drops it and lets Embree look on.
+                    Target { careful: true, ..*target }.closest(rays, coherence, hits);
+                    continue;
+                }
                 for (i, hit) in hits.iter_mut().enumerate() {
                     if context.nearest.primitive[i] != INVALID {
                         let id = PrimitiveId::sphere(context.nearest.primitive[i]);

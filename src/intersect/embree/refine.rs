@@ -11,6 +11,7 @@ use crate::scene::Scene;
 type Corners<T, const W: usize> = [[[T; W]; 3]; 3];
 
 /// Intersects each lane's triangle again in f64, and writes the hits; `None` where there is none.
+/// Says whether all of them lie within their rays' segments.
 ///
 /// Where f64 says that the ray just misses the triangle that Embree's f32 arithmetic hit, the hit
 /// is kept, with t from the triangle's plane and the weights clamped: dropping it would leave a
@@ -23,7 +24,7 @@ pub fn refine<const W: usize>(
     exact: &Exact<W>,
     record: &RayHit<W>,
     hits: &mut [Option<Hit>],
-) {
+) -> bool {
     let mut local: Corners<f32, W> = [[[0.0; W]; 3]; 3];
     let mut ids = [None; W];
     let mut instances = [INVALID; W];
@@ -47,7 +48,7 @@ pub fn refine<const W: usize>(
     }
     if first == INVALID {
         hits.fill(None);
-        return;
+        return true;
     }
     let corners = bake(scene, first, &instances, &local);
     let mut ts = [0.0; W];
@@ -60,10 +61,12 @@ pub fn refine<const W: usize>(
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
     }
+    let mut all_within = true;
     for (i, (hit, id)) in hits.iter_mut().zip(ids).enumerate() {
         *hit = id.map(|id| {
             let mut t = ts[i];
             if !(t > 0.0 && t < exact.tmax[i]) {
+                all_within = false;
                 let last = exact.tmax[i].next_down();
                 t = exact.clip.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
             }
@@ -74,6 +77,7 @@ pub fn refine<const W: usize>(
             Hit { t, u, v, id }
         });
     }
+    all_within
 }
 
 /// The corners in world space. Nearly always all lanes are in one instance, whose transform then

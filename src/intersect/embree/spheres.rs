@@ -7,11 +7,12 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::{Bounds, PrimitiveId, Side, sphere};
+use crate::geometry::{Bounds, sphere};
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit};
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
+use crate::intersect::primitive::{Leaving, leaving};
 use crate::scene::Scene;
 use glam::DVec3;
 
@@ -174,10 +175,10 @@ fn crossings<const W: usize>(
         let t = if near > 0.0 { near } else { far };
         ts[i] = if crosses[i] & (t > 0.0) { t } else { f64::INFINITY };
     }
-    // Rays that leave this very sphere are few: one by one.
-    if context.leaves_spheres {
+    // Rays that were spawned and meet the sphere are few: one by one.
+    if context.leaves {
         for i in 0..context.rays.len() {
-            if crosses[i] && leaves(context, primitive, i) {
+            if ts[i] < f64::INFINITY && context.rays[i].from.is_some() {
                 ts[i] = crossing(context, s, primitive, i);
             }
         }
@@ -188,18 +189,18 @@ fn crossings<const W: usize>(
 /// The first t > 0 at which ray `i` meets the sphere, or infinity.
 #[inline(always)]
 fn crossing<const W: usize>(context: &Context<'_, W>, s: &Entry, primitive: u32, i: usize) -> f64 {
-    let mut inward = false;
-    if leaves(context, primitive, i) {
-        inward = context.rays[i].from.is_some_and(|from| from.side == Side::Back);
-        if !inward {
-            return f64::INFINITY;
-        }
-    }
     let line = line(context, s, i);
     if !line.crosses() {
         return f64::INFINITY;
     }
-    sphere::first_root(line.roots(), f64::INFINITY, inward).unwrap_or(f64::INFINITY)
+    let first = |inward| sphere::first_root(line.roots(), f64::INFINITY, inward);
+    let left = |ray| leaving(context.scene, primitive, ray);
+    let t = match (first(false), context.rays.get(i).map_or(Leaving::No, left)) {
+        (None, _) | (_, Leaving::Outward) => None,
+        (t, Leaving::No) => t,
+        (_, Leaving::Inward) => first(true),
+    };
+    t.unwrap_or(f64::INFINITY)
 }
 
 #[inline(always)]
@@ -207,11 +208,4 @@ fn line<const W: usize>(context: &Context<'_, W>, s: &Entry, i: usize) -> sphere
     let (origin, direction) = context.exact.line(i);
     let inverse = context.exact.inverse_length_squared[i];
     sphere::Line::new(s.center, s.radius, origin, direction, inverse)
-}
-
-#[inline(always)]
-fn leaves<const W: usize>(context: &Context<'_, W>, primitive: u32, i: usize) -> bool {
-    let id = PrimitiveId::sphere(primitive);
-    context.leaves_spheres
-        && context.rays.get(i).is_some_and(|ray| ray.from.is_some_and(|from| from.id == id))
 }

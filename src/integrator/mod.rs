@@ -5,6 +5,9 @@
 //! rays with the radiance that waits on them. A pixel's sum therefore has one order, whatever the
 //! tiles and threads. Secondary rays, when there are any, form the next wave of the same loop.
 
+mod counts;
+mod samples;
+
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
@@ -13,6 +16,8 @@ use crate::intersect::{Coherence, Intersector};
 use crate::scene::{FilmSettings, LightKind, RayMaker, Scene};
 use crate::shading::{self, Reflectance};
 use crate::surface::Surface;
+pub use counts::{Counts, NotFinite, RayCounts};
+pub use samples::sample_positions;
 
 /// Rows of a strip, the unit of work that threads share.
 pub const STRIP_ROWS: usize = 16;
@@ -20,48 +25,6 @@ pub const STRIP_ROWS: usize = 16;
 const TILE_COLUMNS: usize = 64;
 /// Side of the squares in which a tile's rays are lined up, so that a packet of 16 is a square.
 const BLOCK: usize = 4;
-
-/// How many rays were traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct RayCounts {
-    /// From the eye.
-    pub primary: u64,
-    /// To a light.
-    pub shadow: u64,
-    /// Off a mirror.
-    pub reflection: u64,
-    /// Through a surface.
-    pub refraction: u64,
-}
-
-impl RayCounts {
-    /// All of them.
-    pub fn total(&self) -> u64 {
-        self.primary + self.shadow + self.reflection + self.refraction
-    }
-}
-
-/// What was counted while a picture was made.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Rays traced.
-    pub rays: RayCounts,
-    /// Primary rays that hit something.
-    pub hits: u64,
-    /// Samples whose radiance was not finite and was left out.
-    pub not_finite: u64,
-}
-
-impl std::ops::AddAssign for Counts {
-    fn add_assign(&mut self, other: Self) {
-        self.rays.primary += other.rays.primary;
-        self.rays.shadow += other.rays.shadow;
-        self.rays.reflection += other.rays.reflection;
-        self.rays.refraction += other.rays.refraction;
-        self.hits += other.hits;
-        self.not_finite += other.not_finite;
-    }
-}
 
 /// Makes the pixels of one picture.
 pub struct Integrator<'a> {
@@ -155,11 +118,11 @@ impl<'a> Integrator<'a> {
         }
         self.shade(scratch, counts);
         for (&at, &radiance) in scratch.at.iter().zip(&scratch.sample) {
-            if radiance.is_finite() {
-                let pixel = &mut pixels[at as usize];
-                *pixel = (Vec3::from(*pixel) + radiance).to_array();
-            } else {
-                counts.not_finite += 1;
+            let sum = Vec3::from(pixels[at as usize]) + radiance;
+            if sum.is_finite() {
+                pixels[at as usize] = sum.to_array();
+            } else if !radiance.is_nan() {
+                counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
             }
         }
     }
@@ -176,6 +139,12 @@ impl<'a> Integrator<'a> {
             };
             let surface = Surface::new(self.scene, ray, hit);
             let (emission, reflectance) = self.colors(&surface);
+            let colors = emission.is_finite() && reflectance.diffuse.is_finite();
+            if !(colors && surface.position.is_finite()) {
+                sample.push(Vec3::ZERO);
+                spoil(&mut sample[i], &mut counts.not_finite.surface);
+                continue;
+            }
             sample.push(emission);
             if reflectance.diffuse != Vec3::ZERO || reflectance.specular != Vec3::ZERO {
                 lit.push((i as u32, surface, reflectance));
@@ -184,7 +153,7 @@ impl<'a> Integrator<'a> {
         for light in &self.scene.lights {
             if light.kind == LightKind::Ambient {
                 for (i, _, reflectance) in lit.iter() {
-                    sample[*i as usize] += reflectance.diffuse * light.intensity;
+                    add(&mut sample[*i as usize], reflectance.diffuse * light.intensity, counts);
                 }
                 continue;
             }
@@ -201,7 +170,14 @@ impl<'a> Integrator<'a> {
                 }
                 let view = rays[*i as usize].direction;
                 let share = shading::direct(reflectance, surface.normal, view, arrival.toward);
-                let radiance = share * arrival.intensity;
+                if share == Vec3::ZERO {
+                    continue;
+                }
+                let radiance = match (arrival.intensity.is_finite(), share.is_finite()) {
+                    (false, _) => NO_LIGHT,
+                    (true, false) => Vec3::INFINITY,
+                    (true, true) => share * arrival.intensity,
+                };
                 if radiance == Vec3::ZERO {
                     continue;
                 }
@@ -209,7 +185,7 @@ impl<'a> Integrator<'a> {
                     shadow.push(surface.shadow_ray(&arrival));
                     waiting.push((*i, radiance));
                 } else {
-                    sample[*i as usize] += radiance;
+                    add(&mut sample[*i as usize], radiance, counts);
                 }
             }
             if shadow.is_empty() {
@@ -221,7 +197,7 @@ impl<'a> Integrator<'a> {
             counts.rays.shadow += shadow.len() as u64;
             for ((i, radiance), blocked) in waiting.iter().zip(blocked.iter()) {
                 if !blocked {
-                    sample[*i as usize] += radiance;
+                    add(&mut sample[*i as usize], *radiance, counts);
                 }
             }
         }
@@ -255,7 +231,10 @@ impl<'a> Integrator<'a> {
             (View::Normal, Some(hit)) => {
                 Surface::new(self.scene, ray, hit).normal.as_vec3().to_array()
             }
-            (View::Depth, Some(hit)) => [(hit.t * ray.direction.length()) as f32; 3],
+            (View::Depth, Some(hit)) => {
+                // Infinite is what nothing is.
+                [(hit.t * ray.direction.length()).min(f64::from(f32::MAX)) as f32; 3]
+            }
             (View::Id, Some(hit)) => {
                 let geometry = match hit.id.geometry {
                     Geometry::Spheres => 1.0,
@@ -268,60 +247,23 @@ impl<'a> Integrator<'a> {
     }
 }
 
-/// Where the samples of a pixel lie, as offsets from its upper left corner.
-pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
-    let offset = film.sample_position.offset();
-    sample_offsets(film.spp).map(|[x, y]| [x + offset, y + offset]).collect()
+/// The radiance that a light gives of which the arrival is not finite; no finite factors make NaN.
+const NO_LIGHT: Vec3 = Vec3::NAN;
+
+/// Adds to the radiance of a sample, unless it is spoilt already.
+fn add(sample: &mut Vec3, radiance: Vec3, counts: &mut Counts) {
+    let sum = *sample + radiance;
+    if sum.is_finite() {
+        *sample = sum;
+    } else if radiance.is_nan() {
+        spoil(sample, &mut counts.not_finite.light);
+    } else {
+        spoil(sample, &mut counts.not_finite.sum);
+    }
 }
 
-/// Where the samples of a pixel lie, relative to its sample position; their mean is 0 and they
-/// stay within the pixel's square.
-///
-/// A square number of samples forms a regular grid; any other a lattice of points, evenly spaced
-/// along x and by the golden ratio along y.
-fn sample_offsets(spp: u32) -> impl Iterator<Item = [f64; 2]> {
-    let n = f64::from(spp);
-    let side = spp.isqrt();
-    let golden = (5f64.sqrt() - 1.0) / 2.0;
-    let lattice = move |i: u32| (f64::from(i) * golden).fract();
-    // The lattice's y are not symmetric; their mean is taken out, and the rest drawn together so
-    // that no sample leaves the square.
-    let mean = (0..spp).map(lattice).sum::<f64>() / n;
-    let reach = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
-    (0..spp).map(move |i| {
-        if side * side == spp {
-            let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
-            [place(i % side), place(i / side)]
-        } else {
-            [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / reach)]
-        }
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_sample_lies_at_the_sample_position() {
-        assert_eq!(sample_offsets(1).collect::<Vec<_>>(), [[0.0, 0.0]]);
-    }
-
-    #[test]
-    fn four_samples_form_a_grid() {
-        let expected = [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]];
-        assert_eq!(sample_offsets(4).collect::<Vec<_>>(), expected);
-    }
-
-    #[test]
-    fn samples_never_shift_the_picture_nor_leave_the_pixel() {
-        for spp in 1..100 {
-            let mut mean = [0.0; 2];
-            for s in sample_offsets(spp) {
-                assert!(s.iter().all(|x| x.abs() <= 0.5), "{spp}: {s:?}");
-                mean = [mean[0] + s[0], mean[1] + s[1]];
-            }
-            assert!(mean.iter().all(|m| m.abs() < 1e-12), "{spp}: {mean:?}");
-        }
-    }
+/// Makes a sample NaN, so that it stays out of the picture, and counts what did it, once.
+fn spoil(sample: &mut Vec3, cause: &mut u64) {
+    *cause += u64::from(!sample.is_nan());
+    *sample = Vec3::NAN;
 }

@@ -1,0 +1,119 @@
+//! The oracle in an intersector's place.
+
+use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray};
+use crate::intersect::primitive::{Leaving, leaving, starts_in_plane, starts_on};
+use crate::intersect::{Coherence, Intersector};
+use crate::scene::Scene;
+
+/// Tries every primitive in exact arithmetic; for small pictures that others are held against.
+///
+/// Boxes, wider than any rounding, only leave out what a ray is nowhere near.
+pub struct Oracle<'s> {
+    scene: &'s Scene,
+    boxes: Vec<(PrimitiveId, Bounds)>,
+}
+
+impl<'s> Oracle<'s> {
+    /// The oracle of a checked scene.
+    pub fn new(scene: &'s Scene) -> Self {
+        let spheres = (0..).zip(&scene.spheres).map(|(i, s)| (PrimitiveId::sphere(i), s.bounds()));
+        let triangles = (0..).zip(&scene.instances).flat_map(|(instance, placed)| {
+            let mesh = placed.mesh.0;
+            let count = scene.meshes[mesh as usize].triangles.len() as u32;
+            (0..count).map(move |t| {
+                let id = PrimitiveId::triangle(mesh, t, instance);
+                (id, Bounds::of(scene.triangle(id)))
+            })
+        });
+        Self { scene, boxes: spheres.chain(triangles).collect() }
+    }
+
+    /// Every hit of the ray, in no particular order.
+    pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+        let (ray, planes) = (*ray, self.scene.planes.len() as u32);
+        let near = self.boxes.iter().filter(move |(_, bounds)| passes_near(bounds, &ray));
+        near.map(|(id, _)| *id)
+            .chain((0..planes).map(PrimitiveId::plane))
+            .filter_map(move |id| self.hit(id, &ray))
+    }
+
+    fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+        if ray.from.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
+            return None;
+        }
+        let (t, u, v) = match id.geometry {
+            Geometry::Spheres => {
+                let inward = match leaving(self.scene, id.primitive, ray) {
+                    Leaving::No => false,
+                    Leaving::Outward => return None,
+                    Leaving::Inward => true,
+                };
+                let s = &self.scene.spheres[id.primitive as usize];
+                (super::sphere(s.center, s.radius, ray, inward)?, 0.0, 0.0)
+            }
+            Geometry::Planes => {
+                let p = &self.scene.planes[id.primitive as usize];
+                let t = super::plane(p.point, p.normal, ray)?;
+                if starts_in_plane(self.scene, id.primitive, ray) {
+                    return None;
+                }
+                (t, 0.0, 0.0)
+            }
+            Geometry::Mesh(_) => {
+                let corners = self.scene.triangle(id);
+                let crossing = super::triangle(corners, ray)?;
+                if starts_on(self.scene, corners, ray) {
+                    return None;
+                }
+                (crossing.t, crossing.u, crossing.v)
+            }
+        };
+        Some(Hit { t: t.to_f64(), u, v, id })
+    }
+}
+
+/// Whether the ray's line comes near the box before `ray.tmax`: false only when it certainly does
+/// not. The margin of 1e-9 of the coordinates is ten million times what the few operations round.
+fn passes_near(bounds: &Bounds, ray: &Ray) -> bool {
+    let margin = 1e-9 * (bounds.max_abs() + ray.origin.abs().max_element());
+    let (lower, upper) = (bounds.lower - margin - ray.origin, bounds.upper + margin - ray.origin);
+    let (mut enter, mut leave) = (0.0f64, ray.tmax);
+    for axis in 0..3 {
+        let (low, high, along) = (lower[axis], upper[axis], ray.direction[axis]);
+        if along == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (a, b) = (low / along, high / along);
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    enter <= leave
+}
+
+impl Intersector for Oracle<'_> {
+    fn name(&self) -> &'static str {
+        "oracle"
+    }
+
+    fn version(&self) -> String {
+        env!("CARGO_PKG_VERSION").to_owned()
+    }
+
+    fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
+        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
+        for (ray, best) in rays.iter().zip(hits) {
+            *best = None;
+            self.all(ray).for_each(|hit| Hit::keep_first(best, hit));
+        }
+    }
+
+    fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
+        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
+        for (ray, blocked) in rays.iter().zip(blocked) {
+            *blocked = self.all(ray).any(|hit| self.scene.casts_shadow(hit.id));
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! G7: what must not change a picture does not: the scale of the scene by a power of two, the
+//! number of threads.
+
+use glam::{DAffine3, DMat3, DVec3, Vec3};
+
+use super::cell::{Cell, Draw};
+use super::report::Tally;
+use super::shapes::{icosphere, torus};
+use crate::error::Result;
+use crate::intersect::{Backend, Precision};
+use crate::render::{Options, render};
+use crate::scene::{
+    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, Plane, Scene, Sphere,
+};
+use crate::write::{Settings, png_bytes};
+
+/// Powers of two by which the scene is scaled.
+const SCALES: [std::ops::RangeInclusive<i32>; 4] = [-20..=-11, -10..=-1, 1..=10, 11..=20];
+/// Pictures of a cell: a perspective and a parallel one for each power.
+const PICTURES: u64 = 20;
+const THREADS: [usize; 3] = [1, 2, 5];
+
+/// The cells.
+pub fn cells() -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for backend in backends() {
+        let method = format!("certified, {}", name(backend));
+        for scales in SCALES {
+            let cell = format!("scaled by 2^{} … 2^{}", scales.start(), scales.end());
+            cells.push(Cell::new(cell, &*method, move |draw| {
+                let scene = scene(side(draw));
+                let mut tally = Tally::default();
+                for camera in 0..scene.cameras.len() {
+                    let (expected, _) = picture(&scene, backend, camera, 0)?;
+                    for k in scales.clone() {
+                        compare(
+                            &expected,
+                            picture(&scaled(&scene, k), backend, camera, 0)?,
+                            &mut tally,
+                        );
+                    }
+                }
+                Ok(tally)
+            }));
+        }
+        cells.push(Cell::new("on 1, 2 and 5 threads", &*method, move |draw| {
+            let scene = scene(side(draw));
+            let mut tally = Tally::default();
+            for camera in 0..scene.cameras.len() {
+                let (expected, _) = picture(&scene, backend, camera, 0)?;
+                for threads in THREADS {
+                    compare(&expected, picture(&scene, backend, camera, threads)?, &mut tally);
+                }
+            }
+            Ok(tally)
+        }));
+    }
+    cells
+}
+
+fn backends() -> Vec<Backend> {
+    vec![
+        #[cfg(feature = "embree")]
+        Backend::Embree,
+        Backend::Rust,
+    ]
+}
+
+fn name(backend: Backend) -> &'static str {
+    match backend {
+        #[cfg(feature = "embree")]
+        Backend::Embree => "embree",
+        Backend::Rust => "bvh",
+    }
+}
+
+/// The side of the square pictures of a cell.
+fn side(draw: &Draw) -> u32 {
+    (draw.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32
+}
+
+/// The PNG's bytes of a picture, and how many rays it took.
+fn picture(
+    scene: &Scene,
+    backend: Backend,
+    camera: usize,
+    threads: usize,
+) -> Result<(Vec<u8>, u64)> {
+    let precision = Precision::Certified;
+    let options = Options { backend, precision, threads, camera, ..Options::default() };
+    let rendering = render(scene, &options, &|_| {})?;
+    let settings = Settings { transfer: scene.film.transfer, ..Settings::default() };
+    Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
+}
+
+fn compare(expected: &[u8], (found, rays): (Vec<u8>, u64), tally: &mut Tally) {
+    tally.rays += rays;
+    let differ = expected.chunks(3).zip(found.chunks(3)).filter(|(a, b)| a != b).count();
+    tally.misclassified += differ as u64;
+    tally.wrong_if(expected.len() != found.len());
+}
+
+/// Spheres, a checkered plane, meshes, and a light of every kind.
+fn scene(side: u32) -> Scene {
+    let mut scene = Scene::default();
+    scene.film.size = [side, side];
+    let glossy =
+        Material { diffuse: Vec3::new(0.3, 0.5, 0.8), specular: Vec3::ONE, ..<_>::default() };
+    let glossy = scene.add_material(glossy);
+    let matt = scene.add_material(Material::default());
+    for i in 0..12 {
+        let angle = f64::from(i) * 0.7;
+        let center = DVec3::new(2.0 * angle.cos(), 0.3 + 0.1 * f64::from(i), 2.0 * angle.sin());
+        scene.spheres.push(Sphere::new(center, 0.2 + 0.03 * f64::from(i), glossy));
+    }
+    let mut ground = Plane::new(DVec3::Y * -0.2, DVec3::new(0.05, 1.0, 0.02), matt);
+    ground.checker = Some(Checker { colors: [Vec3::splat(0.2), Vec3::ONE], size: 0.7 });
+    scene.planes.push(ground);
+    let (ball, ring) = (scene.add_mesh(icosphere(1)), scene.add_mesh(torus(24, 12)));
+    for (mesh, at) in [(ball, DVec3::new(0.3, 1.1, -0.2)), (ring, DVec3::Y), (ring, DVec3::Z * 2.0)]
+    {
+        let turned = DAffine3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), at.z + 0.4);
+        let transform = DAffine3::from_translation(at) * turned;
+        scene.instances.push(Instance::new(mesh, transform, matt));
+    }
+    let falloff = Falloff::InverseSquare;
+    let position = DVec3::new(3.0, 5.0, 4.0);
+    let aside = DVec3::new(-4.0, 6.0, 1.0);
+    for (kind, intensity) in [
+        (LightKind::Ambient, 0.05),
+        (LightKind::Directional { direction: DVec3::new(0.48, -0.6, -0.64) }, 0.3),
+        (LightKind::Point { position, falloff, range: 40.0 }, 20.0),
+        (LightKind::Point { position: aside, falloff: Falloff::None, range: 30.0 }, 0.2),
+        (
+            LightKind::Spot {
+                position: aside,
+                direction: -aside.normalize(),
+                falloff,
+                range: f64::INFINITY,
+                inner_angle: 0.2,
+                outer_angle: 0.4,
+            },
+            15.0,
+        ),
+    ] {
+        let intensity = Vec3::splat(intensity);
+        scene.lights.push(Light { name: String::new(), kind, intensity, casts_shadow: true });
+    }
+    let position = DVec3::new(1.0, 2.5, 6.0);
+    let forward = -position.normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let up = right.cross(forward);
+    for lens in [Lens::FovY(0.8), Lens::OrthoHeight(6.0)] {
+        scene.cameras.push(Camera { name: String::new(), position, forward, right, up, lens });
+    }
+    scene
+}
+
+/// The scene with every length multiplied by 2ᵏ, and the lights as much stronger as that makes
+/// them weaker.
+fn scaled(scene: &Scene, k: i32) -> Scene {
+    let by = f64::powi(2.0, k);
+    let mut scene = scene.clone();
+    for sphere in &mut scene.spheres {
+        sphere.center *= by;
+        sphere.radius *= by;
+    }
+    for plane in &mut scene.planes {
+        plane.point *= by;
+        if let Some(checker) = &mut plane.checker {
+            checker.size *= by;
+        }
+    }
+    for instance in &mut scene.instances {
+        let DAffine3 { matrix3, translation } = instance.transform;
+        let matrix3: DMat3 = matrix3 * by;
+        instance.transform = DAffine3 { matrix3, translation: translation * by };
+    }
+    for light in &mut scene.lights {
+        if let LightKind::Point { position, falloff, range }
+        | LightKind::Spot { position, falloff, range, .. } = &mut light.kind
+        {
+            *position *= by;
+            *range *= by;
+            if *falloff == Falloff::InverseSquare {
+                light.intensity *= (by * by) as f32;
+            }
+        }
+    }
+    for camera in &mut scene.cameras {
+        camera.position *= by;
+        if let Lens::OrthoHeight(height) = &mut camera.lens {
+            *height *= by;
+        }
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_of_the_sweep_are_valid() {
+        for k in [-20, 0, 20] {
+            scaled(&scene(8), k).check().unwrap();
+        }
+    }
+
+    #[test]
+    fn pictures_of_the_sweep_show_something() {
+        let (bytes, _) = picture(&scene(16), Backend::Rust, 0, 1).unwrap();
+        let bright = bytes.iter().filter(|b| **b > 40).count();
+        assert!(bright > bytes.len() / 4 && bright < bytes.len(), "{bright} of {}", bytes.len());
+    }
+}
