@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use envers::intersect::Precision;
 use envers::load::load_for;
 use envers::measure::validate;
 
@@ -10,9 +11,11 @@ fn passes(name: &str, size: [u32; 2]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);
     let mut scene = load_for(&path, Some(size)).unwrap();
     scene.film.spp = 1;
-    let found = validate(&scene, 0, 0).unwrap();
-    assert!(found.passed && found.unexplained_mismatches == 0, "{found}");
-    assert!(found.rays_compared > found.pixels, "no shadow ray was compared: {found}");
+    for precision in [Precision::Fast, Precision::Certified] {
+        let found = validate(&scene, precision, 0, 0).unwrap();
+        assert!(found.passed && found.unexplained_mismatches == 0, "{found}");
+        assert!(found.rays_compared > found.pixels, "no shadow ray was compared: {found}");
+    }
 }
 
 #[test]

@@ -7,7 +7,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::cli::files;
 use crate::error::{Error, Result};
 use crate::film::View;
+use crate::geometry::Ray;
 use crate::intersect::{Backend, Precision};
+use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
 use crate::scene::Scene;
 use crate::scene::check::MAX_SPP;
@@ -102,9 +104,26 @@ pub struct Render {
 }
 
 #[derive(Args)]
+#[command(after_help = "\
+Of Embree in the given precision and the certified pure-Rust intersector, every primary hit, every
+shadow ray and every pixel is compared. fast passes where each mismatch is explained by what f32 rays
+and f64 formulas promise (edge, tangency, tie), on at most 1e-4 of the rays, and at most 1e-5 of the
+pixels differ by more than 1 of 255; certified where nothing differs by any bit.
+
+The heat map: red an unexplained mismatch, yellow an explained one, blue a pixel that differs, grey
+where both hit something, black where both hit nothing.
+
+Examples:
+  envers validate scene.toml --precision certified
+  envers validate scene.toml --json - --heatmap heat.png
+  envers validate scene.toml --ray 0,1.5,6,0,-0.1,-1")]
 pub struct Validate {
     #[command(flatten)]
     pub tracing: Tracing,
+    /// Only trace this ray, origin and direction, and say what each intersector makes of it in each
+    /// precision, held against exact arithmetic
+    #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with = "heatmap")]
+    pub ray: Option<Ray>,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,

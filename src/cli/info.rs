@@ -7,8 +7,9 @@ use serde::Serialize;
 use crate::cli::args::Info;
 use crate::cli::json::Geometry;
 use crate::cli::{Outcome, Verdict, files, output, report};
+use crate::intersect::Backend;
 use crate::load;
-use crate::scene::{Lens, LightKind, Scene};
+use crate::scene::{Lens, LightKind, Scene, detail};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -47,6 +48,9 @@ pub fn run(arguments: &Info) -> Outcome {
 
 fn summarize(scene: &Scene) -> Summary {
     let bounds = scene.bounds();
+    // As the default of `render`: precision fast, on Embree where it is built in.
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(detail::lost(scene, Backend::default() != Backend::Rust));
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
@@ -59,7 +63,7 @@ fn summarize(scene: &Scene) -> Summary {
         cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
         skipped: skipped(scene),
-        warnings: scene.warnings.clone(),
+        warnings,
     }
 }
 

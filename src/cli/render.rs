@@ -12,9 +12,9 @@ use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
-use crate::intersect::Precision;
+use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering};
-use crate::scene::{Scene, Transfer};
+use crate::scene::{Scene, Transfer, detail};
 use crate::write::{self, Format, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -42,6 +42,8 @@ pub fn run(arguments: &Render) -> Outcome {
     progress.finish_and_clear();
 
     let mut warnings = scene.warnings.clone();
+    let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
+    warnings.extend(detail::lost(&scene, f32_rays));
     warnings.extend(oddities(&scene, camera, &rendering));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));

@@ -3,9 +3,11 @@
 mod dispute;
 pub mod oracle;
 mod picture;
+mod replay;
 pub mod stress;
 mod validate;
 
 pub use dispute::{Cause, Disputes};
 pub use picture::{Comparison, Picture, compare};
-pub use validate::{Causes, Validation, validate};
+pub use replay::{Answer, Hidden, Met, Replay, ray_from_text, ray_to_text, replay};
+pub use validate::{Causes, Validation, Worst, validate};

@@ -1,14 +1,27 @@
-//! Why an f32 traversal and exact arithmetic may disagree about a ray.
+//! Why precision `fast` and exact arithmetic may disagree about a ray.
 //!
 //! An f32 ray stays within a margin of the exact one (derived in `intersect/embree/frame.rs`), and
 //! an instance's own space may magnify that. So the two may rightly disagree about a triangle that
 //! the ray passes at most that far from an edge, and about the order of two surfaces that lie, along
 //! the ray, closer together than the margin divided by the cosine at which the ray meets them.
+//!
+//! Spheres and planes are intersected in f64 whatever the rays are traced with. Let f be the way
+//! from a sphere's centre to the ray's origin and r its radius: the formula of `geometry::sphere`
+//! rounds f, its dot product with the direction, the quotient by |d|² and the nearest point, all in
+//! all by 6 ε |f| to first order, and squares r, so that it takes the line for at most
+//! 8 ε (|f| + r) nearer to the centre or farther from it than it is. What judges here computes
+//! with the same formula: 16 ε (|f| + r). A plane is met within 16 ε of the coordinates involved.
+//!
 //! Whatever is not of this kind is an error in one of the two.
+
+#[cfg(test)]
+mod tests;
 
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, triangle};
+use crate::intersect::Precision;
+use crate::intersect::primitive::Primitives;
 use crate::scene::Scene;
 
 /// What explains a disagreement.
@@ -16,15 +29,32 @@ use crate::scene::Scene;
 pub enum Cause {
     /// The ray passes the edge of a triangle within the margin.
     Edge,
+    /// The ray touches a sphere, to within the rounding of f64.
+    Tangency,
     /// Two surfaces, or a surface and the end of a shadow ray, lie within the margin of each other.
     Tie,
 }
+
+impl Cause {
+    /// What it is called: `edge`, `tangency` or `tie`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Cause::Edge => "edge",
+            Cause::Tangency => "tangency",
+            Cause::Tie => "tie",
+        }
+    }
+}
+
+/// How far f64 may be off a sphere or a plane, in units of ε and the numbers involved.
+const F64_MARGIN: f64 = 16.0 * f64::EPSILON;
 
 /// Judges disagreements about rays in one scene.
 pub struct Disputes<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// How far an f32 ray may be from the exact one, in world units.
+    /// How far a ray that triangles are found with may be from the exact one, in world units:
+    /// `Embree::margin`.
     pub margin: f64,
 }
 
@@ -35,36 +65,76 @@ impl Disputes<'_> {
         if let (Some(a), Some(b)) = (a, b) {
             let cosine = hits().map(|h| self.cosine(ray, h)).fold(1.0, f64::min);
             let apart = (a.t - b.t).abs() * ray.direction.length();
-            let magnified = hits().map(|h| self.margin_at(h.id)).fold(0.0, f64::max);
+            let magnified = hits().map(|h| self.margin_at(ray, h.id)).fold(0.0, f64::max);
             if apart * cosine <= magnified {
                 return Some(Cause::Tie);
             }
+        }
+        if hits().any(|h| self.touches(ray, h.id)) {
+            return Some(Cause::Tangency);
         }
         hits().any(|h| self.passes_edge(ray, h.id)).then_some(Cause::Edge)
     }
 
     /// A shadow ray that one says is blocked and the other is not; `truth` is the exact answer.
     ///
-    /// Tries every triangle: this is for the few rays in dispute.
+    /// Tries every primitive: this is for the few rays in dispute.
     pub fn shadow(&self, ray: &Ray, truth: bool) -> Option<Cause> {
         let mut cause = None;
-        for (instance, placed) in (0..).zip(&self.scene.instances) {
-            if !placed.casts_shadow {
-                continue;
-            }
+        let spheres = (0..self.scene.spheres.len() as u32).map(PrimitiveId::sphere);
+        let planes = (0..self.scene.planes.len() as u32).map(PrimitiveId::plane);
+        let triangles = (0..).zip(&self.scene.instances).flat_map(|(instance, placed)| {
             let mesh = placed.mesh.0;
             let count = self.scene.meshes[mesh as usize].triangles.len() as u32;
-            for id in (0..count).map(|t| PrimitiveId::triangle(mesh, t, instance)) {
-                let Some(doubt) = self.doubt(ray, id) else { continue };
-                match doubt {
-                    // The exact ray is clearly blocked: no excuse for saying that it is not.
-                    None if truth => return None,
-                    None => {}
-                    found => cause = found,
-                }
+            (0..count).map(move |t| PrimitiveId::triangle(mesh, t, instance))
+        });
+        for id in spheres.chain(planes).chain(triangles) {
+            if !self.scene.casts_shadow(id) {
+                continue;
+            }
+            let doubt = match id.geometry {
+                Geometry::Mesh(_) => self.doubt(ray, id),
+                _ => self.doubt_in_f64(ray, id),
+            };
+            let Some(doubt) = doubt else { continue };
+            match doubt {
+                // The exact ray is clearly blocked: no excuse for saying that it is not.
+                None if truth => return None,
+                None => {}
+                found => cause = found,
             }
         }
         cause
+    }
+
+    /// As `doubt`, of a sphere or a plane.
+    fn doubt_in_f64(&self, ray: &Ray, id: PrimitiveId) -> Option<Option<Cause>> {
+        let unbounded = Ray { tmax: f64::INFINITY, ..*ray };
+        let hit =
+            |ray| Primitives { scene: self.scene, precision: Precision::Certified }.test(id, ray);
+        if self.touches(ray, id) {
+            return Some(Some(Cause::Tangency));
+        }
+        let hit = hit(&unbounded)?;
+        let length = ray.direction.length() * self.cosine(ray, &hit).max(1e-12);
+        let slack = self.margin_at(ray, id) / length;
+        if hit.t > ray.tmax + slack {
+            return None;
+        }
+        let inside = hit.t > slack && hit.t < ray.tmax - slack;
+        Some((!inside).then_some(Cause::Tie))
+    }
+
+    /// Whether the ray's line touches the sphere, to within the rounding of f64.
+    fn touches(&self, ray: &Ray, id: PrimitiveId) -> bool {
+        if id.geometry != Geometry::Spheres {
+            return false;
+        }
+        let s = &self.scene.spheres[id.primitive as usize];
+        let f = ray.origin - s.center;
+        let along = f.dot(ray.direction) / ray.direction.length_squared();
+        let distance = (f - ray.direction * along).length();
+        (distance - s.radius).abs() <= self.margin_at(ray, id)
     }
 
     /// Whether the ray comes within the margin of a triangle between its ends: `None` when it does
@@ -75,7 +145,7 @@ impl Disputes<'_> {
         }
         let corners = self.scene.triangle(id);
         let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
-        let margin = self.margin_at(id);
+        let margin = self.margin_at(ray, id);
         let near_edge = self.passes_edge(ray, id) && self.within(&edges, corners, ray, margin);
         if !edges.crosses() && !near_edge {
             return None;
@@ -108,7 +178,7 @@ impl Disputes<'_> {
         }
         let corners = self.scene.triangle(id);
         let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
-        let margin = self.margin_at(id);
+        let margin = self.margin_at(ray, id);
         edge_distances(&edges, corners, ray).into_iter().any(|d| d <= margin)
     }
 
@@ -123,14 +193,28 @@ impl Disputes<'_> {
         normal.normalize_or_zero().dot(ray.direction.normalize()).abs()
     }
 
-    /// The margin in world space for a primitive: magnified by its instance's own space, where it
-    /// has one, by at most the ratio of the transform's longest stretch to its shortest.
-    fn margin_at(&self, id: PrimitiveId) -> f64 {
-        let Geometry::Mesh(_) = id.geometry else { return self.margin };
-        let m = self.scene.instances[id.instance as usize].transform.matrix3;
-        let norm =
-            |m: &glam::DMat3| m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length());
-        self.margin * (norm(&m) * norm(&m.inverse())).max(1.0)
+    /// The margin in world space for a primitive: of f64 for spheres and planes; for a triangle
+    /// that of the rays, magnified by its instance's own space, where it has one, by at most the
+    /// ratio of the transform's longest stretch to its shortest.
+    fn margin_at(&self, ray: &Ray, id: PrimitiveId) -> f64 {
+        let index = id.primitive as usize;
+        match id.geometry {
+            Geometry::Spheres => {
+                let s = &self.scene.spheres[index];
+                F64_MARGIN * ((ray.origin - s.center).length() + s.radius)
+            }
+            Geometry::Planes => {
+                let p = &self.scene.planes[index];
+                F64_MARGIN * (ray.origin.length() + p.point.length())
+            }
+            Geometry::Mesh(_) => {
+                let m = self.scene.instances[id.instance as usize].transform.matrix3;
+                let norm = |m: &glam::DMat3| {
+                    m.x_axis.length().max(m.y_axis.length()).max(m.z_axis.length())
+                };
+                self.margin * (norm(&m) * norm(&m.inverse())).max(1.0)
+            }
+        }
     }
 }
 
@@ -143,78 +227,4 @@ fn edge_distances(edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray) -> [f
         let across = ray.direction.cross(sides[i]).length();
         if across == 0.0 { f64::INFINITY } else { edges.functions[i].abs() / across }
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Instance, MaterialId, Mesh};
-    use glam::DAffine3;
-
-    fn scene() -> Scene {
-        let mut scene = Scene::default();
-        let positions = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
-        let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
-        let mesh = scene.add_mesh(mesh);
-        for z in [0.0, 1e-7, 1.0] {
-            let transform = DAffine3::from_translation(DVec3::Z * z);
-            scene.instances.push(Instance::new(mesh, transform, MaterialId(0)));
-        }
-        scene
-    }
-
-    fn hit(ray: &Ray, scene: &Scene, instance: u32) -> Hit {
-        let id = PrimitiveId::triangle(0, 0, instance);
-        let t = triangle::Edges::new(scene.triangle(id), ray.origin, ray.direction).t;
-        Hit { t, u: 0.0, v: 0.0, id }
-    }
-
-    fn judge(x: f64, instances: [Option<u32>; 2]) -> Option<Cause> {
-        let scene = scene();
-        let ray = Ray::new(DVec3::new(x, 0.3, 2.0), DVec3::NEG_Z);
-        let [a, b] = instances.map(|i| i.map(|i| hit(&ray, &scene, i)));
-        Disputes { scene: &scene, margin: 1e-6 }.primary(&ray, a.as_ref(), b.as_ref())
-    }
-
-    #[test]
-    fn miss_beside_an_edge_is_explained() {
-        assert_eq!(judge(-5e-7, [Some(0), None]), Some(Cause::Edge));
-    }
-
-    #[test]
-    fn miss_in_the_middle_of_a_triangle_is_not_explained() {
-        assert_eq!(judge(0.3, [Some(0), None]), None);
-    }
-
-    #[test]
-    fn close_surfaces_are_a_tie() {
-        assert_eq!(judge(0.3, [Some(0), Some(1)]), Some(Cause::Tie));
-    }
-
-    #[test]
-    fn far_surfaces_are_not_a_tie() {
-        assert_eq!(judge(0.3, [Some(0), Some(2)]), None);
-    }
-
-    #[test]
-    fn clearly_blocked_shadow_ray_is_not_explained() {
-        let scene = scene();
-        let ray = Ray::between(DVec3::new(0.3, 0.3, 2.0), DVec3::new(0.3, 0.3, -2.0));
-        assert_eq!(Disputes { scene: &scene, margin: 1e-6 }.shadow(&ray, true), None);
-    }
-
-    #[test]
-    fn shadow_ray_beside_an_edge_is_explained() {
-        let scene = scene();
-        let ray = Ray::between(DVec3::new(-5e-7, 0.3, 2.0), DVec3::new(-5e-7, 0.3, -2.0));
-        let disputes = Disputes { scene: &scene, margin: 1e-6 };
-        assert_eq!(disputes.shadow(&ray, false), Some(Cause::Edge));
-    }
-
-    #[test]
-    fn shadow_ray_far_from_everything_is_not_explained() {
-        let scene = scene();
-        let ray = Ray::between(DVec3::new(-0.5, 0.3, 2.0), DVec3::new(-0.5, 0.3, -2.0));
-        assert_eq!(Disputes { scene: &scene, margin: 1e-6 }.shadow(&ray, false), None);
-    }
 }

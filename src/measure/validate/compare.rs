@@ -1,0 +1,394 @@
+//! Tracing with both, row by row, and counting.
+
+use rayon::prelude::*;
+
+use super::{Causes, Validation, Worst};
+use crate::film::{Film, View};
+use crate::geometry::{Hit, Ray};
+use crate::integrator::sample_positions;
+use crate::intersect::{Coherence, Intersector, Precision};
+use crate::measure::dispute::{Cause, Disputes};
+use crate::measure::replay::ray_to_text;
+use crate::render::{self, Options};
+use crate::scene::{LightKind, RayMaker, Scene};
+use crate::surface::Surface;
+use crate::write::{Settings, png_bytes};
+
+pub struct Comparer<'a> {
+    pub scene: &'a Scene,
+    pub precision: Precision,
+    /// Who is held against the judge.
+    pub subject: &'a dyn Intersector,
+    /// How far its rays may be off, in precision `fast`; see [`Disputes`].
+    pub margin: f64,
+    pub judge: &'a dyn Intersector,
+    pub camera: usize,
+}
+
+/// What was found in one row.
+#[derive(Default)]
+struct Tally {
+    primary: u64,
+    shadow: u64,
+    causes: Causes,
+    max_ulp: u64,
+    worst: Option<(Severity, Worst)>,
+}
+
+/// How bad a difference is: 2 unexplained, 1 explained, 0 of t alone; and the error of t in ulp.
+type Severity = (u8, u64);
+
+const RED: [f32; 3] = [1.0, 0.0, 0.0];
+const YELLOW: [f32; 3] = [1.0, 1.0, 0.0];
+const BLUE: [f32; 3] = [0.2, 0.4, 1.0];
+const GREY: [f32; 3] = [0.15; 3];
+
+/// Where a ray was sent.
+#[derive(Clone, Copy)]
+struct Place<'r> {
+    pixel: [u32; 2],
+    ray: &'r Ray,
+}
+
+impl Comparer<'_> {
+    pub fn run(&self) -> Validation {
+        let size = self.scene.film.size;
+        let rays = self.scene.cameras[self.camera].rays(size);
+        let mut heatmap = Film::new(size, View::Beauty);
+        let width = size[0] as usize;
+        let tallies: Vec<Tally> = heatmap
+            .pixels
+            .par_chunks_mut(width)
+            .enumerate()
+            .map(|(y, row)| self.row(&rays, y, row))
+            .collect();
+        let sum = tallies.into_iter().fold(Tally::default(), Tally::and);
+        let pictures = self.pictures(&mut heatmap);
+        let (causes, explained) = (sum.causes, sum.causes.explained());
+        let rays_compared = sum.primary + sum.shadow;
+        let pixels = heatmap.pixels.len() as u64;
+        let passed = causes.other == 0
+            && match self.precision {
+                Precision::Fast => {
+                    explained as f64 <= 1e-4 * rays_compared as f64
+                        && pictures.pixels as f64 <= 1e-5 * pixels as f64
+                }
+                Precision::Certified => explained == 0 && pictures.values == 0,
+            };
+        Validation {
+            precision: self.precision.name(),
+            rays_compared,
+            primary_rays: sum.primary,
+            primitive_mismatches: explained + causes.other,
+            causes,
+            unexplained_mismatches: causes.other,
+            max_t_error_ulp: sum.max_ulp,
+            pixels,
+            pixels_differing: pictures.pixels,
+            max_channel_difference: pictures.max_channel,
+            values_differing: pictures.values,
+            worst: sum.worst.map(|(_, worst)| worst),
+            passed,
+            heatmap,
+        }
+    }
+
+    /// Traces a row with both; marks in `row` what they make of it.
+    fn row(&self, maker: &RayMaker, y: usize, row: &mut [[f32; 3]]) -> Tally {
+        let mut tally = Tally::default();
+        for [dx, dy] in sample_positions(&self.scene.film) {
+            let rays: Vec<Ray> =
+                (0..row.len()).map(|x| maker.through(x as f64 + dx, y as f64 + dy)).collect();
+            let (found, truth) = (closest(self.subject, &rays), closest(self.judge, &rays));
+            tally.primary += rays.len() as u64;
+            for (x, ray) in rays.iter().enumerate() {
+                if truth[x].is_some() && row[x] == [0.0; 3] {
+                    row[x] = GREY;
+                }
+                let place = Place { pixel: [x as u32, y as u32], ray };
+                self.primary(place, found[x].as_ref(), truth[x].as_ref(), &mut tally, &mut row[x]);
+            }
+            self.shadows(y, &rays, &truth, row, &mut tally);
+        }
+        tally
+    }
+
+    /// Compares what subject and judge say of a ray from the eye.
+    fn primary(
+        &self,
+        place: Place<'_>,
+        found: Option<&Hit>,
+        truth: Option<&Hit>,
+        tally: &mut Tally,
+        mark: &mut [f32; 3],
+    ) {
+        let ulp = found.zip(truth).map(|(a, b)| a.t.to_bits().abs_diff(b.t.to_bits()));
+        let same = found.map(|h| h.id) == truth.map(|h| h.id);
+        if same {
+            tally.max_ulp = tally.max_ulp.max(ulp.unwrap_or(0));
+        }
+        match self.precision {
+            Precision::Certified if found.map(bits) != truth.map(bits) => {
+                tally.mismatch(place, None, false, ulp, mark);
+            }
+            Precision::Fast if !same => {
+                let cause = self.disputes().primary(place.ray, found, truth);
+                tally.mismatch(place, cause, false, ulp, mark);
+            }
+            _ if ulp > Some(0) => tally.note((0, ulp.unwrap_or(0)), place, None, false, ulp),
+            _ => {}
+        }
+    }
+
+    /// Compares the shadow rays from the judge's hits to each light.
+    fn shadows(
+        &self,
+        y: usize,
+        rays: &[Ray],
+        hits: &[Option<Hit>],
+        row: &mut [[f32; 3]],
+        tally: &mut Tally,
+    ) {
+        let surfaces: Vec<(usize, Surface)> = (0..)
+            .zip(rays.iter().zip(hits))
+            .filter_map(|(x, (ray, hit))| Some((x, Surface::new(self.scene, ray, hit.as_ref()?))))
+            .collect();
+        let casting = |l: &&crate::scene::Light| l.casts_shadow && l.kind != LightKind::Ambient;
+        for light in self.scene.lights.iter().filter(casting) {
+            let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
+                .iter()
+                .filter_map(|(x, s)| Some((*x, s.shadow_ray(&light.arrival(s.position)?))))
+                .unzip();
+            let (found, truth) = (occluded(self.subject, &shadow), occluded(self.judge, &shadow));
+            tally.shadow += shadow.len() as u64;
+            for i in (0..shadow.len()).filter(|&i| found[i] != truth[i]) {
+                let cause = match self.precision {
+                    Precision::Fast => self.disputes().shadow(&shadow[i], truth[i]),
+                    Precision::Certified => None,
+                };
+                let x = columns[i];
+                let place = Place { pixel: [x as u32, y as u32], ray: &rays[x] };
+                tally.mismatch(place, cause, true, None, &mut row[x]);
+            }
+        }
+    }
+
+    fn disputes(&self) -> Disputes<'_> {
+        Disputes { scene: self.scene, margin: self.margin }
+    }
+
+    /// Renders the picture twice and compares.
+    fn pictures(&self, heatmap: &mut Film) -> Differing {
+        let options = Options { camera: self.camera, ..Options::default() };
+        let settings = Settings { transfer: self.scene.film.transfer, ..Settings::default() };
+        let film = |intersector: &dyn Intersector| {
+            render::with_intersector(self.scene, &options, intersector, &|_| {}).0
+        };
+        let (a, b) = (film(self.subject), film(self.judge));
+        let values = |film: &Film| film.pixels.as_flattened().to_vec();
+        let differ = |(x, y): &(f32, f32)| x.to_bits() != y.to_bits();
+        let values = values(&a).into_iter().zip(values(&b)).filter(differ).count() as u64;
+        let (a, b) = (png_bytes(&a, &settings), png_bytes(&b, &settings));
+        let mut differing = Differing { values, pixels: 0, max_channel: 0 };
+        for ((p, q), mark) in a.chunks(3).zip(b.chunks(3)).zip(&mut heatmap.pixels) {
+            let largest = p.iter().zip(q).map(|(x, y)| x.abs_diff(*y)).max().unwrap_or(0);
+            differing.max_channel = differing.max_channel.max(largest);
+            if largest > 1 {
+                differing.pixels += 1;
+                if *mark != RED && *mark != YELLOW {
+                    *mark = BLUE;
+                }
+            }
+        }
+        differing
+    }
+}
+
+/// How much two pictures of one scene differ.
+struct Differing {
+    /// f32 values of the films that are not the same bits.
+    values: u64,
+    /// Pixels that differ by more than 1 of 255 in a PNG's channel.
+    pixels: u64,
+    /// The largest such difference.
+    max_channel: u8,
+}
+
+impl Tally {
+    fn and(mut self, next: Self) -> Self {
+        self.primary += next.primary;
+        self.shadow += next.shadow;
+        self.causes.edge += next.causes.edge;
+        self.causes.tangency += next.causes.tangency;
+        self.causes.tie += next.causes.tie;
+        self.causes.other += next.causes.other;
+        self.max_ulp = self.max_ulp.max(next.max_ulp);
+        if next.worst.as_ref().map(|w| w.0) > self.worst.as_ref().map(|w| w.0) {
+            self.worst = next.worst;
+        }
+        self
+    }
+
+    /// Counts a mismatch, and marks its pixel.
+    fn mismatch(
+        &mut self,
+        place: Place<'_>,
+        cause: Option<Cause>,
+        shadow: bool,
+        ulp: Option<u64>,
+        mark: &mut [f32; 3],
+    ) {
+        *self.causes.of(cause) += 1;
+        let explained = cause.is_some();
+        if !explained {
+            *mark = RED;
+        } else if *mark != RED {
+            *mark = YELLOW;
+        }
+        let severity = (if explained { 1 } else { 2 }, ulp.unwrap_or(0));
+        self.note(severity, place, Some(cause.map_or("other", Cause::name)), shadow, ulp);
+    }
+
+    /// Keeps the ray if none so far is as bad.
+    fn note(
+        &mut self,
+        severity: Severity,
+        place: Place<'_>,
+        cause: Option<&'static str>,
+        shadow: bool,
+        t_error_ulp: Option<u64>,
+    ) {
+        if self.worst.as_ref().is_none_or(|(worst, _)| *worst < severity) {
+            let ray = ray_to_text(place.ray);
+            let worst = Worst { pixel: place.pixel, cause, shadow, t_error_ulp, ray };
+            self.worst = Some((severity, worst));
+        }
+    }
+}
+
+/// Everything that certified hits must agree in.
+fn bits(hit: &Hit) -> (crate::geometry::PrimitiveId, [u64; 3]) {
+    (hit.id, [hit.t, hit.u, hit.v].map(f64::to_bits))
+}
+
+fn closest(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Option<Hit>> {
+    let mut hits = vec![None; rays.len()];
+    intersector.closest(rays, Coherence::Coherent, &mut hits);
+    hits
+}
+
+fn occluded(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<bool> {
+    let mut blocked = vec![false; rays.len()];
+    intersector.occluded(rays, Coherence::Coherent, &mut blocked);
+    blocked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::intersect::Bvh;
+    use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Material, Plane, Sphere};
+    use glam::{DVec3, Vec3};
+
+    /// A ball over the ground and a lamp, in 16 × 16 pixels.
+    fn scene() -> Scene {
+        let mut scene = Scene::default();
+        scene.film.size = [16, 16];
+        let material = scene.add_material(Material::default());
+        let eye = DVec3::new(0.0, 2.0, 6.0);
+        let camera = Camera::look_at(eye, DVec3::Y, DVec3::Y, Lens::FovY(0.7)).unwrap();
+        scene.cameras.push(camera);
+        scene.spheres.push(Sphere::new(DVec3::Y * 1.2, 1.0, material));
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, material));
+        let kind = LightKind::Point {
+            position: DVec3::new(3.0, 5.0, 4.0),
+            falloff: Falloff::None,
+            range: f64::INFINITY,
+        };
+        let light = Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true };
+        scene.lights.push(light);
+        scene
+    }
+
+    /// An intersector that is right, but for what `spoil` does to its hits.
+    struct Spoilt<'s>(Bvh<'s>, fn(&Ray, &mut Option<Hit>));
+
+    impl Intersector for Spoilt<'_> {
+        fn name(&self) -> &'static str {
+            "spoilt"
+        }
+
+        fn version(&self) -> String {
+            String::new()
+        }
+
+        fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
+            self.0.closest(rays, coherence, hits);
+            rays.iter().zip(hits).for_each(|(ray, hit)| self.1(ray, hit));
+        }
+
+        fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
+            self.0.occluded(rays, coherence, blocked);
+        }
+    }
+
+    fn compared(precision: Precision, spoil: fn(&Ray, &mut Option<Hit>)) -> Validation {
+        let scene = scene();
+        let judge = Bvh::build(&scene, Precision::Certified);
+        let subject = Spoilt(Bvh::build(&scene, Precision::Certified), spoil);
+        let (subject, judge): (&dyn Intersector, &dyn Intersector) = (&subject, &judge);
+        Comparer { scene: &scene, precision, subject, margin: 1e-6, judge, camera: 0 }.run()
+    }
+
+    /// Whether the ray is the one through the middle of pixel (8, 9), which meets the ball.
+    fn is_chosen(ray: &Ray) -> bool {
+        *ray == scene().cameras[0].rays([16, 16]).through(8.5, 9.5)
+    }
+
+    #[test]
+    fn what_agrees_passes_in_both_precisions() {
+        for precision in [Precision::Fast, Precision::Certified] {
+            let found = compared(precision, |_, _| {});
+            assert!(found.passed && found.worst.is_none(), "{found}");
+            assert!(found.rays_compared > 300 && found.values_differing == 0, "{found}");
+        }
+    }
+
+    #[test]
+    fn an_ulp_of_t_is_a_figure_in_fast_and_a_failure_in_certified() {
+        let spoil: fn(&Ray, &mut Option<Hit>) = |ray, hit| {
+            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
+                hit.t = hit.t.next_up();
+            }
+        };
+        let fast = compared(Precision::Fast, spoil);
+        assert!(fast.passed && fast.max_t_error_ulp == 1, "{fast}");
+        assert_eq!((fast.worst.as_ref().unwrap().pixel, fast.primitive_mismatches), ([8, 9], 0));
+        let certified = compared(Precision::Certified, spoil);
+        assert!(!certified.passed && certified.causes.other == 1, "{certified}");
+    }
+
+    #[test]
+    fn a_weight_that_differs_fails_in_certified() {
+        let found = compared(Precision::Certified, |ray, hit| {
+            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
+                hit.u = f64::MIN_POSITIVE;
+            }
+        });
+        assert!(!found.passed && found.causes.other == 1, "{found}");
+    }
+
+    #[test]
+    fn a_ball_that_is_not_hit_is_unexplained_and_the_worst_ray_finds_it_again() {
+        let found = compared(Precision::Fast, |ray, hit| {
+            if is_chosen(ray) {
+                *hit = None;
+            }
+        });
+        assert!(!found.passed && found.unexplained_mismatches == 1, "{found}");
+        assert_eq!(found.heatmap.pixel(8, 9), RED);
+        let worst = found.worst.unwrap();
+        assert_eq!((worst.pixel, worst.cause, worst.shadow), ([8, 9], Some("other"), false));
+        assert!(is_chosen(&crate::measure::ray_from_text(&worst.ray).unwrap()));
+    }
+}
