@@ -36,7 +36,7 @@ impl Edges {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
-        let [a, b, c] = triangle.map(|p| p - origin);
+        let (a, b, c) = (triangle[0] - origin, triangle[1] - origin, triangle[2] - origin);
         let normal = (b - a).cross(c - a);
         Self {
             functions: [

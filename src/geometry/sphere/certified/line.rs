@@ -98,6 +98,12 @@ impl Line {
         !((self.foot2 - self.r2 > self.slack) & (self.inverse > 0.0))
     }
 
+    /// Whether the line certainly meets the sphere.
+    #[inline(always)]
+    pub fn crosses(&self) -> bool {
+        (self.r2 - self.foot2 > self.slack) & (self.inverse > 0.0)
+    }
+
     /// The two roots in f64, as `sphere::Line::roots` has them, the one nearer to 0 first, and the
     /// greater part of their bounds: what the plain formulas say.
     #[inline(always)]
@@ -131,10 +137,8 @@ impl Line {
         let t = if takes_far { far } else { near };
         let error = if takes_far { far_error } else { near_error };
 
-        let decided = (self.inverse > 0.0) & (self.inverse < 1.0 / TINY);
-        let crosses = self.r2 - self.foot2 > self.slack;
-        let sure = decided
-            & crosses
+        let sure = self.crosses()
+            & (self.inverse < 1.0 / TINY)
             & (outside | inside)
             & (2.0 * far_error <= far.abs())
             & (error < f64::INFINITY);
