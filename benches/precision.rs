@@ -26,8 +26,8 @@ struct Sphere {
 
 type Triangle = [DVec3; 3];
 
-// The kernels: what one lane computes. Results are folded into one number, so that none is
-// dropped; what is not certain is NaN.
+// The kernels: what one lane computes, and whether any lane needs more. Results are folded into
+// one number, so that none is dropped; what is not certain is NaN.
 
 #[inline(always)]
 fn plain_line(s: &Sphere, (o, d, inverse): Line) -> sphere::Line {
@@ -39,25 +39,32 @@ fn sure_line(s: &Sphere, (o, d, inverse): Line) -> sure_sphere::Line {
     sure_sphere::Line::new(s.center, s.radius, o, d, inverse)
 }
 
+/// Any: whether a root must be computed.
 #[inline(always)]
-fn sphere_crosses(s: &Sphere, line: Line) -> bool {
-    plain_line(s, line).crosses()
+fn sphere_crosses(s: &Sphere, line: Line, any: &mut bool) -> bool {
+    let crosses = plain_line(s, line).crosses();
+    *any |= crosses;
+    crosses
 }
 
+/// Any: whether a root must be computed.
 #[inline(always)]
-fn sphere_may_cross(s: &Sphere, line: Line) -> bool {
-    sure_line(s, line).may_cross()
+fn sphere_may_cross(s: &Sphere, line: Line, any: &mut bool) -> bool {
+    let may = sure_line(s, line).may_cross();
+    *any |= may;
+    may
 }
 
-/// 0: passes; 1: undecided; 3: crosses.
+/// Any: whether integers must decide.
 #[inline(always)]
-fn sphere_decision(s: &Sphere, line: Line) -> u8 {
+fn sphere_decision(s: &Sphere, line: Line, any: &mut bool) -> bool {
     let line = sure_line(s, line);
-    u8::from(line.may_cross()) | u8::from(line.crosses()) << 1
+    *any |= line.may_cross() & !line.crosses();
+    line.may_cross()
 }
 
 #[inline(always)]
-fn sphere_plain(s: &Sphere, line: Line) -> f64 {
+fn sphere_plain(s: &Sphere, line: Line, _: &mut bool) -> f64 {
     let line = plain_line(s, line);
     let (near, far) = line.roots();
     let t = if near > 0.0 { near } else { far };
@@ -65,51 +72,55 @@ fn sphere_plain(s: &Sphere, line: Line) -> f64 {
 }
 
 #[inline(always)]
-fn sphere_estimate(s: &Sphere, line: Line) -> f64 {
+fn sphere_estimate(s: &Sphere, line: Line, _: &mut bool) -> f64 {
     sure_line(s, line).estimate().lower()
 }
 
 #[inline(always)]
-fn sphere_round(s: &Sphere, (o, d, _): Line) -> f64 {
+fn sphere_round(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_sphere::round(s.center, s.radius, o, d, false);
     if rounded.certain { rounded.t } else { f64::NAN }
 }
 
 #[inline(always)]
-fn sphere_first_root(s: &Sphere, (o, d, _): Line) -> f64 {
+fn sphere_first_root(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
     sure_sphere::first_root(s.center, s.radius, o, d, f64::INFINITY, false).unwrap_or(f64::INFINITY)
 }
 
 #[inline(always)]
-fn triangle_crosses(triangle: &Triangle, (o, d, _): Line) -> bool {
-    triangle::Edges::new(*triangle, o, d).crosses()
+fn triangle_crosses(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
+    let crosses = triangle::Edges::new(*triangle, o, d).crosses();
+    *any |= crosses;
+    crosses
 }
 
 #[inline(always)]
-fn triangle_may_cross(triangle: &Triangle, (o, d, _): Line) -> bool {
-    sure_triangle::Edges::new(*triangle, o, d).may_cross()
+fn triangle_may_cross(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
+    let may = sure_triangle::Edges::new(*triangle, o, d).may_cross();
+    *any |= may;
+    may
 }
 
 #[inline(always)]
-fn triangle_plain(triangle: &Triangle, (o, d, _): Line) -> f64 {
+fn triangle_plain(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     let edges = triangle::Edges::new(*triangle, o, d);
     let (u, v) = edges.weights();
     if edges.crosses() { edges.t + u + v } else { f64::INFINITY }
 }
 
 #[inline(always)]
-fn triangle_estimate(triangle: &Triangle, (o, d, _): Line) -> f64 {
+fn triangle_estimate(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     sure_triangle::estimate(*triangle, o, d).lower()
 }
 
 #[inline(always)]
-fn triangle_round(triangle: &Triangle, (o, d, _): Line) -> f64 {
+fn triangle_round(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_triangle::round(*triangle, o, d);
     if rounded.certain { rounded.t + rounded.u + rounded.v } else { f64::NAN }
 }
 
 #[inline(always)]
-fn triangle_crossing(triangle: &Triangle, (o, d, _): Line) -> f64 {
+fn triangle_crossing(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     sure_triangle::crossing(*triangle, o, d, f64::INFINITY)
         .map_or(f64::INFINITY, |hit| hit.t + hit.u + hit.v)
 }
@@ -150,17 +161,19 @@ macro_rules! run {
     ($kernel:ident, $p:ty, $t:ty $(, $features:literal)?) => {{
         #[inline(never)]
         $(#[target_feature(enable = $features)])?
-        fn one(packet: &Packet, primitive: &$p, out: &mut [$t; 16]) {
+        fn one(packet: &Packet, primitive: &$p, out: &mut [$t; 16]) -> bool {
+            let mut any = false;
             for i in 0..16 {
-                out[i] = $kernel(primitive, packet.line(i));
+                out[i] = $kernel(primitive, packet.line(i), &mut any);
             }
+            any
         }
         |packets: &[Packet], primitive: &$p, out: &mut [$t; 16]| {
             for packet in packets {
                 // SAFETY: `kernel` asked the processor for the features.
                 #[allow(unused_unsafe)]
                 unsafe {
-                    one(packet, primitive, out);
+                    black_box(one(packet, primitive, out));
                 }
             }
         }
@@ -181,12 +194,15 @@ macro_rules! kernel {
         }
         sets.push(("scalar", |packets, primitive, out| {
             #[inline(never)]
-            fn one(primitive: &$p, line: &Line) -> $t {
-                $kernel(primitive, *line)
+            fn one(primitive: &$p, line: &Line) -> ($t, bool) {
+                let mut any = false;
+                ($kernel(primitive, *line, &mut any), any)
             }
             for packet in packets {
                 for i in 0..16 {
-                    out[i] = one(primitive, &packet.lines[i]);
+                    let (result, any) = black_box(one(primitive, &packet.lines[i]));
+                    out[i] = result;
+                    black_box(any);
                 }
             }
         }));
@@ -222,7 +238,7 @@ fn packets(spread: f64) -> Vec<Packet> {
             let origin = DVec3::new(random.signed(), random.signed(), random.signed()) * 0.01;
             let aim = DVec3::new(random.signed() * spread, random.signed() * spread, 10.0);
             let direction = aim - origin;
-            (origin, direction, 1.0 / direction.length_squared())
+            (origin, direction, sphere::inverse_length_squared(direction))
         })
         .collect();
     lines.chunks(16).map(Packet::new).collect()
@@ -296,7 +312,7 @@ fn ratios() {
             &packets,
             &SPHERE,
             &crosses,
-            &kernel!(sphere_decision, Sphere, u8),
+            &kernel!(sphere_decision, Sphere, bool),
         );
         let plain = kernel!(sphere_plain, Sphere, f64);
         compare(

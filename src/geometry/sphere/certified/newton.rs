@@ -21,6 +21,7 @@ use glam::DVec3;
 
 use crate::geometry::double::{Double, U, difference, in_range};
 use crate::geometry::sphere::certified::Line;
+use crate::geometry::sphere::inverse_length_squared;
 
 /// A root as [`round`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub struct Rounded {
 /// [`first_root`](super::first_root) knows; where it is, both say the same.
 #[inline(always)]
 pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
-    let inverse = 1.0 / direction.length_squared();
+    let inverse = inverse_length_squared(direction);
     let line = Line::new(center, radius, origin, direction, inverse);
     step(&line, line.guess(inward), inward)
 }

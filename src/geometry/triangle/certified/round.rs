@@ -50,8 +50,7 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
     let divisor_error = bound * way;
     let (t, error) = dot(normal, a).quotient(bound * size, divisor, divisor_error);
     let inverse = 1.0 / divisor.hi;
-    let weight_error =
-        greater(32.0 * OMEGA * size * greater(width, height) * way, divisor_error);
+    let weight_error = greater(32.0 * OMEGA * size * greater(width, height) * way, divisor_error);
     let certain = (weight_error <= U * divisor.hi.abs())
         & t.rounds_to_hi(error)
         & in_range(size)
