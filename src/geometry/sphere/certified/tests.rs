@@ -190,10 +190,11 @@ fn ray_that_is_not_finite_meets_nothing() {
 #[test]
 fn estimate_decides_what_is_not_nearly_a_tangent() {
     let case = Case::new(DVec3::new(0.3, 0.1, 9.0), 1.0, DVec3::ZERO, DVec3::Z);
-    assert!(case.estimate().error < 1e-13);
+    // The bound is 8·32u(|f| + r), more or less.
+    assert!(case.estimate().error < 1e-12);
     assert_eq!(Case { radius: 0.3, ..case }.estimate(), Estimate::MISS);
     assert_eq!(Case { direction: DVec3::NEG_Z, ..case }.estimate(), Estimate::MISS);
-    assert!(Case { origin: case.center, ..case }.estimate().error < 1e-13);
+    assert!(Case { origin: case.center, ..case }.estimate().error < 1e-12);
 }
 
 #[test]
