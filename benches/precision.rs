@@ -231,16 +231,28 @@ impl Random {
 const RAYS: usize = 512;
 
 /// Rays from near the origin toward a square of half-side `spread` at z = 10.
-fn packets(spread: f64) -> Vec<Packet> {
+fn toward_square(spread: f64) -> Vec<Packet> {
     let mut random = Random(7);
-    let lines: Vec<Line> = (0..RAYS)
-        .map(|_| {
-            let origin = DVec3::new(random.signed(), random.signed(), random.signed()) * 0.01;
-            let aim = DVec3::new(random.signed() * spread, random.signed() * spread, 10.0);
-            let direction = aim - origin;
-            (origin, direction, sphere::inverse_length_squared(direction))
-        })
-        .collect();
+    packets(|| {
+        let origin = DVec3::new(random.signed(), random.signed(), random.signed()) * 0.01;
+        let aim = DVec3::new(random.signed() * spread, random.signed() * spread, 10.0);
+        (origin, aim - origin)
+    })
+}
+
+/// Rays from grid points toward [`TANGENT`] and the edge of [`GRID`] that stands above the x-axis:
+/// their discriminants and their edge functions are exactly 0.
+fn along_edges() -> Vec<Packet> {
+    let mut random = Random(7);
+    packets(|| {
+        let x = (random.signed() * 64.0).floor() / 64.0;
+        (DVec3::new(x, 0.0, 1.0 + (random.next() * 64.0).floor()), DVec3::NEG_Z)
+    })
+}
+
+fn packets(mut ray: impl FnMut() -> (DVec3, DVec3)) -> Vec<Packet> {
+    let line = |(o, d)| (o, d, sphere::inverse_length_squared(d));
+    let lines: Vec<Line> = (0..RAYS).map(|_| line(ray())).collect();
     lines.chunks(16).map(Packet::new).collect()
 }
 
@@ -291,70 +303,81 @@ const SPHERE: Sphere = Sphere { center: DVec3::new(0.0, 0.0, 10.0), radius: 1.0 
 const TRIANGLE: Triangle =
     [DVec3::new(-1.0, -1.0, 10.0), DVec3::new(1.0, -1.0, 9.0), DVec3::new(0.0, 1.2, 11.0)];
 
+const TANGENT: Sphere = Sphere { center: DVec3::new(0.0, 2.0, -3.0), radius: 2.0 };
+
+const GRID: Triangle =
+    [DVec3::new(-1.0, 0.0, 0.0), DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 1.0, 0.0)];
+
 /// Half-sides of the square aimed at, by the share of hits that comes of it.
 const SPREADS: [(&str, f64); 3] = [("hits", 0.4), ("half", 1.25), ("misses", 8.0)];
 
 fn ratios() {
     println!("medians of 201 runs in turn, {RAYS} rays in packets of 16, ns per ray");
     for (share, spread) in SPREADS {
-        let packets = packets(spread);
+        let packets = toward_square(spread);
         let name = |what: &str| format!("{what}, {share}");
-        let crosses = kernel!(sphere_crosses, Sphere, bool);
-        compare(
-            &name("sphere: may cross"),
-            &packets,
-            &SPHERE,
-            &crosses,
-            &kernel!(sphere_may_cross, Sphere, bool),
-        );
-        compare(
-            &name("sphere: decision"),
-            &packets,
-            &SPHERE,
-            &crosses,
-            &kernel!(sphere_decision, Sphere, bool),
-        );
+        let plain = kernel!(sphere_crosses, Sphere, bool);
+        let sure = kernel!(sphere_may_cross, Sphere, bool);
+        compare(&name("sphere: may cross"), &packets, &SPHERE, &plain, &sure);
+        let sure = kernel!(sphere_decision, Sphere, bool);
+        compare(&name("sphere: decision"), &packets, &SPHERE, &plain, &sure);
         let plain = kernel!(sphere_plain, Sphere, f64);
-        compare(
-            &name("sphere: t, bounded"),
-            &packets,
-            &SPHERE,
-            &plain,
-            &kernel!(sphere_estimate, Sphere, f64),
-        );
-        let crosses = kernel!(triangle_crosses, Triangle, bool);
-        let may = kernel!(triangle_may_cross, Triangle, bool);
-        compare(&name("triangle: may cross"), &packets, &TRIANGLE, &crosses, &may);
-        let (plain, estimate) =
-            (kernel!(triangle_plain, Triangle, f64), kernel!(triangle_estimate, Triangle, f64));
-        compare(&name("triangle: t, bounded"), &packets, &TRIANGLE, &plain, &estimate);
-    }
-    let packets = packets(SPREADS[0].1);
-    compare(
-        "sphere: t, rounded",
-        &packets,
-        &SPHERE,
-        &kernel!(sphere_plain, Sphere, f64),
-        &kernel!(sphere_round, Sphere, f64),
-    );
-    let (plain, round) =
-        (kernel!(triangle_plain, Triangle, f64), kernel!(triangle_round, Triangle, f64));
-    compare("triangle: t, rounded", &packets, &TRIANGLE, &plain, &round);
-    for (share, spread) in SPREADS {
-        let packets = self::packets(spread);
-        let name = |what: &str| format!("{what}, {share}");
-        let (plain, exact) =
-            (kernel!(sphere_plain, Sphere, f64), kernel!(sphere_first_root, Sphere, f64));
+        let sure = kernel!(sphere_estimate, Sphere, f64);
+        compare(&name("sphere: t, bounded"), &packets, &SPHERE, &plain, &sure);
+        let exact = kernel!(sphere_first_root, Sphere, f64);
         compare(&name("sphere: t, exact"), &packets, &SPHERE, scalar(&plain), scalar(&exact));
-        let (plain, exact) =
-            (kernel!(triangle_plain, Triangle, f64), kernel!(triangle_crossing, Triangle, f64));
+
+        let plain = kernel!(triangle_crosses, Triangle, bool);
+        let sure = kernel!(triangle_may_cross, Triangle, bool);
+        compare(&name("triangle: may cross"), &packets, &TRIANGLE, &plain, &sure);
+        let plain = kernel!(triangle_plain, Triangle, f64);
+        let sure = kernel!(triangle_estimate, Triangle, f64);
+        compare(&name("triangle: t, bounded"), &packets, &TRIANGLE, &plain, &sure);
+        let exact = kernel!(triangle_crossing, Triangle, f64);
         compare(&name("triangle: t, exact"), &packets, &TRIANGLE, scalar(&plain), scalar(&exact));
     }
+    let (sphere, triangle) =
+        (kernel!(sphere_plain, Sphere, f64), kernel!(triangle_plain, Triangle, f64));
+    let packets = toward_square(SPREADS[0].1);
+    let sure = kernel!(sphere_round, Sphere, f64);
+    compare("sphere: t, rounded", &packets, &SPHERE, &sphere, &sure);
+    let sure = kernel!(triangle_round, Triangle, f64);
+    compare("triangle: t, rounded", &packets, &TRIANGLE, &triangle, &sure);
+    let packets = along_edges();
+    let exact = kernel!(sphere_first_root, Sphere, f64);
+    compare("sphere: t, exact, tangents", &packets, &TANGENT, scalar(&sphere), scalar(&exact));
+    let exact = kernel!(triangle_crossing, Triangle, f64);
+    compare("triangle: t, exact, edges", &packets, &GRID, scalar(&triangle), scalar(&exact));
 }
 
 /// The last of a kernel's sets: what branches gains nothing by packets.
 fn scalar<'k, P, T>(sets: &'k [(&'k str, Run<P, T>)]) -> &'k [(&'k str, Run<P, T>)] {
     &sets[sets.len() - 1..]
+}
+
+/// One kernel for every instruction set, by criterion.
+fn bench<P, T: Default + Copy>(c: &mut Criterion, name: &str, p: &P, sets: &[(&str, Run<P, T>)]) {
+    let packets = toward_square(SPREADS[1].1);
+    let mut group = c.benchmark_group(name);
+    group.throughput(Throughput::Elements(RAYS as u64));
+    for (set, run) in sets {
+        let mut out = [T::default(); 16];
+        group.bench_function(*set, |b| {
+            b.iter(|| run(black_box(&packets), black_box(p), black_box(&mut out)));
+        });
+    }
+    group.finish();
+}
+
+fn criterion(c: &mut Criterion) {
+    bench(c, "sphere plain decision", &SPHERE, &kernel!(sphere_crosses, Sphere, bool));
+    bench(c, "sphere certified decision", &SPHERE, &kernel!(sphere_decision, Sphere, bool));
+    bench(c, "sphere plain t", &SPHERE, &kernel!(sphere_plain, Sphere, f64));
+    bench(c, "sphere bounded t", &SPHERE, &kernel!(sphere_estimate, Sphere, f64));
+    bench(c, "sphere rounded t", &SPHERE, &kernel!(sphere_round, Sphere, f64));
+    bench(c, "triangle plain t", &TRIANGLE, &kernel!(triangle_plain, Triangle, f64));
+    bench(c, "triangle bounded t", &TRIANGLE, &kernel!(triangle_estimate, Triangle, f64));
+    bench(c, "triangle rounded t", &TRIANGLE, &kernel!(triangle_round, Triangle, f64));
 }
 
 fn main() {
@@ -364,9 +387,7 @@ fn main() {
     }
     if !std::env::args().any(|a| a == "ratios") {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
-        let mut group = c.benchmark_group("precision");
-        group.throughput(Throughput::Elements(RAYS as u64));
-        group.finish();
+        criterion(&mut c);
         c.final_summary();
     }
     ratios();
