@@ -240,13 +240,13 @@ fn toward_square(spread: f64) -> Vec<Packet> {
     })
 }
 
-/// Rays from grid points toward [`TANGENT`] and the edge of [`GRID`] that stands above the x-axis:
-/// their discriminants and their edge functions are exactly 0.
+/// Rays from grid points that touch [`TANGENT`] and cross an edge of [`GRID`]: discriminants and
+/// edge functions that are exactly 0.
 fn along_edges() -> Vec<Packet> {
     let mut random = Random(7);
     packets(|| {
-        let x = (random.signed() * 64.0).floor() / 64.0;
-        (DVec3::new(x, 0.0, 1.0 + (random.next() * 64.0).floor()), DVec3::NEG_Z)
+        let z = 1.0 + (random.next() * 6400.0).floor() / 100.0;
+        (DVec3::Z * z, DVec3::NEG_Z)
     })
 }
 

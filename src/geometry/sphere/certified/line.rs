@@ -96,8 +96,8 @@ impl Line {
     #[inline(always)]
     pub fn may_cross(&self) -> bool {
         let [sphere, line] = self.slack;
-        // So that NaN may.
-        !(self.foot2 > (self.r2 + sphere) + line)
+        let passes = self.foot2 > (self.r2 + sphere) + line;
+        !passes
     }
 
     /// Whether the line certainly meets the sphere.
