@@ -333,7 +333,7 @@ proptest! {
         let direction = center + DVec3::from(inside) - origin;
         prop_assume!(direction.length() > 1.0 && (origin - center).length() > 1.1);
         let exact = oracle::sphere(center, 1.0, &Ray::new(origin, direction), false).unwrap();
-        let inverse = 1.0 / direction.length_squared();
+        let inverse = sphere::inverse_length_squared(direction);
         let roots = sphere::roots(center, 1.0, origin, direction, inverse).unwrap();
         let fast = sphere::first_root(roots, f64::INFINITY, false).unwrap();
         prop_assert!(exact.ulps_from(fast) < 4096.0, "{}", exact.ulps_from(fast));

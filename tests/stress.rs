@@ -69,8 +69,8 @@ fn seed_decides_the_rows() {
 
 /// Haines's formula: some ulp off, and now and then wrong at a tangent.
 fn rounded(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
-    use envers::geometry::sphere::{first_root, roots};
-    let inverse = 1.0 / ray.direction.length_squared();
+    use envers::geometry::sphere::{first_root, inverse_length_squared, roots};
+    let inverse = inverse_length_squared(ray.direction);
     first_root(roots(center, radius, ray.origin, ray.direction, inverse)?, ray.tmax, false)
 }
 

@@ -1,6 +1,6 @@
 //! Every ray against every primitive: slow, and with nothing to go wrong.
 
-use crate::geometry::{Hit, PrimitiveId, Ray};
+use crate::geometry::{Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{Coherence, Intersector, Precision};
 use crate::scene::Scene;
@@ -32,7 +32,7 @@ impl<'s> BruteForce<'s> {
     pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let (primitives, ray) = (self.primitives, *ray);
         let scene = primitives.scene;
-        let inverse = 1.0 / ray.direction.length_squared();
+        let inverse = sphere::inverse_length_squared(ray.direction);
         let spheres = (0..scene.spheres.len() as u32)
             .filter_map(move |i| primitives.sphere(i, &ray, inverse, f64::INFINITY));
         let planes = (0..scene.planes.len() as u32).filter_map(move |i| primitives.plane(i, &ray));

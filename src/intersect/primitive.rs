@@ -103,7 +103,7 @@ impl Primitives<'_> {
     pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
         match id.geometry {
             Geometry::Spheres => {
-                let inverse = 1.0 / ray.direction.length_squared();
+                let inverse = sphere::inverse_length_squared(ray.direction);
                 self.sphere(id.primitive, ray, inverse, f64::INFINITY)
             }
             Geometry::Planes => self.plane(id.primitive, ray),

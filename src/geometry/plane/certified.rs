@@ -40,6 +40,7 @@ pub fn crossing(
 }
 
 /// The same in integers, however far.
+#[cold]
 fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
     if ![point, normal, origin, direction].into_iter().all(DVec3::is_finite) {
         return None;

@@ -12,8 +12,8 @@ use glam::DVec3;
 
 /// The two distances, lesser first, at which a line crosses a sphere.
 ///
-/// The line is `origin + t·direction` and `inverse_length_squared` is 1 / |direction|², which the
-/// caller computes once per ray. `None` when the line passes the sphere; a tangent has two equal
+/// The line is `origin + t·direction` and `inverse_length_squared` is that of its direction, by
+/// [`inverse_length_squared`]. `None` when the line passes the sphere; a tangent has two equal
 /// roots. Either root may be negative (behind the origin).
 #[inline(always)]
 pub fn roots(
@@ -25,6 +25,16 @@ pub fn roots(
 ) -> Option<(f64, f64)> {
     let line = Line::new(center, radius, origin, direction, inverse_length_squared);
     line.crosses().then(|| line.roots())
+}
+
+/// 1 / |direction|², which [`Line`] and its certified counterpart want, computed once per ray.
+///
+/// NaN where |direction|² is beyond f64, since 0 would be the direction's loss: nothing is certain
+/// of such a ray, and the plain formulas say that it misses.
+#[inline(always)]
+pub fn inverse_length_squared(direction: DVec3) -> f64 {
+    let square = direction.length_squared();
+    if square < f64::INFINITY { 1.0 / square } else { f64::NAN }
 }
 
 /// A line beside a sphere: what decides whether they meet, before any square root.

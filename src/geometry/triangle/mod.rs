@@ -44,7 +44,7 @@ impl Edges {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
-        let [a, b, c] = triangle.map(|p| p - origin);
+        let (a, b, c) = (triangle[0] - origin, triangle[1] - origin, triangle[2] - origin);
         let (first, second) = (b - a, c - a);
         let normal = first.cross(second);
         let toward = normal.dot(direction);

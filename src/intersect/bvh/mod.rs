@@ -10,7 +10,7 @@ mod tree;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::entry::Entry;
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{Coherence, Intersector, Precision};
@@ -52,7 +52,7 @@ impl<'s> Bvh<'s> {
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
     /// keeps, until it returns true.
     fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
-        let inverse = 1.0 / ray.direction.length_squared();
+        let inverse = sphere::inverse_length_squared(ray.direction);
         let line = Line::new(ray.origin, ray.direction, 0.0);
         let done = self.spheres.walk(&line, limit, |index, limit| {
             self.primitives.sphere(index, ray, inverse, *limit).is_some_and(|hit| visit(hit, limit))

@@ -180,7 +180,7 @@ impl<const W: usize> Exact<W> {
         }
         for i in 0..W {
             let d = self.line(i).1;
-            self.inverse_length_squared[i] = 1.0 / d.length_squared();
+            self.inverse_length_squared[i] = crate::geometry::sphere::inverse_length_squared(d);
         }
     }
 

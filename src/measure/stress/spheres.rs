@@ -23,7 +23,7 @@ pub fn certified(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
 
 /// The formula of precision `fast`.
 pub fn fast(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
-    let inverse = 1.0 / ray.direction.length_squared();
+    let inverse = sphere::inverse_length_squared(ray.direction);
     let roots = sphere::roots(center, radius, ray.origin, ray.direction, inverse)?;
     sphere::first_root(roots, ray.tmax, false)
 }
@@ -107,7 +107,7 @@ pub fn judge(method: Method, center: DVec3, radius: f64, ray: &Ray, tally: &mut 
             let hit = oracle::sphere(center, radius, &ray, false).is_some();
             tally.wrong_if(method(center, radius, &ray).is_some() != hit);
         }
-        let inverse = 1.0 / ray.direction.length_squared();
+        let inverse = sphere::inverse_length_squared(ray.direction);
         let estimate =
             sphere::certified::estimate(center, radius, ray.origin, ray.direction, inverse);
         tally.wrong_if(estimate.is_outside(t.next_up()));

@@ -11,6 +11,7 @@ use num_bigint::BigInt;
 use crate::geometry::exact::{Rounded, Scale, dot, minus, sign};
 
 /// The first root above 0, or with `inward` the far root if it is above 0.
+#[cold]
 pub(super) fn first_root(
     center: DVec3,
     radius: f64,

@@ -60,13 +60,14 @@ pub struct Line {
     middle: f64,
     r2: f64,
     foot2: f64,
-    /// E above.
-    slack: f64,
+    /// E above, in its two parts: what the sphere has of it, and what the line adds.
+    slack: [f64; 2],
 }
 
 impl Line {
-    /// Sets the line `origin + t·direction` beside the sphere, with `inverse_length_squared` =
-    /// `1.0 / direction.length_squared()`.
+    /// Sets the line `origin + t·direction` beside the sphere, with `inverse_length_squared` from
+    /// [`sphere::inverse_length_squared`](crate::geometry::sphere::inverse_length_squared): what
+    /// is never certain where |direction|² is beyond f64.
     #[inline(always)]
     pub fn new(
         center: DVec3,
@@ -90,15 +91,23 @@ impl Line {
             middle,
             r2,
             foot2: foot.dot(foot),
-            slack: KAPPA * (half_b * middle) + (LAMBDA * r2 + TINY),
+            slack: [LAMBDA * r2 + TINY, KAPPA * (half_b * middle)],
         }
     }
 
     /// Whether the line may meet the sphere: false only where it certainly passes.
     #[inline(always)]
     pub fn may_cross(&self) -> bool {
-        // Negated, so that NaN may; and so may all where |direction|² overflowed.
-        !((self.foot2 - self.r2 > self.slack) & (self.inverse > 0.0))
+        let [sphere, line] = self.slack;
+        let passes = self.foot2 > (self.r2 + sphere) + line;
+        !passes
+    }
+
+    /// Whether the line certainly meets the sphere.
+    #[inline(always)]
+    pub fn crosses(&self) -> bool {
+        let [sphere, line] = self.slack;
+        self.foot2 < (self.r2 - sphere) - line
     }
 
     /// The two roots in f64, as `sphere::Line::roots` has them, the one nearer to 0 first, and the
@@ -136,11 +145,11 @@ impl Line {
 
         // Where r²/|d|² is so small that what is smaller yet underflows, nothing is certain.
         let decided = (self.r2 * self.inverse > SMALLEST) & (self.inverse < 1.0 / TINY);
-        let crosses = self.r2 - self.foot2 > self.slack;
-        let sure = decided
-            & crosses
+        let sure = self.crosses()
+            & decided
             & (outside | inside)
             & (2.0 * far_error <= far.abs())
+            & (far.abs() < f64::INFINITY)
             & (error < f64::INFINITY);
         let misses = !self.may_cross() | (sure & outside & !ahead);
         // A miss is infinitely far, without error; what is not sure, nowhere within any bound.

@@ -15,10 +15,11 @@ pub use newton::{Rounded, round};
 use glam::DVec3;
 
 use crate::geometry::Estimate;
+use crate::geometry::sphere::inverse_length_squared;
 
 /// The first t > 0 at which the ray meets the sphere, as f64 arithmetic can bound it.
 ///
-/// `inverse_length_squared` is `1.0 / direction.length_squared()`.
+/// `inverse_length_squared` is that of the direction, by [`inverse_length_squared`].
 #[inline(always)]
 pub fn estimate(
     center: DVec3,
@@ -44,7 +45,7 @@ pub fn first_root(
     tmax: f64,
     leaving_inward: bool,
 ) -> Option<f64> {
-    let inverse = 1.0 / direction.length_squared();
+    let inverse = inverse_length_squared(direction);
     let line = Line::new(center, radius, origin, direction, inverse);
     if !line.may_cross() {
         return None;

@@ -21,6 +21,7 @@ use glam::DVec3;
 
 use crate::geometry::double::{Double, U, difference, in_range};
 use crate::geometry::sphere::certified::Line;
+use crate::geometry::sphere::inverse_length_squared;
 
 /// A root as [`round`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,7 +39,7 @@ pub struct Rounded {
 /// [`first_root`](super::first_root) knows; where it is, both say the same.
 #[inline(always)]
 pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
-    let inverse = 1.0 / direction.length_squared();
+    let inverse = inverse_length_squared(direction);
     let line = Line::new(center, radius, origin, direction, inverse);
     step(&line, line.guess(inward), inward)
 }
@@ -60,15 +61,9 @@ pub(super) fn refined(line: &Line, inward: bool) -> Rounded {
 fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
     let (d, r) = (line.direction, line.radius);
     let f = difference(line.origin, line.center);
-    let p = [0, 1, 2].map(|i| {
-        let along = Double::product(guess, d[i]);
-        let sum = Double::sum(f[i].hi, along.hi);
-        Double::sum(sum.hi, sum.lo + (f[i].lo + along.lo))
-    });
-    let [x, y, z] = p.map(|p| {
-        let square = Double::product(p.hi, p.hi);
-        Double { hi: square.hi, lo: square.lo + 2.0 * p.hi * p.lo }
-    });
+    // One by one: compilers do not vectorise a caller's loop around a loop or a `map`.
+    let p = [point(f[0], guess, d.x), point(f[1], guess, d.y), point(f[2], guess, d.z)];
+    let (x, y, z) = (square(p[0]), square(p[1]), square(p[2]));
     let r2 = Double::product(r, r);
     let xy = Double::sum(x.hi, y.hi);
     let xyz = Double::sum(xy.hi, z.hi);
@@ -109,4 +104,19 @@ fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
         & in_range(d1)
         & in_range(size);
     Rounded { t: t.hi, certain }
+}
+
+/// f + t·d, off by less than 4u²(|f| + |t·d|).
+#[inline(always)]
+fn point(f: Double, t: f64, d: f64) -> Double {
+    let along = Double::product(t, d);
+    let sum = Double::sum(f.hi, along.hi);
+    Double::sum(sum.hi, sum.lo + (f.lo + along.lo))
+}
+
+/// p², off by less than 7u²p².
+#[inline(always)]
+fn square(p: Double) -> Double {
+    let square = Double::product(p.hi, p.hi);
+    Double { hi: square.hi, lo: square.lo + 2.0 * p.hi * p.lo }
 }

@@ -62,7 +62,7 @@ impl Case {
     }
 
     fn estimate(&self) -> Estimate {
-        let inverse = 1.0 / self.direction.length_squared();
+        let inverse = inverse_length_squared(self.direction);
         estimate(self.center, self.radius, self.origin, self.direction, inverse)
     }
 
@@ -153,6 +153,12 @@ fn distance_beyond_f64_is_reported_as_its_end() {
 }
 
 #[test]
+fn root_beyond_f64_in_its_square_is_met() {
+    let (origin, direction) = (DVec3::NEG_Z, DVec3::X * 2e-86);
+    Case::new(DVec3::ZERO, 2e75, origin, direction).check();
+}
+
+#[test]
 fn component_of_1e_minus_300_decides_beside_one() {
     let direction = |x| DVec3::new(x, 0.0, 1.0);
     let case = Case::new(DVec3::new(1.0, 0.0, 5.0), 1.0, DVec3::ZERO, DVec3::Z);
@@ -179,6 +185,24 @@ fn ray_that_is_not_finite_meets_nothing() {
     assert_eq!(Case { direction: DVec3::ZERO, ..case }.certified(), None);
     assert_eq!(Case { direction: DVec3::NAN, ..case }.certified(), None);
     assert_eq!(Case { origin: DVec3::INFINITY, ..case }.certified(), None);
+}
+
+#[test]
+fn estimate_decides_what_is_not_nearly_a_tangent() {
+    let case = Case::new(DVec3::new(0.3, 0.1, 9.0), 1.0, DVec3::ZERO, DVec3::Z);
+    // The bound is 8·32u(|f| + r), more or less.
+    assert!(case.estimate().error < 1e-12);
+    assert_eq!(Case { radius: 0.3, ..case }.estimate(), Estimate::MISS);
+    assert_eq!(Case { direction: DVec3::NEG_Z, ..case }.estimate(), Estimate::MISS);
+    assert!(Case { origin: case.center, ..case }.estimate().error < 1e-12);
+}
+
+#[test]
+fn direction_of_a_square_beyond_f64_leaves_the_decision_open() {
+    let direction = DVec3::Z * 1e160;
+    let inverse = inverse_length_squared(direction);
+    let line = Line::new(DVec3::new(5.0, 0.0, 9.0), 1.0, DVec3::ZERO, direction, inverse);
+    assert!(line.may_cross() && !line.crosses());
 }
 
 #[test]

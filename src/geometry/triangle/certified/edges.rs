@@ -15,6 +15,8 @@
 //! With s and δ within 2^±200 and uwδ above 2⁻⁷⁰⁰ nothing overflows, and what underflows, a few times
 //! 2⁻¹⁰⁷⁴ in n or in a sum, is far below these bounds. Outside that nothing is certain.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use crate::geometry::Estimate;
@@ -39,7 +41,7 @@ impl Edges {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
-        let [a, b, c] = triangle.map(|p| p - origin);
+        let (a, b, c) = (triangle[0] - origin, triangle[1] - origin, triangle[2] - origin);
         let (first, second) = (triangle[1] - triangle[0], triangle[2] - triangle[0]);
         let normal = first.cross(second);
         let size = greater(largest(a), greater(largest(b), largest(c)));
@@ -67,6 +69,11 @@ impl Edges {
         let above = (a > self.error) | (b > self.error) | (c > self.error);
         let below = (a < -self.error) | (b < -self.error) | (c < -self.error);
         !(above & below)
+    }
+
+    /// The signs of the edge functions where they are certain, equal where they are not.
+    pub(super) fn signs(&self) -> [Ordering; 3] {
+        self.functions.map(|f| (f > self.error).cmp(&(f < -self.error)))
     }
 
     /// Where the line crosses the triangle; behind the origin too.

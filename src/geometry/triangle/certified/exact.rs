@@ -42,28 +42,38 @@ impl Scales {
     }
 }
 
-/// Whether the line crosses the triangle, by the tie rule. All the numbers must be finite.
-pub(super) fn crosses(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> bool {
+/// Whether the line crosses the triangle, by the tie rule, given the signs of the edge functions
+/// as far as they are `known`, the others as equal. All the numbers must be finite.
+#[cold]
+pub(super) fn crosses(
+    triangle: [DVec3; 3],
+    origin: DVec3,
+    direction: DVec3,
+    known: [Ordering; 3],
+) -> bool {
     let scales = Scales::of(triangle, origin, direction);
     if scales.fit_i128() {
         let (relative, d) = scales.integers::<i128>(triangle, origin, direction);
-        inside(&relative, &d)
+        inside(&relative, &d, known)
     } else {
         let (relative, d) = scales.integers::<BigInt>(triangle, origin, direction);
-        inside(&relative, &d)
+        inside(&relative, &d, known)
     }
 }
 
 /// Whether the three edges see the line on the same side, of vertices relative to its origin.
-fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3]) -> bool {
+fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3]) -> bool {
     let edges = [(b, c), (c, a), (a, b)];
-    let functions = edges.map(|(p, q)| dot(d, &cross(p, q)));
-    // Their sum is d·n, which is 0 where the line is parallel. If it is not, but all have one
-    // sign, so has the sum.
-    if functions.iter().all(|f| sign(f) == Equal) {
+    let signs = [0, 1, 2].map(|i| match (known[i], edges[i]) {
+        (Equal, (p, q)) => sign(&dot(d, &cross(p, q))),
+        (decided, _) => decided,
+    });
+    // The sum of the three is d·n, which is 0 where the line is parallel. If it is not, but all
+    // have one sign, so has the sum.
+    if signs == [Equal; 3] {
         return false;
     }
-    let [x, y, z] = [0, 1, 2].map(|i| match sign(&functions[i]) {
+    let [x, y, z] = [0, 1, 2].map(|i| match signs[i] {
         Equal => beside(d, edges[i]),
         decided => decided,
     });
@@ -78,6 +88,7 @@ fn beside<I: Integer>(d: &[I; 3], (p, q): (&[I; 3], &[I; 3])) -> Ordering {
 }
 
 /// The crossing of a line that crosses, with 0 < t < `tmax`.
+#[cold]
 pub(super) fn crossing(
     triangle: [DVec3; 3],
     origin: DVec3,

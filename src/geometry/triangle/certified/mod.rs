@@ -53,7 +53,9 @@ pub fn crossing(
     }
     let finite =
         triangle.iter().all(|p| p.is_finite()) && origin.is_finite() && direction.is_finite();
-    if estimate.error == f64::INFINITY && !(finite && exact::crosses(triangle, origin, direction)) {
+    if estimate.error == f64::INFINITY
+        && !(finite && exact::crosses(triangle, origin, direction, edges.signs()))
+    {
         return None;
     }
     let rounded = round(triangle, origin, direction);

@@ -43,16 +43,14 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
 
     let size = largest(a);
     let (width, height) = (largest(first), largest(second));
-    let way = largest(d.map(|hi| Double { hi, lo: 0.0 }));
+    let way = greater(direction.x.abs(), greater(direction.y.abs(), direction.z.abs()));
     let bound = 32.0 * OMEGA * width * height;
 
     let divisor = dot(normal, d);
     let divisor_error = bound * way;
     let (t, error) = dot(normal, a).quotient(bound * size, divisor, divisor_error);
     let inverse = 1.0 / divisor.hi;
-    let longer = if width > height { width } else { height };
-    let weight_error = 32.0 * OMEGA * size * longer * way;
-    let weight_error = if weight_error > divisor_error { weight_error } else { divisor_error };
+    let weight_error = greater(32.0 * OMEGA * size * greater(width, height) * way, divisor_error);
     let certain = (weight_error <= U * divisor.hi.abs())
         & t.rounds_to_hi(error)
         & in_range(size)
@@ -69,9 +67,12 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
 
 #[inline(always)]
 fn largest(v: [Double; 3]) -> f64 {
-    let [x, y, z] = v.map(|x| x.hi.abs());
-    let greater = if x > y { x } else { y };
-    if greater > z { greater } else { z }
+    greater(v[0].hi.abs(), greater(v[1].hi.abs(), v[2].hi.abs()))
+}
+
+#[inline(always)]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
 /// To \[0, 1\], with one zero.

@@ -132,6 +132,20 @@ fn parallel_line_and_degenerate_triangle_miss() {
 }
 
 #[test]
+fn estimate_decides_what_is_not_nearly_an_edge() {
+    let of = |x: f64, way: DVec3| estimate(UNIT, DVec3::new(x, 0.25, 1.0), way);
+    assert!((of(0.25, -DVec3::Z).t - 1.0).abs() < 1e-14 && of(0.25, -DVec3::Z).error < 1e-13);
+    assert!(of(0.25, DVec3::Z).upper() < 0.0);
+    assert_eq!(of(0.76, -DVec3::Z), Estimate::MISS);
+    assert_eq!(of(-0.01, -DVec3::Z), Estimate::MISS);
+}
+
+#[test]
+fn round_is_certain_of_what_is_not_edge_on() {
+    assert!(round(UNIT, DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 0.2, -0.3)).certain);
+}
+
+#[test]
 fn ray_that_is_not_finite_meets_nothing() {
     let origin = DVec3::new(0.25, 0.25, 1.0);
     assert_eq!(meets(UNIT, origin, DVec3::ZERO), 0);
