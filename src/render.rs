@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, STRIP_ROWS, Scratch};
+use crate::integrator::{Counts, Integrator, Scratch, Tiling};
 use crate::intersect::{Backend, Intersector, Precision};
 use crate::scene::Scene;
 
@@ -25,6 +25,8 @@ pub struct Options {
     pub camera: usize,
     /// What the picture shows.
     pub view: View,
+    /// How it is cut into batches.
+    pub tiling: Tiling,
 }
 
 /// A picture, and what it took.
@@ -93,15 +95,15 @@ pub fn with_intersector(
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let rays = scene.cameras[options.camera].rays(size);
-    let integrator = Integrator::new(scene, intersector, rays, options.view);
-    let strip = size[0] as usize * STRIP_ROWS;
+    let integrator = Integrator::new(scene, intersector, rays, options.view, options.tiling);
+    let strip = size[0] as usize * options.tiling.rows;
     let total = film.pixels.len().div_ceil(strip);
     let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));
     let start = Instant::now();
     film.pixels.par_chunks_mut(strip).enumerate().for_each_init(
         Scratch::default,
         |scratch, (i, pixels)| {
-            let here = integrator.strip(i * STRIP_ROWS, pixels, scratch);
+            let here = integrator.strip(i * options.tiling.rows, pixels, scratch);
             // A poisoned lock still holds the counts; the panic that caused it is reported anyway.
             *counts.lock().unwrap_or_else(|e| e.into_inner()) += here;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;

@@ -206,7 +206,7 @@ fn all_agree_on_a_millimetre_beside_a_planet() {
     let met = closest(&Bvh::build(&scene, Precision::Certified), &rays);
     let small = met.iter().flatten().filter(|h| h.id != PrimitiveId::sphere(0)).count();
     assert!(small > 2000, "the millimetre is seen: {small}");
-    all_agree("planet, at its triangles", &scene, &at_triangles(&scene, 5, 12_000), BUDGET);
+    all_agree("planet, at its triangles", &scene, &at_triangles(&scene, 5, 1200), BUDGET);
 }
 
 #[test]
@@ -225,11 +225,12 @@ fn all_agree_on_rays_from_so_far_that_f32_is_lost() {
 
 #[test]
 fn all_agree_on_directions_of_any_length() {
+    // Of any that leaves t representable.
     let scene = random_scene(5, DVec3::ZERO, 1.0);
     let mut r = Random(6);
     let rays: Vec<Ray> = random_rays(9, DVec3::ZERO, 1.0, 6000)
         .into_iter()
-        .map(|ray| Ray::new(ray.origin, ray.direction * r.range(-1040.0, 990.0).exp2()))
+        .map(|ray| Ray::new(ray.origin, ray.direction * r.range(-1015.0, 990.0).exp2()))
         .collect();
     let hits = all_agree("lengths", &scene, &rays, BUDGET);
     assert!(hits > 1000, "{hits}");

@@ -10,6 +10,8 @@ mod outputs;
 mod render;
 #[path = "cli/reports.rs"]
 mod reports;
+#[path = "cli/stress.rs"]
+mod stress;
 #[path = "cli/warnings.rs"]
 mod warnings;
 

@@ -35,7 +35,7 @@ pub fn run(arguments: &Render) -> Outcome {
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
-    let options = Options { backend, precision, threads, camera, view };
+    let options = Options { backend, precision, threads, camera, view, ..Options::default() };
     let progress = progress_bar(arguments.tracing.quiet);
     let rendering =
         render::render(&scene, &options, &|share| progress.set_position((share * 1000.0) as u64))?;

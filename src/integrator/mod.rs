@@ -7,6 +7,7 @@
 
 mod counts;
 mod samples;
+mod tiling;
 
 use glam::Vec3;
 
@@ -18,13 +19,7 @@ use crate::shading::{self, Reflectance};
 use crate::surface::Surface;
 pub use counts::{Counts, NotFinite, RayCounts};
 pub use samples::sample_positions;
-
-/// Rows of a strip, the unit of work that threads share.
-pub const STRIP_ROWS: usize = 16;
-/// Columns of a tile; rays of a tile go through the intersector together.
-const TILE_COLUMNS: usize = 64;
-/// Side of the squares in which a tile's rays are lined up, so that a packet of 16 is a square.
-const BLOCK: usize = 4;
+pub use tiling::Tiling;
 
 /// Makes the pixels of one picture.
 pub struct Integrator<'a> {
@@ -32,6 +27,7 @@ pub struct Integrator<'a> {
     intersector: &'a dyn Intersector,
     rays: RayMaker,
     view: View,
+    tiling: Tiling,
     /// Where in a pixel its samples lie, as offsets from its upper left corner.
     samples: Vec<[f64; 2]>,
 }
@@ -56,25 +52,27 @@ impl<'a> Integrator<'a> {
         intersector: &'a dyn Intersector,
         rays: RayMaker,
         view: View,
+        tiling: Tiling,
     ) -> Self {
         // Debug views are not averages: one sample.
         let spp = if view == View::Beauty { scene.film.spp } else { 1 };
         let samples = sample_positions(&FilmSettings { spp, ..scene.film.clone() });
-        Self { scene, intersector, rays, view, samples }
+        Self { scene, intersector, rays, view, tiling, samples }
     }
 
     /// Makes the rows of the strip that begins at row `first`; `pixels` are whole rows.
     pub fn strip(&self, first: usize, pixels: &mut [Pixel], scratch: &mut Scratch) -> Counts {
         let width = self.scene.film.size[0] as usize;
         let rows = pixels.len() / width;
+        let Tiling { columns: widest, block, .. } = self.tiling;
         let mut counts = Counts::default();
-        for left in (0..width).step_by(TILE_COLUMNS) {
-            let columns = TILE_COLUMNS.min(width - left);
+        for left in (0..width).step_by(widest) {
+            let columns = widest.min(width - left);
             scratch.at.clear();
-            for y in (0..rows).step_by(BLOCK) {
-                for x in (left..left + columns).step_by(BLOCK) {
-                    for row in y..(y + BLOCK).min(rows) {
-                        let end = (x + BLOCK).min(left + columns);
+            for y in (0..rows).step_by(block) {
+                for x in (left..left + columns).step_by(block) {
+                    for row in y..(y + block).min(rows) {
+                        let end = (x + block).min(left + columns);
                         scratch.at.extend((x..end).map(|column| (row * width + column) as u32));
                     }
                 }

@@ -7,17 +7,16 @@
 use embree4_sys as sys;
 use glam::DVec3;
 
-use crate::geometry::{Estimate, Hit, PrimitiveId, sphere, triangle};
-use crate::intersect::Precision;
+use crate::geometry::{Estimate, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::layout::{Context, INVALID, RayHit};
 use crate::intersect::embree::spheres::SphereTable;
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
-use crate::intersect::primitive::{Leaving, Primitives, leaving, starts_on};
+use crate::intersect::primitive::{Leaving, leaving, starts_on};
 
 /// A primitive as the callbacks test it.
-trait Shape {
+pub trait Shape {
     /// Primitive `index` of the geometry with this user data.
     ///
     /// # Safety
@@ -31,6 +30,9 @@ trait Shape {
     fn id(&self) -> PrimitiveId;
 
     fn casts_shadow(&self) -> bool;
+
+    /// Whether a line may meet it: false only where it certainly passes.
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
 
     /// What f64 says of the first t > 0, for a ray that left no surface.
     fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
@@ -68,6 +70,12 @@ impl Shape for Ball {
     #[inline(always)]
     fn casts_shadow(&self) -> bool {
         self.casts_shadow
+    }
+
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
+        sphere::certified::Line::new(self.center, self.radius, origin, direction, inverse)
+            .may_cross()
     }
 
     #[inline(always)]
@@ -109,6 +117,11 @@ impl Shape for Face {
     #[inline(always)]
     fn casts_shadow(&self) -> bool {
         self.casts_shadow
+    }
+
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
+        triangle::certified::Edges::new(self.corners, origin, direction).may_cross()
     }
 
     #[inline(always)]
@@ -188,113 +201,6 @@ unsafe fn occluded<S: Shape, const W: usize>(args: *const sys::RTCOccludedFuncti
             if context.test(lane, shape.id()).is_some() {
                 *floats.add(TFAR * n + slot) = f32::NEG_INFINITY;
             }
-        }
-    }
-}
-
-impl<const W: usize> Context<'_, W> {
-    /// The exact answer for one ray and one primitive.
-    fn test(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
-        let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
-        primitives.test(id, self.rays.get(lane)?)
-    }
-
-    /// What f64 says of each valid ray and the primitive; `None` when all certainly miss.
-    #[inline(always)]
-    fn estimates(&self, shape: &impl Shape, valid: &[i32; W]) -> Option<[Estimate; W]> {
-        let mut estimates = [Estimate::MISS; W];
-        let mut any = false;
-        for i in 0..W {
-            let (origin, direction) = self.exact.line(i);
-            let inverse = self.exact.inverse_length_squared[i];
-            let e = shape.estimate(origin, direction, inverse);
-            let upper = self.nearest.upper(i);
-            any |= (valid[i] != 0) & !e.is_outside(upper);
-            estimates[i] = e;
-        }
-        any.then_some(estimates)
-    }
-
-    /// Keeps the primitive for those rays that it is the nearest of.
-    #[inline(always)]
-    fn offer(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
-        let Some(estimates) = self.estimates(shape, valid) else { return };
-        for i in 0..W {
-            let e = estimates[i];
-            if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
-                continue;
-            }
-            let nearer = e.upper() < self.nearest.t[i] - self.nearest.error[i];
-            let clear = e.lower() > 0.0 && nearer;
-            if !clear || (self.leaves && shape.may_be_left(self, i)) {
-                self.settle(i, shape.id());
-            } else {
-                self.nearest.set(i, e, shape.id());
-            }
-            tfar[i] = self.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
-        }
-    }
-
-    /// Decides exactly whether `id` is the nearest of one ray.
-    #[cold]
-    #[inline(never)]
-    fn settle(&mut self, lane: usize, id: PrimitiveId) {
-        let Some(hit) = self.test(lane, id) else { return };
-        let best = self.nearest.id(self.scene, lane);
-        if let Some(best) = best
-            && self.nearest.error[lane] != 0.0
-            && let Some(exact) = self.test(lane, best)
-        {
-            self.nearest.t[lane] = exact.t;
-            self.nearest.error[lane] = 0.0;
-        }
-        let t = self.nearest.t[lane];
-        // Without a hit so far `t` is the ray's end, which the exact test knows.
-        if best.is_none_or(|best| hit.is_before(&Hit { t, u: 0.0, v: 0.0, id: best })) {
-            self.nearest.set(lane, Estimate { t: hit.t, error: 0.0 }, id);
-        }
-    }
-
-    /// Decides exactly about every triangle of an instance, for one ray.
-    pub fn settle_all(&mut self, lane: usize, instance: u32) {
-        let mesh = self.scene.instances[instance as usize].mesh.0;
-        for triangle in 0..self.scene.meshes[mesh as usize].triangles.len() as u32 {
-            self.settle(lane, PrimitiveId::triangle(mesh, triangle, instance));
-        }
-    }
-
-    /// Whether one ray meets any triangle of an instance.
-    pub fn meets_any(&self, lane: usize, instance: u32) -> bool {
-        let mesh = self.scene.instances[instance as usize].mesh.0;
-        let count = self.scene.meshes[mesh as usize].triangles.len() as u32;
-        (0..count).any(|t| self.test(lane, PrimitiveId::triangle(mesh, t, instance)).is_some())
-    }
-
-    /// Marks the rays that the primitive keeps from their end.
-    #[inline(always)]
-    fn block(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
-        let Some(estimates) = self.estimates(shape, valid) else { return };
-        for i in 0..W {
-            let e = estimates[i];
-            if valid[i] == 0 || e.is_outside(self.exact.tmax[i]) {
-                continue;
-            }
-            let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];
-            let blocked = if clear && !(self.leaves && shape.may_be_left(self, i)) {
-                true
-            } else {
-                self.test(i, shape.id()).is_some()
-            };
-            if blocked {
-                tfar[i] = f32::NEG_INFINITY;
-            }
-        }
-    }
-
-    /// The hits that were found, exactly.
-    pub fn finish(&self, hits: &mut [Option<Hit>]) {
-        for (i, hit) in hits.iter_mut().enumerate() {
-            *hit = self.nearest.id(self.scene, i).and_then(|id| self.test(i, id));
         }
     }
 }

@@ -17,7 +17,9 @@
 
 mod canary;
 mod certified;
+mod decide;
 mod filter;
+mod finish;
 mod frame;
 mod layout;
 mod meshes;

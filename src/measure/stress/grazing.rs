@@ -61,9 +61,8 @@ fn graze(aspect: f64, angle: f64, distance: f64, random: &mut Random) -> ([DVec3
     let sum = if sum.abs() < 0.1 { 1.0 } else { sum };
     let target: DVec3 = corners.iter().zip(weights).map(|(c, w)| *c * (w / sum)).sum();
     let heading = random.range(0.0, std::f64::consts::TAU);
-    let steep = angle * random.range(0.5, 1.0);
-    let flat = DVec3::new(heading.cos(), heading.sin(), 0.0) * steep.cos();
-    let direction = flat + DVec3::Z * (steep.sin() * random.pick(&[1.0, -1.0]));
+    let flat = DVec3::new(heading.cos(), heading.sin(), 0.0) * angle.cos();
+    let direction = flat + DVec3::Z * (angle.sin() * random.pick(&[1.0, -1.0]));
     let origin = target - direction * distance;
     let ray = Ray::new(turn * origin, turn * direction * random.power_of_ten(-2.0, 2.0));
     (corners.map(|c| turn * c), ray)

@@ -1,5 +1,5 @@
 //! G7: what must not change a picture does not: the scale of the scene by a power of two, the
-//! number of threads.
+//! number of threads, the tiles.
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
@@ -7,6 +7,7 @@ use super::cell::{Cell, Draw};
 use super::report::Tally;
 use super::shapes::{icosphere, torus};
 use crate::error::Result;
+use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
 use crate::render::{Options, render};
 use crate::scene::{
@@ -19,43 +20,66 @@ const SCALES: [std::ops::RangeInclusive<i32>; 4] = [-20..=-11, -10..=-1, 1..=10,
 /// Pictures of a cell: a perspective and a parallel one for each power.
 const PICTURES: u64 = 20;
 const THREADS: [usize; 3] = [1, 2, 5];
+/// Tilings: rays one by one, odd shapes, the whole picture at once.
+const TILINGS: [Tiling; 4] = [
+    Tiling { rows: 1, columns: 1, block: 1 },
+    Tiling { rows: 5, columns: 7, block: 3 },
+    Tiling { rows: 3, columns: 1 << 20, block: 2 },
+    Tiling { rows: 1 << 20, columns: 1 << 20, block: 16 },
+];
 
 /// The cells.
 pub fn cells() -> Vec<Cell> {
     let mut cells = Vec::new();
     for backend in backends() {
         let method = format!("certified, {}", name(backend));
+        let like = move |threads, tiling| {
+            let precision = Precision::Certified;
+            Options { backend, precision, threads, tiling, ..Options::default() }
+        };
         for scales in SCALES {
             let cell = format!("scaled by 2^{} … 2^{}", scales.start(), scales.end());
             cells.push(Cell::new(cell, &*method, move |draw| {
-                let scene = scene(side(draw));
-                let mut tally = Tally::default();
-                for camera in 0..scene.cameras.len() {
-                    let (expected, _) = picture(&scene, backend, camera, 0)?;
-                    for k in scales.clone() {
-                        compare(
-                            &expected,
-                            picture(&scaled(&scene, k), backend, camera, 0)?,
-                            &mut tally,
-                        );
-                    }
-                }
-                Ok(tally)
+                let options = like(0, Tiling::default());
+                same(draw, &options, |scene| {
+                    scales.clone().map(|k| (scaled(scene, k), options.clone())).collect()
+                })
             }));
         }
         cells.push(Cell::new("on 1, 2 and 5 threads", &*method, move |draw| {
-            let scene = scene(side(draw));
-            let mut tally = Tally::default();
-            for camera in 0..scene.cameras.len() {
-                let (expected, _) = picture(&scene, backend, camera, 0)?;
-                for threads in THREADS {
-                    compare(&expected, picture(&scene, backend, camera, threads)?, &mut tally);
-                }
-            }
-            Ok(tally)
+            same(draw, &like(0, Tiling::default()), |scene| {
+                THREADS.map(|n| (scene.clone(), like(n, Tiling::default()))).into()
+            })
+        }));
+        cells.push(Cell::new("in any tiles", &*method, move |draw| {
+            same(draw, &like(0, Tiling::default()), |scene| {
+                TILINGS.map(|tiling| (scene.clone(), like(0, tiling))).into()
+            })
         }));
     }
     cells
+}
+
+/// Compares the picture of each camera with what the variants of scene and options make of it.
+fn same(
+    draw: &Draw,
+    options: &Options,
+    variants: impl Fn(&Scene) -> Vec<(Scene, Options)>,
+) -> Result<Tally> {
+    let scene = scene(side(draw));
+    let variants = variants(&scene);
+    let mut tally = Tally::default();
+    for camera in 0..scene.cameras.len() {
+        let (expected, _) = picture(&scene, options, camera)?;
+        for (scene, options) in &variants {
+            let (found, rays) = picture(scene, options, camera)?;
+            tally.rays += rays;
+            let pixels = expected.chunks(3).zip(found.chunks(3));
+            tally.misclassified += pixels.filter(|(a, b)| a != b).count() as u64;
+            tally.wrong_if(expected.len() != found.len());
+        }
+    }
+    Ok(tally)
 }
 
 fn backends() -> Vec<Backend> {
@@ -80,24 +104,10 @@ fn side(draw: &Draw) -> u32 {
 }
 
 /// The PNG's bytes of a picture, and how many rays it took.
-fn picture(
-    scene: &Scene,
-    backend: Backend,
-    camera: usize,
-    threads: usize,
-) -> Result<(Vec<u8>, u64)> {
-    let precision = Precision::Certified;
-    let options = Options { backend, precision, threads, camera, ..Options::default() };
-    let rendering = render(scene, &options, &|_| {})?;
+fn picture(scene: &Scene, options: &Options, camera: usize) -> Result<(Vec<u8>, u64)> {
+    let rendering = render(scene, &Options { camera, ..options.clone() }, &|_| {})?;
     let settings = Settings { transfer: scene.film.transfer, ..Settings::default() };
     Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
-}
-
-fn compare(expected: &[u8], (found, rays): (Vec<u8>, u64), tally: &mut Tally) {
-    tally.rays += rays;
-    let differ = expected.chunks(3).zip(found.chunks(3)).filter(|(a, b)| a != b).count();
-    tally.misclassified += differ as u64;
-    tally.wrong_if(expected.len() != found.len());
 }
 
 /// Spheres, a checkered plane, meshes, and a light of every kind.
@@ -209,7 +219,7 @@ mod tests {
 
     #[test]
     fn pictures_of_the_sweep_show_something() {
-        let (bytes, _) = picture(&scene(16), Backend::Rust, 0, 1).unwrap();
+        let (bytes, _) = picture(&scene(16), &Options::default(), 0).unwrap();
         let bright = bytes.iter().filter(|b| **b > 40).count();
         assert!(bright > bytes.len() / 4 && bright < bytes.len(), "{bright} of {}", bytes.len());
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Write};
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -46,26 +46,23 @@ impl Finished {
         let Some(path) = path else {
             return Ok(Self { rows: HashMap::new(), conditions, file: None });
         };
-        let mut options = OpenOptions::new();
-        let mut file = options.read(true).append(true).create(true).open(path);
-        let file = match &mut file {
-            Ok(file) => file.try_clone().map_err(|e| Error::io("read", path, &e))?,
-            Err(e) => return Err(Error::io("open", path, e)),
+        let text = match std::fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
+            Err(e) => return Err(Error::io("read", path, &e)),
         };
+        // A run that was killed may have left its last line unfinished.
+        let (whole, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
         let mut rows = HashMap::new();
-        let reader = File::open(path).map_err(|e| Error::io("read", path, &e))?;
-        let lines: Vec<String> = BufReader::new(reader)
-            .lines()
-            .collect::<std::io::Result<_>>()
-            .map_err(|e| Error::io("read", path, &e))?;
-        for (i, line) in lines.iter().enumerate() {
+        let unfinished = Some(rest).filter(|rest| !rest.is_empty());
+        for (i, line) in whole.lines().chain(unfinished).enumerate() {
             match serde_json::from_str::<Line>(line) {
+                Ok(_) if unfinished == Some(line) => {} // Only its end of line is missing: again.
                 Ok(line) if line.conditions == conditions => {
                     rows.insert(key(&line.row.goal, &line.row.cell, &line.row.method), line.row);
                 }
                 Ok(_) => {}
-                // A run that was killed may have left its last line unfinished.
-                Err(_) if i + 1 == lines.len() => {}
+                Err(_) if unfinished == Some(line) && line.starts_with("{\"version\":") => {}
                 Err(e) => {
                     return Err(Error::input(format!("line {} is no finished cell: {e}", i + 1))
                         .at(path)
@@ -75,6 +72,12 @@ impl Finished {
                 }
             }
         }
+        let file = OpenOptions::new()
+            .append(true)
+            .create(true)
+            .open(path)
+            .and_then(|file| file.set_len(whole.len() as u64).map(|()| file))
+            .map_err(|e| Error::io("write", path, &e))?;
         Ok(Self { rows, conditions, file: Some((path.to_owned(), file)) })
     }
 

@@ -41,6 +41,9 @@ const KAPPA: f64 = f64::from_bits((1023 - 75) << 52);
 /// Below any distance squared that decides something; above all that underflows.
 const TINY: f64 = 1e-290;
 
+/// Below any r²/|d|² whose share of 2⁻¹⁰⁰, the smallest part of a bound, still has all its digits.
+const SMALLEST: f64 = 1e-270;
+
 /// A line beside a sphere, with the bounds of what f64 arithmetic says of them.
 ///
 /// Split as the plain [`Line`](crate::geometry::sphere::Line) is, so that a packet can stop early
@@ -131,7 +134,8 @@ impl Line {
         let t = if takes_far { far } else { near };
         let error = if takes_far { far_error } else { near_error };
 
-        let decided = (self.inverse > 0.0) & (self.inverse < 1.0 / TINY);
+        // Where r²/|d|² is so small that what is smaller yet underflows, nothing is certain.
+        let decided = (self.r2 * self.inverse > SMALLEST) & (self.inverse < 1.0 / TINY);
         let crosses = self.r2 - self.foot2 > self.slack;
         let sure = decided
             & crosses
