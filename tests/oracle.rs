@@ -4,9 +4,13 @@
 
 use std::cmp::Ordering;
 
+use envers::film::{Film, View};
 use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
-use envers::intersect::{BruteForce, Coherence, Intersector, Precision};
+use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::measure::oracle::{self, Oracle};
+use envers::render::{Options, with_intersector};
+use envers::scene::{Camera, Falloff, Lens, Light, LightKind, Scene};
+use envers::write::Settings;
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -231,6 +235,90 @@ fn oracle_agrees_with_the_formulas_on_random_scenes() {
         }
     }
     assert!(hits_seen > 2000, "{hits_seen}");
+}
+
+/// A picture with everything in it, small enough for the oracle.
+fn picture(seed: u64) -> Scene {
+    let mut scene = common::random_scene(seed, DVec3::ZERO, 2.0);
+    scene.film.size = [72, 54];
+    let position = v(1.0, 2.0, 7.0);
+    let lens = Lens::FovY(0.8);
+    scene.cameras.push(Camera::look_at(position, DVec3::ZERO, DVec3::Y, lens).unwrap());
+    for kind in [
+        LightKind::Directional { direction: v(0.0, -0.6, -0.8) },
+        LightKind::Point {
+            position: v(3.0, 4.0, 2.0),
+            falloff: Falloff::InverseSquare,
+            range: f64::INFINITY,
+        },
+    ] {
+        let intensity = glam::Vec3::ONE;
+        scene.lights.push(Light { name: String::new(), kind, intensity, casts_shadow: true });
+    }
+    scene
+}
+
+/// Who must equal the oracle.
+fn certified(scene: &Scene) -> Vec<Box<dyn Intersector + '_>> {
+    vec![
+        Box::new(Bvh::build(scene, Precision::Certified)),
+        #[cfg(feature = "embree")]
+        Box::new(envers::intersect::Embree::build(scene, Precision::Certified, 1).unwrap()),
+    ]
+}
+
+fn film(scene: &Scene, who: &dyn Intersector, view: View) -> Film {
+    let options = Options { view, ..Options::default() };
+    with_intersector(scene, &options, who, &|_| {}).0
+}
+
+fn exr(film: &Film) -> Vec<u8> {
+    let file = tempfile::Builder::new().suffix(".exr").tempfile().unwrap();
+    envers::write::write(film, file.path(), &Settings::default()).unwrap();
+    std::fs::read(file.path()).unwrap()
+}
+
+#[test]
+fn certified_pictures_equal_the_oracles_byte_by_byte() {
+    for seed in 0..3 {
+        let scene = picture(seed);
+        let oracle = Oracle::new(&scene);
+        for view in [View::Id, View::Depth, View::Beauty] {
+            let expected = exr(&film(&scene, &oracle, view));
+            for who in certified(&scene) {
+                let found = exr(&film(&scene, &*who, view));
+                assert!(found == expected, "{}, scene {seed}, {view:?}", who.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn certified_hits_equal_the_oracles_to_the_bit() {
+    let (mut hits_seen, mut weights_apart) = (0, 0.0f64);
+    for seed in 0..3 {
+        let scene = picture(seed);
+        let rays = common::random_rays(seed + 90, DVec3::ZERO, 2.0, 3000);
+        let closest = |who: &dyn Intersector| -> Vec<Option<Hit>> {
+            let mut hits = vec![None; rays.len()];
+            who.closest(&rays, Coherence::Incoherent, &mut hits);
+            hits
+        };
+        let exact = closest(&Oracle::new(&scene));
+        for who in certified(&scene) {
+            for (a, b) in exact.iter().zip(closest(&*who)) {
+                let key = |h: Hit| (h.id, h.t.to_bits());
+                assert_eq!(a.map(key), b.map(key), "{}, scene {seed}", who.name());
+                if let (Some(a), Some(b)) = (a, b) {
+                    hits_seen += 1;
+                    weights_apart = weights_apart.max((a.u - b.u).abs()).max((a.v - b.v).abs());
+                }
+            }
+        }
+    }
+    assert!(hits_seen > 2000, "{hits_seen}");
+    // The certified weights promise 4 ulp of 1; the oracle's are correctly rounded.
+    assert!(weights_apart <= 4.0 * f64::EPSILON, "{weights_apart:e}");
 }
 
 proptest! {

@@ -30,21 +30,33 @@ pub struct Edges {
     pub functions: [f64; 3],
     /// Distance to the plane in units of |direction|; not finite when the line runs along it.
     pub t: f64,
+    /// Whether `t` may have lost more than half of its digits, because the triangle is so thin and
+    /// the line so flat above it: then [`certified::round`] knows better.
+    pub flat: bool,
 }
+
+/// The square of the share of |b − a||c − a||d| below which their determinant makes a triangle
+/// flat. The normal is off by a few 2⁻⁵³ of the first two; divided by 2⁻²⁰, that is 1e-10 of the
+/// size of the triangle, and of t if the triangle is not nearer than it is large.
+const FLAT_SQUARED: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl Edges {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
         let [a, b, c] = triangle.map(|p| p - origin);
-        let normal = (b - a).cross(c - a);
+        let (first, second) = (b - a, c - a);
+        let normal = first.cross(second);
+        let toward = normal.dot(direction);
+        let sides = first.length_squared() * second.length_squared() * direction.length_squared();
         Self {
             functions: [
                 direction.dot(b.cross(c)),
                 direction.dot(c.cross(a)),
                 direction.dot(a.cross(b)),
             ],
-            t: normal.dot(a) / normal.dot(direction),
+            t: normal.dot(a) / toward,
+            flat: toward * toward <= FLAT_SQUARED * sides,
         }
     }
 
@@ -75,7 +87,8 @@ pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Optio
     let edges = Edges::new(triangle, origin, direction);
     edges.crosses().then(|| {
         let (u, v) = edges.weights();
-        Crossing { t: edges.t, u, v }
+        let exact = || certified::round(triangle, origin, direction).t;
+        Crossing { t: if edges.flat { exact() } else { edges.t }, u, v }
     })
 }
 

@@ -54,12 +54,20 @@ pub fn refine<const W: usize>(
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
+    let mut flat = [false; W];
     for i in 0..W {
         let (origin, direction) = exact.line(i);
         let corner = |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
         let edges = triangle::Edges::new([corner(0), corner(1), corner(2)], origin, direction);
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
+        flat[i] = edges.flat;
+    }
+    for i in (0..W).filter(|&i| flat[i] && ids[i].is_some()) {
+        let (origin, direction) = exact.line(i);
+        let corner = |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
+        let triangle = [corner(0), corner(1), corner(2)];
+        ts[i] = triangle::certified::round(triangle, origin, direction).t;
     }
     let mut all_within = true;
     for (i, (hit, id)) in hits.iter_mut().zip(ids).enumerate() {

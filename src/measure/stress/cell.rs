@@ -11,6 +11,9 @@ use crate::error::Result;
 /// Rays that are tried together.
 const BATCH: u64 = 256;
 
+/// What tries the rays of a cell.
+pub type Run = dyn Fn(&Draw) -> Result<Tally>;
+
 /// Rays of one kind, and what has to hold for them.
 pub struct Cell {
     /// Which rays.
@@ -24,7 +27,7 @@ pub struct Cell {
     /// The largest relative error that passes.
     pub max_relative: f64,
     /// Tries the rays.
-    pub run: Box<dyn Fn(&Draw) -> Result<Tally>>,
+    pub run: Box<Run>,
 }
 
 impl Cell {
