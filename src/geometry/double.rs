@@ -156,5 +156,5 @@ pub fn difference(a: glam::DVec3, b: glam::DVec3) -> [Double; 3] {
 #[inline(always)]
 pub fn in_range(x: f64) -> bool {
     const END: f64 = f64::from_bits((1023 + 200) << 52);
-    (x >= 1.0 / END) & (x <= END)
+    (1.0 / END..=END).contains(&x)
 }
