@@ -95,7 +95,7 @@ pub struct Render {
     /// Brighten the PNG by 2 to the power of EV; an EXR is never changed
     #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
     pub exposure: f32,
-    /// Store 16-bit floats in the EXR rather than 32-bit ones
+    /// Store 16-bit floats in the EXR rather than 32-bit ones; what is beyond 65504 becomes that
     #[arg(long)]
     pub half: bool,
     /// Write what was counted and timed as JSON; - is standard output

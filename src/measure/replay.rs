@@ -74,21 +74,37 @@ pub fn replay(scene: &Scene, ray: &Ray) -> Result<Replay> {
     use Precision::{Certified, Fast};
     scene.check()?;
     render::in_pool(0, || {
-        let mut asked: Vec<(&'static str, Box<dyn Intersector + '_>)> = vec![
+        let others: [Named<'_>; 5] = [
             ("oracle", Box::new(Oracle::new(scene))),
             ("brute certified", Box::new(BruteForce::new(scene, Certified))),
             ("brute fast", Box::new(BruteForce::new(scene, Fast))),
             ("rust certified", Box::new(Bvh::build(scene, Certified))),
             ("rust fast", Box::new(Bvh::build(scene, Fast))),
         ];
-        #[cfg(feature = "embree")]
-        for (name, precision) in [("embree certified", Certified), ("embree fast", Fast)] {
-            asked.push((name, Box::new(crate::intersect::Embree::build(scene, precision, 0)?)));
-        }
+        let asked = others.into_iter().chain(embree(scene)?).collect::<Vec<_>>();
         let asked: Vec<(&'static str, &dyn Intersector)> =
             asked.iter().map(|(name, intersector)| (*name, &**intersector)).collect();
         Ok(ask(scene, ray, &asked))
     })
+}
+
+/// An intersector, and what it is called here.
+type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
+
+/// Embree in both precisions, where it is built in.
+#[cfg(feature = "embree")]
+fn embree(scene: &Scene) -> Result<Vec<Named<'_>>> {
+    let names = [("embree certified", Precision::Certified), ("embree fast", Precision::Fast)];
+    let build = |(name, precision)| -> Result<Named<'_>> {
+        Ok((name, crate::intersect::Backend::Embree.build(scene, precision, 0)?))
+    };
+    names.into_iter().map(build).collect()
+}
+
+/// Embree, which this build is without.
+#[cfg(not(feature = "embree"))]
+fn embree(_: &Scene) -> Result<[Named<'_>; 0]> {
+    Ok([])
 }
 
 /// Asks each of `asked`; the first one is the reference.

@@ -3,10 +3,15 @@
 
 use crate::scene::{Instance, Mesh, Scene};
 
-/// What precision `fast` cannot tell apart on Embree, in units of the longest side of the scene's
-/// box: 40 · 2⁻²⁴, by how much the f32 rays may be off (`intersect/embree/frame.rs` derives it).
-/// So `fast` supports a ratio of extent to detail of up to 420,000.
-pub const FAST_MARGIN: f64 = 40.0 / (1u32 << 24) as f64;
+/// The greatest ratio of the longest side of the scene's box to the detail of a mesh that precision
+/// `fast` supports on Embree.
+///
+/// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/frame.rs`
+/// derives it), so that finer detail could not be told apart at all; but already where triangles
+/// are larger some rays meet a neighbour instead. Measured on a ball at the end of its scene, the
+/// share of rays that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at
+/// 1e6; `fast` promises 1e-4.
+pub const FAST_RATIO: f64 = 1e4;
 /// The spacing of f32 numbers, in which meshes are stored, in units of the number.
 const F32_SPACING: f64 = f32::EPSILON as f64;
 
@@ -15,8 +20,8 @@ const F32_SPACING: f64 = f32::EPSILON as f64;
 ///
 /// The detail of a mesh is the square root of its triangles' mean area, that of a sphere its
 /// radius. It is lost where it is finer than
-/// - with `f32_rays`, as on Embree in precision `fast`: [`FAST_MARGIN`] times the longest side of
-///   the scene's box (meshes only);
+/// - with `f32_rays`, as on Embree in precision `fast`: the longest side of the scene's box over
+///   [`FAST_RATIO`] (meshes only);
 /// - the spacing of f32 at the mesh's own coordinates, since files and scenes store meshes in f32;
 /// - the spacing of f64 at the object's coordinates in the world.
 pub fn lost(scene: &Scene, f32_rays: bool) -> Vec<String> {
@@ -61,13 +66,13 @@ pub fn lost(scene: &Scene, f32_rays: bool) -> Vec<String> {
         })
     };
     if f32_rays {
-        found.extend(worst(instances(), FAST_MARGIN).map(|Loss { what, detail, against }| {
+        found.extend(worst(instances(), 1.0 / FAST_RATIO).map(|Loss { what, detail, against }| {
             format!(
-                "{what} is finer than Embree tells apart in precision fast: its triangles are \
-                 about {detail:.1e} large in a scene of {against:.1e} (ratio {:.1e}, supported \
-                 up to {:.1e}); --precision certified has no such limit",
-                against / detail,
-                1.0 / FAST_MARGIN
+                "{what} is fine for so large a scene: its triangles are about {detail:.1e} large \
+                 in {against:.1e} (ratio {:.1e}, supported up to {FAST_RATIO:.0e} in precision \
+                 fast on Embree), so that more than one ray in 10,000 may meet a neighbour of \
+                 the triangle in its way; --precision certified has no such limit",
+                against / detail
             )
         }));
     }
@@ -157,13 +162,13 @@ mod tests {
 
     #[test]
     fn a_speck_in_a_large_scene_is_lost_to_f32_rays_only() {
-        // Legs of 3e-6: the square root of the area is 2.1e-6, the margin 2.4e-6.
-        let scene = beside_a_ball(3e-6);
+        // The square root of the area is 1 / √2 of the legs.
+        let scene = beside_a_ball(1.4e-4);
         let found = lost(&scene, true);
         assert!(found.len() == 1 && found[0].contains("instance 0 (mesh `speck`)"), "{found:?}");
         assert!(found[0].contains("--precision certified"), "{found:?}");
         assert_eq!(lost(&scene, false), [""; 0]);
-        assert_eq!(lost(&beside_a_ball(4e-6), true), [""; 0]);
+        assert_eq!(lost(&beside_a_ball(1.5e-4), true), [""; 0]);
     }
 
     #[test]

@@ -18,13 +18,15 @@ const METADATA: &str = "envers";
 
 /// Writes a tiled EXR, losslessly compressed, with the view's channels. Of a view other than
 /// beauty the values are always 32-bit, whatever `settings.half` says: depths and numbers of
-/// objects do not fit in 16.
+/// objects do not fit in 16. Radiance that does not, which is beyond 65504, is stored as that.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     let half = settings.half && film.view == View::Beauty;
     let channels = film.view.channels().iter().enumerate().map(|(i, name)| {
         let values = film.pixels.iter().map(|pixel| pixel[i]);
         let samples = if half {
-            FlatSamples::F16(values.map(f16::from_f32).collect())
+            // Beyond the greatest 16-bit float lies infinity, which is no radiance.
+            let limit = f32::from(f16::MAX);
+            FlatSamples::F16(values.map(|x| f16::from_f32(x.clamp(-limit, limit))).collect())
         } else {
             FlatSamples::F32(values.collect())
         };
@@ -99,6 +101,14 @@ mod tests {
         let image = written(&film, &Settings { half: true, ..Settings::default() });
         let first = &image.layer_data.channel_data.list[0].sample_data;
         assert!(matches!(first, FlatSamples::F16(_)));
+    }
+
+    #[test]
+    fn half_stores_what_is_beyond_it_as_its_greatest_number() {
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1e6; 3]] };
+        let image = written(&film, &Settings { half: true, ..Settings::default() });
+        let first = &image.layer_data.channel_data.list[0].sample_data;
+        assert_eq!(first.values_as_f32().collect::<Vec<_>>(), [65504.0]);
     }
 
     #[test]

@@ -36,6 +36,7 @@ fn statistics_have_every_field() {
             ("spp", Value::is_u64),
             ("geometry", Value::is_object),
             ("rays", Value::is_object),
+            ("not_finite", Value::is_object),
             ("seconds", Value::is_object),
             ("mrays_per_second", seconds),
             ("peak_memory_bytes", |v| v.is_u64() || (!cfg!(target_os = "linux") && v.is_null())),
@@ -136,11 +137,73 @@ fn validate_json_has_every_field() {
             ("max_t_error_ulp", Value::is_u64),
             ("pixels_differing", Value::is_u64),
             ("max_channel_difference", Value::is_u64),
+            ("values_differing", Value::is_u64),
+            ("precision", Value::is_string),
+            ("causes", Value::is_object),
+            ("warnings", texts),
             ("passed", Value::is_boolean),
         ],
     );
+    let causes: [(&str, Kind); 4] =
+        ["edge", "tangency", "tie", "other"].map(|name| (name, Value::is_u64 as _));
+    assert_fields(&result["causes"], &causes);
     assert_eq!((&result["unexplained_mismatches"], &result["passed"]), (&0.into(), &true.into()));
     assert!(result["rays_compared"].as_u64() > Some(150 * 110 * 2));
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_finds_no_difference_in_certified() {
+    let run = "validate scene.toml --precision certified --json -";
+    let result = Folder::with_everything().run(run).good().json();
+    assert_eq!((&result["precision"], &result["passed"]), (&"certified".into(), &true.into()));
+    for none in ["primitive_mismatches", "max_t_error_ulp", "values_differing"] {
+        assert_eq!(result[none], 0, "{none}");
+    }
+    assert!(result["worst"].is_null() && result["replay"].is_null());
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn validate_names_its_worst_ray_by_the_command_that_traces_it_again() {
+    let folder = Folder::with_everything();
+    let result = folder.run("validate scene.toml --json -").good().json();
+    let (worst, replay) = (&result["worst"], result["replay"].as_str().unwrap());
+    let error = worst["t_error_ulp"].as_u64().unwrap();
+    assert!(error > 0 && result["max_t_error_ulp"] == error, "{worst}");
+    let arguments = replay.strip_prefix("envers ").unwrap();
+    let again = folder.run(&format!("{arguments} --json -")).good().json();
+    assert_eq!(again["ray"], worst["ray"]);
+    let answers = again["answers"].as_array().unwrap();
+    let of = |name: &str| answers.iter().find(|a| a["name"] == name).unwrap();
+    assert_eq!(of("oracle")["t_error_ulp"], 0);
+    assert_eq!(of("embree certified")["hit"], of("oracle")["hit"]);
+    assert_eq!(of("embree fast")["t_error_ulp"], error);
+}
+
+#[test]
+fn validate_says_what_everyone_makes_of_a_ray() {
+    let run = "validate scene.toml --ray -0.0,5e-1,5,0,0,-1e0";
+    let stdout = Folder::with(SPHERE).run(run).good().stdout;
+    let names: Vec<&str> = stdout.lines().map(|l| l.split("  ").next().unwrap()).collect();
+    let mut expected =
+        vec!["oracle", "brute certified", "brute fast", "rust certified", "rust fast"];
+    if cfg!(feature = "embree") {
+        expected.extend(["embree certified", "embree fast"]);
+    }
+    assert_eq!(names, expected);
+    for line in stdout.lines() {
+        assert!(line.contains("  sphere 0  t 4.5  0 ulp"), "{stdout}");
+    }
+}
+
+#[test]
+fn validate_refuses_what_is_no_ray() {
+    for bad in ["1,2,3", "0,0,0,0,0,0", "1,2,3,4,5,inf", "a,b,c,d,e,f"] {
+        let message =
+            Folder::with(SPHERE).run(&format!("validate scene.toml --ray {bad}")).refused();
+        assert!(message.contains("--ray"), "{message}");
+    }
 }
 
 #[test]

@@ -74,3 +74,64 @@ fn a_missing_texture_is_a_warning() {
         run.stderr
     );
 }
+
+/// The scene with a highlight and a lamp whose product is beyond f32.
+fn blinding() -> String {
+    SPHERE
+        .replace("specular = 0.5", "specular = 1e20")
+        .replace(LIGHT, &format!("{LIGHT}intensity = 1e20\n"))
+}
+
+#[test]
+fn samples_that_are_not_finite_are_told_with_their_cause() {
+    let warning = warned(&blinding());
+    assert!(
+        warning.contains("samples were left out") && warning.contains("lower the intensity"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn samples_that_are_not_finite_stand_in_the_statistics_by_cause() {
+    let stats = Folder::with(&blinding()).run("render scene.toml --stats - --quiet").json();
+    let counts = &stats["not_finite"];
+    assert_eq!((&counts["light"], &counts["surface"]), (&0.into(), &0.into()));
+    assert!(counts["sum"].as_u64() > Some(0), "{counts}");
+}
+
+#[test]
+fn samples_that_are_not_finite_reach_no_file() {
+    let folder = Folder::with(&blinding());
+    assert_eq!(folder.run("render scene.toml -o a.exr -o a.png --quiet").status, Some(0));
+    let picture = envers::measure::Picture::read(&folder.path("a.exr")).unwrap();
+    assert!(picture.values.iter().all(|x| x.is_finite()));
+}
+
+/// A mesh whose triangles are 1e-5 large, beside a ball at a distance of 1.
+fn speck() -> Folder {
+    let folder = Folder::with(
+        "[camera]\nposition = [0, 0, 3]\nlook_at = [0, 0, 0]\n[[model]]\nfile = \"speck.obj\"\n\
+         [[sphere]]\ncenter = [1, 0, 0]\nradius = 0.3\n\
+         [[light]]\nkind = \"ambient\"\n",
+    );
+    folder.write("speck.obj", "o speck\nv 0 0 0\nv 1e-5 0 0\nv 0 1e-5 0\nf 1 2 3\n");
+    folder
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn detail_that_is_fine_for_the_scene_is_told_the_way_out() {
+    let told = |run: Run| {
+        assert!(run.stderr.contains("fine for so large a scene"), "{}", run.stderr);
+        assert!(run.stderr.contains("--precision certified"), "{}", run.stderr);
+    };
+    told(speck().run("render scene.toml --size 20x20"));
+    told(speck().run("validate scene.toml --size 20x20"));
+    told(speck().run("info scene.toml"));
+}
+
+#[test]
+fn detail_is_no_matter_in_certified_nor_without_embree() {
+    speck().run("render scene.toml --size 20x20 --precision certified").good();
+    speck().run("render scene.toml --size 20x20 --backend rust").good();
+}
