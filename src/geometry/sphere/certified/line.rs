@@ -3,22 +3,23 @@
 //! Notation: u = 2⁻⁵³; f from the centre to the origin; m = −f·d/|d|²; l = f + m·d, the foot of
 //! the perpendicular from the centre. A hat marks what is computed.
 //!
-//! **The foot.** f̂ is off by u|f|, f̂·d by 4u|f||d| more or less, 1/|d|² by a relative 4u (16u
-//! where |d|² is subnormal), so m̂·d by 21u|f| at most, and the two last roundings add 2u|f|:
-//! |l̂ − l| ≤ η = 32u|f|.
+//! **The foot.** f̂ is off by u|f|, f̂·d by 4u|f||d|, 1/|d|² by a relative 4u (13u where |d|² is
+//! subnormal), so m̂·d by 9u|f| (18u|f|), and the two last roundings add 2u|f|:
+//! |l̂ − l| ≤ η = 21u|f|.
 //!
-//! **The decision.** Suppose |l| ≤ r. Then |l̂|² ≤ (r + η)² = r² + 2rη + η², and 2rη ≤ λr² + η²/λ
-//! for any λ > 0. Suppose |l| > r. Then |l̂|² > r² − λr² − η²/λ likewise. So the sign of |l̂|² − r²
-//! is right where its size exceeds λr² + (1 + 1/λ)η². In both cases |f|² is at most 2r² + 2f², with
-//! f = m|d| the distance along the line, as long as η is below r (above, η²/λ exceeds r² and
-//! nothing is certain). With λ = 2⁻²⁰ that makes
+//! **The decision.** Suppose |l| ≤ r. Then |l̂|² ≤ (r + η)² = r² + 2rη + η², and 2rη ≤ μr² + η²/μ
+//! for any μ > 0. Suppose |l| > r. Then |l̂|² > r² − μr² − η²/μ likewise if η < r. So the sign of
+//! |l̂|² − r² is right where its size exceeds μr² + (1 + 1/μ)η². In the first case
+//! |f|² = |l|² + m²|d|² is at most r² + m²|d|², in the second 4r² + m²|d|². (If η ≥ r, then m²|d|²
+//! is nearly |f|², and E below exceeds r²: nothing is certain.) With λ = 2⁻²⁰ and μ = λ/2
 //!
-//!   E = 2⁻²⁰ r² + 2⁻⁷⁵ (f·d)·m ≥ λr² + 2(1 + 1/λ)·(32u)²·(r² + m²|d|²), rounding included,
+//!   E = λr² + 2048u²/λ · m²|d|² ≥ μr² + (1 + 1/μ)η²,
 //!
-//! which costs three operations, because the product f·d and m are there. One ray in a million
-//! that comes within 1.1 r of the centre is left undecided, up to distances of 10⁶ r. The
-//! roundings of |l̂|² and r² are 2⁻³⁰ times smaller than E. What underflows amounts to less than
-//! 10⁻³⁰⁰ r-units and is covered by [`TINY`]; what overflows is never certain.
+//! since (1 + 2/λ)·441u² is below 900u²/λ, whose part with r² is far below the other half of λ; the
+//! roundings of |l̂|², r² and E, a relative 5u, are too. E costs little because (f·d)·m = −m²|d|² has
+//! both its factors at hand. One ray in a million or so that comes near the sphere is left
+//! undecided, up to distances of 10⁶ r. What underflows moves the foot by less than 10⁻¹⁶⁸ and a
+//! square by 10⁻³²², for which [`TINY`] stands in E; what overflows is never certain.
 //!
 //! **The roots** are m ∓ h with h² = (r² − l²)/|d|², taken as in `Line::roots`: one as
 //! q = m ± h, the other as its quotient p/q with p = (f² − r²)/|d|². Write F, R for bounds of
@@ -35,7 +36,7 @@ use crate::geometry::double::U;
 /// Share of r² within which the squared distance of the line from the centre decides nothing.
 const LAMBDA: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// 2⁻⁷⁵ = 2·(32u)²/λ, with as much again for rounding.
+/// 2048u²/λ = 2⁻⁷⁵.
 const KAPPA: f64 = f64::from_bits((1023 - 75) << 52);
 
 /// Below any distance squared that decides something; above all that underflows.
