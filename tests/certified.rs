@@ -347,7 +347,7 @@ fn all_agree_on_the_corpus_meshes() {
 fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
     use envers::film::View;
     use envers::intersect::Backend;
-    use envers::measure::Oracle;
+    use envers::measure::oracle::Oracle;
     use envers::render::{self, Options};
     let mut scene = scene.clone();
     let [w, h] = scene.film.size;
