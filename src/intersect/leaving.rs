@@ -27,6 +27,8 @@
 
 use glam::DVec3;
 
+#[cfg(feature = "embree")]
+use crate::geometry::Bounds;
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::scene::{Scene, Sphere};
 
@@ -69,6 +71,23 @@ pub fn leaving(scene: &Scene, index: u32, ray: &Ray) -> Leaving {
     // A chord shorter than twice the slack begins and ends at the origin, to within rounding.
     let inward = f.dot(ray.direction) < -slack * ray.direction.length();
     if inward { Leaving::Inward } else { Leaving::Outward }
+}
+
+/// A bound of what counts as rounding for every ray that starts, and every surface that stands,
+/// within `reach` of the origin on each axis; so [`leaving`] need be asked only about a sphere
+/// whose |f|² − r², f from its centre to the ray's origin, is at most slack·(2r + slack).
+#[cfg(feature = "embree")]
+pub(in crate::intersect) fn greatest_slack(reach: f64) -> f64 {
+    // Twice, for what the sums that lead to `reach` and to the comparison round.
+    2.0 * ROUNDING * f64::EPSILON * reach
+}
+
+/// The largest absolute coordinate of any surface of the scene, of which what is finite stands
+/// within `bounds`; of a plane, that of its point.
+#[cfg(feature = "embree")]
+pub(in crate::intersect) fn scene_reach(scene: &Scene, bounds: &Bounds) -> f64 {
+    let planes = scene.planes.iter().map(|p| p.point.abs().max_element());
+    planes.fold(bounds.max_abs(), f64::max)
 }
 
 /// Whether `ray` was spawned in plane `index`, to within rounding, and so does not meet it.

@@ -81,6 +81,12 @@ impl Line {
         self.discriminant >= 0.0
     }
 
+    /// |f|² − r², with f from the centre to the origin: above 0 outside, below 0 inside.
+    #[inline(always)]
+    pub fn power(&self) -> f64 {
+        self.c
+    }
+
     /// The two roots, lesser first; not meaningful unless [`Line::crosses`].
     #[inline(always)]
     pub fn roots(&self) -> (f64, f64) {

@@ -37,6 +37,9 @@ pub trait Shape {
     /// What f64 says of the first t > 0, for a ray that left no surface.
     fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
 
+    /// Whether a ray left this very primitive, and so does not meet it again.
+    fn is_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool;
+
     /// Whether a ray that left a surface, and that this primitive is in the way of by its
     /// estimate, starts on it and so may not meet it.
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool;
@@ -83,8 +86,17 @@ impl Shape for Ball {
         sphere::certified::estimate(self.center, self.radius, origin, direction, inverse)
     }
 
+    #[inline(always)]
+    fn is_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
+        context.outward[lane] == self.index
+    }
+
+    #[inline(always)]
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
-        leaving(context.scene, self.index, &context.rays[lane]) != Leaving::No
+        let f = context.exact.line(lane).0 - self.center;
+        let power = f.length_squared() - self.radius * self.radius;
+        context.may_start_on(lane, self.index, self.radius, power)
+            && leaving(context.scene, self.index, &context.rays[lane]) != Leaving::No
     }
 }
 
@@ -129,10 +141,13 @@ impl Shape for Face {
         triangle::certified::estimate(self.corners, origin, direction)
     }
 
+    #[inline(always)]
+    fn is_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
+        context.rays[lane].from.is_some_and(|from| from.id == self.id)
+    }
+
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
-        let ray = &context.rays[lane];
-        ray.from.is_some_and(|from| from.id == self.id)
-            || starts_on(context.scene, self.corners, ray)
+        starts_on(context.scene, self.corners, &context.rays[lane])
     }
 }
 

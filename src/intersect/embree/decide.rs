@@ -44,6 +44,9 @@ impl<const W: usize> Context<'_, W> {
             if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
                 continue;
             }
+            if self.leaves && shape.is_left(self, i) {
+                continue;
+            }
             let nearer = e.upper() < self.nearest.t[i] - self.nearest.error[i];
             let clear = e.lower() > 0.0 && nearer;
             if !clear || (self.leaves && shape.may_be_left(self, i)) {
@@ -97,6 +100,9 @@ impl<const W: usize> Context<'_, W> {
         for i in 0..W {
             let e = estimates[i];
             if valid[i] == 0 || e.is_outside(self.exact.tmax[i]) {
+                continue;
+            }
+            if self.leaves && shape.is_left(self, i) {
                 continue;
             }
             let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];

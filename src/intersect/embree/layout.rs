@@ -5,9 +5,10 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `canary` proves at start that the library agrees.
 
-use crate::geometry::Ray;
+use crate::geometry::{Departure, Geometry, Ray, Side};
 use crate::intersect::embree::frame::{Clip, Exact};
 use crate::intersect::embree::nearest::Nearest;
+use crate::intersect::leaving::greatest_slack;
 use crate::scene::Scene;
 
 /// What Embree writes where there is no geometry or no instance.
@@ -92,6 +93,12 @@ pub struct Context<'a, const W: usize> {
     pub doubt: f32,
     /// Whether any ray of the packet left a surface.
     pub leaves: bool,
+    /// The sphere that each ray left toward its outside, and so does not meet, and toward its
+    /// inside; `INVALID` for what left none.
+    pub outward: [u32; W],
+    pub inward: [u32; W],
+    /// How far from a surface a ray may start that starts on it to within rounding.
+    pub slack: f64,
 }
 
 impl<'a, const W: usize> Context<'a, W> {
@@ -101,7 +108,23 @@ impl<'a, const W: usize> Context<'a, W> {
         exact: &'a Exact<W>,
         instance_of: &'a [u32],
         doubt: f32,
+        reach: f64,
     ) -> Self {
+        let leaves = rays.iter().any(|ray| ray.from.is_some());
+        let (mut outward, mut inward, mut slack) = ([INVALID; W], [INVALID; W], 0.0);
+        if leaves {
+            let mut farthest = reach;
+            for (i, ray) in rays.iter().enumerate() {
+                farthest = farthest.max(ray.origin.abs().max_element());
+                match ray.from {
+                    Some(from) if from.id.geometry != Geometry::Spheres => {}
+                    Some(Departure { id, side: Side::Front }) => outward[i] = id.primitive,
+                    Some(Departure { id, side: Side::Back }) => inward[i] = id.primitive,
+                    None => {}
+                }
+            }
+            slack = greatest_slack(farthest);
+        }
         Self {
             embree: [INVALID; 16],
             scene,
@@ -112,8 +135,20 @@ impl<'a, const W: usize> Context<'a, W> {
             instance_of,
             nearest: Nearest::new(exact.tmax),
             doubt,
-            leaves: rays.iter().any(|ray| ray.from.is_some()),
+            leaves,
+            outward,
+            inward,
+            slack,
         }
+    }
+
+    /// Whether ray `i`, which did not leave the sphere outward, may start on it, so that `leaving`
+    /// must be asked; `power` is |f|² − r² with f from the centre to the origin.
+    #[inline(always)]
+    pub fn may_start_on(&self, i: usize, sphere: u32, radius: f64, power: f64) -> bool {
+        // Negated for what is not a number.
+        let apart = power.abs() > self.slack * (2.0 * radius + self.slack);
+        (self.inward[i] == sphere) | !apart
     }
 }
 

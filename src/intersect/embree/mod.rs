@@ -42,7 +42,7 @@ use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Hit, Ray};
-use crate::intersect::{Coherence, Intersector, Precision};
+use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
 use canary::failed;
 use frame::Frame;
@@ -57,6 +57,8 @@ pub struct Embree<'s> {
     frame: Frame,
     width: Width,
     precision: Precision,
+    /// The largest absolute coordinate in the scene.
+    reach: f64,
     /// For each geometry that is attached, the instance that stands there.
     instance_of: Vec<u32>,
     committed: CommittedScene,
@@ -107,7 +109,8 @@ impl<'s> Embree<'s> {
         let options = SceneOptions { build_quality: QUALITY, flags: flags() };
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
-        let frame = Frame::around(scene.bounds());
+        let bounds = scene.bounds();
+        let frame = Frame::around(bounds);
         let width = width.unwrap_or_else(|| Width::native(&device));
 
         let mut instance_of = Vec::new();
@@ -133,6 +136,7 @@ impl<'s> Embree<'s> {
             frame,
             width,
             precision,
+            reach: leaving::scene_reach(scene, &bounds),
             instance_of,
             committed,
             version,
@@ -157,6 +161,7 @@ impl<'s> Embree<'s> {
             width: self.width,
             precision: self.precision,
             careful: false,
+            reach: self.reach,
         }
     }
 }

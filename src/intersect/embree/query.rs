@@ -24,11 +24,22 @@ pub struct Target<'a> {
     pub precision: Precision,
     /// Whether rays that left nothing are filtered, too.
     pub careful: bool,
+    /// The largest absolute coordinate in the scene.
+    pub reach: f64,
 }
 
 impl Target<'_> {
     fn primitives(&self) -> Primitives<'_> {
         Primitives { scene: self.scene, precision: self.precision }
+    }
+
+    #[inline(always)]
+    fn context<'a, const W: usize>(
+        &'a self,
+        rays: &'a [Ray],
+        exact: &'a Exact<W>,
+    ) -> Context<'a, W> {
+        Context::new(self.scene, rays, exact, self.instance_of, self.frame.doubt(), self.reach)
     }
 
     /// What rays are left to that no f32 ray can stand for.
@@ -122,8 +133,7 @@ fn closest<const W: usize>(
         record.geom = [INVALID; W];
         record.inst = [INVALID; W];
         let valid = lanes(rays.len(), &entry.inside);
-        let mut context =
-            Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
+        let mut context = target.context(rays, &exact);
         let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
         let mut args = sys::RTCIntersectArguments {
             flags: query_flags(coherence, filtered),
@@ -209,8 +219,7 @@ fn occluded<const W: usize>(
         exact.load(rays);
         let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
         let valid = lanes(rays.len(), &entry.inside);
-        let mut context =
-            Context::new(target.scene, rays, &exact, target.instance_of, target.frame.doubt());
+        let mut context = target.context(rays, &exact);
         let filtered = target.precision == Precision::Fast;
         let mut args = sys::RTCOccludedArguments {
             flags: query_flags(coherence, filtered),

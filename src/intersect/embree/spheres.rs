@@ -170,17 +170,21 @@ fn crossings<const W: usize>(
         return None;
     }
     let mut ts = [f64::INFINITY; W];
+    let mut on = [false; W];
+    let mut any_on = false;
     for i in 0..W {
-        let (near, far) = line(context, s, i).roots();
+        let line = line(context, s, i);
+        let (near, far) = line.roots();
         let t = if near > 0.0 { near } else { far };
-        ts[i] = if crosses[i] & (t > 0.0) { t } else { f64::INFINITY };
+        let meets = crosses[i] & (t > 0.0) & (context.outward[i] != primitive);
+        ts[i] = if meets { t } else { f64::INFINITY };
+        on[i] = meets & context.may_start_on(i, primitive, s.radius, line.power());
+        any_on |= on[i];
     }
-    // Rays that were spawned and meet the sphere are few: one by one.
-    if context.leaves {
-        for i in 0..context.rays.len() {
-            if ts[i] < f64::INFINITY && context.rays[i].from.is_some() {
-                ts[i] = crossing(context, s, primitive, i);
-            }
+    // Rays that start on the sphere are few: one by one.
+    if context.leaves & any_on {
+        for i in (0..W).filter(|&i| on[i]) {
+            ts[i] = crossing(context, s, primitive, i);
         }
     }
     Some(ts)
