@@ -105,18 +105,20 @@ pub struct Render {
 
 #[derive(Args)]
 #[command(after_help = "\
-Of Embree in the given precision and the certified pure-Rust intersector, every primary hit, every
-shadow ray and every pixel is compared. fast passes where each mismatch is explained by what f32 rays
-and f64 formulas promise (edge, tangency, tie), on at most 1e-4 of the rays, and at most 1e-5 of the
-pixels differ by more than 1 of 255; certified where nothing differs by any bit.
+Of Embree in the given precision and the certified pure-Rust intersector, every primary hit, every \
+shadow ray and every pixel is compared. fast passes where each mismatch is explained by what f32 \
+rays and f64 formulas promise (edge, tangency, tie), on at most 1e-4 of the rays, and at most 1e-5 \
+of the pixels differ by more than 1 of 255; certified where nothing differs by any bit.
 
-The heat map: red an unexplained mismatch, yellow an explained one, blue a pixel that differs, grey
+The heat map: red an unexplained mismatch, yellow an explained one, blue a pixel that differs, grey \
 where both hit something, black where both hit nothing.
 
 Examples:
   envers validate scene.toml --precision certified
   envers validate scene.toml --json - --heatmap heat.png
-  envers validate scene.toml --ray 0,1.5,6,0,-0.1,-1")]
+  envers validate scene.toml --ray 0,1.5,6,0,-0.1,-1
+
+Exit status: 0 it passed, 1 it did not, 2 the command line or the input is wrong.")]
 pub struct Validate {
     #[command(flatten)]
     pub tracing: Tracing,
@@ -134,7 +136,7 @@ pub struct Validate {
 
 #[derive(Args)]
 #[command(after_help = "\
-Goals: G1 distances to spheres, G2 tangency, G3 trees against brute force, G4 closed meshes,
+Goals: G1 distances to spheres, G2 tangency, G3 trees against brute force, G4 closed meshes, \
 G5 grazing triangles, G6 shadows, G7 scale, threads and tiles.
 
 Examples:
@@ -142,7 +144,7 @@ Examples:
   envers stress --goal G1,G2 --json rows.json --plot error.svg
   envers stress --resume finished.jsonl
 
-Exit status: 0 every row passed, 1 one failed.")]
+Exit status: 0 every row passed, 1 one failed, 2 the command line or the input is wrong.")]
 pub struct Stress {
     /// Fewer rays of every kind: less than a minute on two cores
     #[arg(long)]

@@ -1,10 +1,7 @@
 //! `envers render`.
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::Instant;
-
-use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::args::{Render, ViewName};
 use crate::cli::json::Stats;
@@ -36,7 +33,7 @@ pub fn run(arguments: &Render) -> Outcome {
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
     let options = Options { backend, precision, threads, camera, view, ..Options::default() };
-    let progress = progress_bar(arguments.tracing.quiet);
+    let progress = report::progress_bar(arguments.tracing.quiet);
     let rendering =
         render::render(&scene, &options, &|share| progress.set_position((share * 1000.0) as u64))?;
     progress.finish_and_clear();
@@ -111,17 +108,6 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
         }
     }
     Ok(outputs)
-}
-
-fn progress_bar(quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// What in a picture is probably not what was meant, with the likely cause.

@@ -1,6 +1,8 @@
 //! Messages to a person, on stderr.
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
+
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Error, Place};
 
@@ -17,6 +19,18 @@ pub fn warning(text: &str) {
 /// Prints to stderr; that nobody reads it is no reason to stop.
 pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// A bar of 1000 steps; none where nobody asked for it or would see it.
+pub fn progress_bar(quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(1000);
+    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 fn format(error: &Error) -> String {

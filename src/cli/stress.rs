@@ -1,12 +1,9 @@
 //! `envers stress`.
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use indicatif::{ProgressBar, ProgressStyle};
-
 use crate::cli::args::Stress;
-use crate::cli::{Outcome, Verdict, output};
+use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::measure::stress::{Options, Table, plot, stress};
 use crate::write;
@@ -17,7 +14,7 @@ const PLOT_RAYS: u64 = 20_000;
 pub fn run(arguments: &Stress) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     check_svg(arguments.plot.as_ref())?;
-    output::check_json(arguments.resume.as_ref())?;
+    check_resume(arguments)?;
     let mut options = Options {
         rays: if arguments.quick { Options::QUICK } else { Options::FULL },
         seed: arguments.seed,
@@ -25,9 +22,9 @@ pub fn run(arguments: &Stress) -> Outcome {
         ..Options::default()
     };
     if !arguments.goal.is_empty() {
-        options.goals = arguments.goal.clone();
+        options.goals.retain(|goal| arguments.goal.contains(goal));
     }
-    let bar = progress_bar(arguments.quiet);
+    let bar = report::progress_bar(arguments.quiet);
     let rows = stress(&options, &|share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     if output::stdout_is_free(arguments.json.as_ref()) {
@@ -52,13 +49,19 @@ fn check_svg(path: Option<&PathBuf>) -> Result<()> {
     write::check_file(path)
 }
 
-fn progress_bar(quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
+/// Checks that finished cells can be kept where they are asked for, and are not overwritten.
+fn check_resume(arguments: &Stress) -> Result<()> {
+    let Some(path) = &arguments.resume else { return Ok(()) };
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("jsonl")) {
+        return Err(Error::input("finished cells are kept as JSON lines")
+            .at(path)
+            .help("name it .jsonl"));
     }
-    let bar = ProgressBar::new(1000);
-    if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent:>3} %  {eta} left") {
-        bar.set_style(style);
+    let same = |json: &&PathBuf| files::same(json, path);
+    if arguments.json.as_ref().filter(same).is_some() {
+        return Err(Error::input("--json would overwrite what --resume keeps")
+            .at(path)
+            .help("name two files"));
     }
-    bar
+    write::check_file(path)
 }

@@ -33,6 +33,35 @@ fn stress_prints_a_table_of_the_goal_asked_for() {
 }
 
 #[test]
+fn stress_tables_fit_a_terminal_of_120_columns() {
+    let stdout = Folder::new().run("stress --quick").good().stdout;
+    assert_eq!(stdout.lines().filter(|line| line.starts_with("goal ")).count(), 7);
+    for line in stdout.lines() {
+        assert!(line.chars().count() <= 120, "{line}");
+    }
+}
+
+#[test]
+fn stress_runs_a_goal_once_that_is_named_twice() {
+    let stdout = Folder::new().run("stress --quick --goal G2,g2").good().stdout;
+    assert!(stdout.lines().last().unwrap().starts_with("passed: 34 rows"), "{stdout}");
+}
+
+#[test]
+fn stress_refuses_to_keep_cells_where_they_would_be_lost() {
+    let folder = Folder::new();
+    for (arguments, why) in [
+        ("--resume -", "name it .jsonl"),
+        ("--resume done.toml", "name it .jsonl"),
+        ("--resume done.jsonl --json ./done.jsonl", "--json would overwrite"),
+    ] {
+        let message = folder.run(&format!("stress --quick --goal G2 {arguments}")).refused();
+        assert!(message.contains(why), "{message}");
+    }
+    assert!(folder.names().is_empty());
+}
+
+#[test]
 fn stress_plot_is_an_svg() {
     let folder = Folder::new();
     folder.run("stress --quick --goal G2 --plot error.svg").good();

@@ -101,44 +101,14 @@ impl Tally {
     }
 }
 
-/// The rows as a table for a person.
+/// The rows for a person: a table for each goal, as wide as what it holds.
 pub struct Table<'a>(pub &'a [Row]);
 
 impl fmt::Display for Table<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let widest = |of: fn(&Row) -> &str| {
-            self.0.iter().map(|row| of(row).chars().count()).max().unwrap_or(0)
-        };
-        let (cell, method) = (widest(|r| &r.cell).max(4), widest(|r| &r.method).max(6));
-        writeln!(
-            f,
-            "goal  {:cell$}  {:method$}  {:>9}  {:>7}  {:>10}   {:20}  {:20}",
-            "cell",
-            "method",
-            "rays",
-            "wrong",
-            "worst",
-            "fast: wrong, worst",
-            "b²-4ac: wrong, worst"
-        )?;
-        for row in self.0 {
-            let t = &row.tally;
-            let mut line = format!(
-                "{:4}  {:cell$}  {:method$}  {:>9}  {:>7}  {:>10}   {:20}  {:20}",
-                row.goal,
-                row.cell,
-                row.method,
-                t.rays,
-                t.misclassified,
-                error(t.max_ulp, t.max_relative),
-                beside(t.fast, t.rays),
-                beside(t.naive, t.rays),
-            );
-            line.truncate(line.trim_end().len());
-            if !row.passed {
-                write!(line, "  FAILED")?;
-            }
-            writeln!(f, "{line}")?;
+        for goal in self.0.chunk_by(|a, b| a.goal == b.goal) {
+            sweep(f, goal)?;
+            writeln!(f)?;
         }
         let failed = self.0.iter().filter(|row| !row.passed).count();
         let rays: u64 = self.0.iter().map(|row| row.tally.rays).sum();
@@ -147,17 +117,59 @@ impl fmt::Display for Table<'_> {
     }
 }
 
+/// The table of one goal; the columns of what is found beside stand there where something is.
+fn sweep(f: &mut fmt::Formatter<'_>, rows: &[Row]) -> fmt::Result {
+    let widest =
+        |of: fn(&Row) -> &str| rows.iter().map(|row| of(row).chars().count()).max().unwrap_or(0);
+    let (cell, method) = (widest(|r| &r.cell).max(4), widest(|r| &r.method).max(6));
+    write!(f, "goal  {:cell$}  {:method$}", "cell", "method")?;
+    write!(f, "  {:>8}  {:>6}  {:>9}", "rays", "wrong", "worst")?;
+    let has = |of: fn(&Tally) -> Option<Beside>| rows.iter().any(|row| of(&row.tally).is_some());
+    let (fast, naive) = (has(|t| t.fast), has(|t| t.naive));
+    for (title, _) in
+        [("fast wrong, ulp", fast), ("b²-4ac wrong, ulp", naive)].iter().filter(|c| c.1)
+    {
+        write!(f, "  {title:>BESIDE$}")?;
+    }
+    writeln!(f)?;
+    for row in rows {
+        let t = &row.tally;
+        let mut line = format!(
+            "{:4}  {:cell$}  {:method$}  {:>8}  {:>6}  {:>9}",
+            row.goal,
+            row.cell,
+            row.method,
+            t.rays,
+            t.misclassified,
+            error(t.max_ulp, t.max_relative),
+        );
+        for (found, _) in [(t.fast, fast), (t.naive, naive)].iter().filter(|c| c.1) {
+            write!(line, "  {:BESIDE$}", beside(*found, t.rays))?;
+        }
+        line.truncate(line.trim_end().len());
+        if !row.passed {
+            write!(line, "  FAILED")?;
+        }
+        writeln!(f, "{line}")?;
+    }
+    Ok(())
+}
+
 fn error(ulp: Option<f64>, relative: Option<f64>) -> String {
     match (ulp, relative) {
-        (Some(ulp), _) => format!("{ulp:.2} ulp"),
+        (Some(ulp), _) if ulp < 1e5 => format!("{ulp:.2} ulp"),
+        (Some(ulp), _) => format!("{ulp:.0e} ulp"),
         (None, Some(relative)) => format!("{relative:.1e}"),
         (None, None) => String::new(),
     }
 }
 
+/// The width of [`beside`].
+const BESIDE: usize = 17;
+
 fn beside(beside: Option<Beside>, rays: u64) -> String {
     let Some(b) = beside else { return String::new() };
     let share = 100.0 * b.misclassified as f64 / rays.max(1) as f64;
-    let ulp = if b.max_ulp == 0.0 { String::new() } else { format!("{:.1e} ulp", b.max_ulp) };
-    format!("{share:7.3} %  {ulp:>11}")
+    let ulp = if b.max_ulp == 0.0 { String::new() } else { format!("{:.1e}", b.max_ulp) };
+    format!("{share:7.3} %  {ulp:>6}")
 }

@@ -122,11 +122,10 @@ impl Comparer<'_> {
         tally: &mut Tally,
         mark: &mut [f32; 3],
     ) {
-        let ulp = found.zip(truth).map(|(a, b)| a.t.to_bits().abs_diff(b.t.to_bits()));
         let same = found.map(|h| h.id) == truth.map(|h| h.id);
-        if same {
-            tally.max_ulp = tally.max_ulp.max(ulp.unwrap_or(0));
-        }
+        let ulp =
+            found.zip(truth).filter(|_| same).map(|(a, b)| a.t.to_bits().abs_diff(b.t.to_bits()));
+        tally.max_ulp = tally.max_ulp.max(ulp.unwrap_or(0));
         match self.precision {
             Precision::Certified if found.map(bits) != truth.map(bits) => {
                 tally.mismatch(place, None, false, ulp, mark);
@@ -366,6 +365,19 @@ mod tests {
         assert_eq!((fast.worst.as_ref().unwrap().pixel, fast.primitive_mismatches), ([8, 9], 0));
         let certified = compared(Precision::Certified, spoil);
         assert!(!certified.passed && certified.causes.other == 1, "{certified}");
+    }
+
+    #[test]
+    fn what_hits_another_primitive_has_no_error_of_t() {
+        let found = compared(Precision::Fast, |ray, hit| {
+            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
+                hit.t *= 2.0;
+                hit.id.geometry = crate::geometry::Geometry::Planes;
+            }
+        });
+        let worst = found.worst.unwrap();
+        assert_eq!((found.max_t_error_ulp, worst.t_error_ulp), (0, None));
+        assert_eq!((worst.pixel, worst.cause), ([8, 9], Some("other")));
     }
 
     #[test]

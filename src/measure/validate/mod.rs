@@ -58,8 +58,8 @@ pub struct Worst {
     pub cause: Option<&'static str>,
     /// Whether it is about a shadow ray from what the ray hits, rather than about the ray itself.
     pub shadow: bool,
-    /// By how much t differs, in units in the last place; null where one of the two hits nothing,
-    /// and for shadow rays.
+    /// By how much t differs, in units in the last place; null where the two do not hit the same
+    /// primitive, and for shadow rays.
     pub t_error_ulp: Option<u64>,
     /// The ray from the eye as `envers validate SCENE --ray` takes it, every bit of it.
     pub ray: String,
@@ -108,8 +108,8 @@ impl fmt::Display for Validation {
         write!(
             f,
             "{}: {}: {} rays compared, {} mismatches ({edge} edge, {tangency} tangency, {tie} tie, \
-             {other} other), t within {} ulp; {} of {} pixels differ, by at most {} of 255; {} EXR \
-             values differ",
+             {other} other), t within {} ulp\n        {} of {} pixels differ, by at most {} of 255; \
+             {} EXR values differ",
             if self.passed { "passed" } else { "FAILED" },
             self.precision,
             self.rays_compared,
