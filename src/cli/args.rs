@@ -124,7 +124,7 @@ pub struct Validate {
     pub tracing: Tracing,
     /// Only trace this ray, origin and direction, and say what each intersector makes of it in each
     /// precision, held against exact arithmetic
-    #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with = "heatmap")]
+    #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with_all = ["heatmap", "precision", "size", "spp", "camera", "threads"])]
     pub ray: Option<Ray>,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]

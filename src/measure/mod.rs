@@ -1,4 +1,6 @@
-//! What measures the renderer: one backend against the other, one picture against another.
+//! What measures the renderer: one backend against the other ([`validate`](fn@validate)), all of
+//! them on one ray ([`replay`](fn@replay)), one picture against another ([`compare`]), and every
+//! hit against exact integers ([`oracle`], [`stress`]).
 
 mod dispute;
 pub mod oracle;

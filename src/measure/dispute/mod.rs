@@ -9,8 +9,9 @@
 //! from a sphere's centre to the ray's origin and r its radius: the formula of `geometry::sphere`
 //! rounds f, its dot product with the direction, the quotient by |d|² and the nearest point, all in
 //! all by 6 ε |f| to first order, and squares r, so that it takes the line for at most
-//! 8 ε (|f| + r) nearer to the centre or farther from it than it is. What judges here computes
-//! with the same formula: 16 ε (|f| + r). A plane is met within 16 ε of the coordinates involved.
+//! 8 ε (|f| + r) nearer to the centre or farther from it than it is. Two that compute so may differ
+//! by 16 ε (|f| + r), and that is what is allowed, whoever is compared. A plane is met within 16 ε of
+//! the coordinates involved.
 //!
 //! Whatever is not of this kind is an error in one of the two.
 

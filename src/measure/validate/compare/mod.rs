@@ -1,5 +1,8 @@
 //! Tracing with both, row by row, and counting.
 
+#[cfg(test)]
+mod tests;
+
 use rayon::prelude::*;
 
 use super::{Causes, Validation, Worst};
@@ -280,127 +283,4 @@ fn occluded(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<bool> {
     let mut blocked = vec![false; rays.len()];
     intersector.occluded(rays, Coherence::Coherent, &mut blocked);
     blocked
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::intersect::Bvh;
-    use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Material, Plane, Sphere};
-    use glam::{DVec3, Vec3};
-
-    /// A ball over the ground and a lamp, in 16 × 16 pixels.
-    fn scene() -> Scene {
-        let mut scene = Scene::default();
-        scene.film.size = [16, 16];
-        let material = scene.add_material(Material::default());
-        let eye = DVec3::new(0.0, 2.0, 6.0);
-        let camera = Camera::look_at(eye, DVec3::Y, DVec3::Y, Lens::FovY(0.7)).unwrap();
-        scene.cameras.push(camera);
-        scene.spheres.push(Sphere::new(DVec3::Y * 1.2, 1.0, material));
-        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, material));
-        let kind = LightKind::Point {
-            position: DVec3::new(3.0, 5.0, 4.0),
-            falloff: Falloff::None,
-            range: f64::INFINITY,
-        };
-        let light = Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true };
-        scene.lights.push(light);
-        scene
-    }
-
-    /// An intersector that is right, but for what `spoil` does to its hits.
-    struct Spoilt<'s>(Bvh<'s>, fn(&Ray, &mut Option<Hit>));
-
-    impl Intersector for Spoilt<'_> {
-        fn name(&self) -> &'static str {
-            "spoilt"
-        }
-
-        fn version(&self) -> String {
-            String::new()
-        }
-
-        fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
-            self.0.closest(rays, coherence, hits);
-            rays.iter().zip(hits).for_each(|(ray, hit)| self.1(ray, hit));
-        }
-
-        fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
-            self.0.occluded(rays, coherence, blocked);
-        }
-    }
-
-    fn compared(precision: Precision, spoil: fn(&Ray, &mut Option<Hit>)) -> Validation {
-        let scene = scene();
-        let judge = Bvh::build(&scene, Precision::Certified);
-        let subject = Spoilt(Bvh::build(&scene, Precision::Certified), spoil);
-        let (subject, judge): (&dyn Intersector, &dyn Intersector) = (&subject, &judge);
-        Comparer { scene: &scene, precision, subject, margin: 1e-6, judge, camera: 0 }.run()
-    }
-
-    /// Whether the ray is the one through the middle of pixel (8, 9), which meets the ball.
-    fn is_chosen(ray: &Ray) -> bool {
-        *ray == scene().cameras[0].rays([16, 16]).through(8.5, 9.5)
-    }
-
-    #[test]
-    fn what_agrees_passes_in_both_precisions() {
-        for precision in [Precision::Fast, Precision::Certified] {
-            let found = compared(precision, |_, _| {});
-            assert!(found.passed && found.worst.is_none(), "{found}");
-            assert!(found.rays_compared > 300 && found.values_differing == 0, "{found}");
-        }
-    }
-
-    #[test]
-    fn an_ulp_of_t_is_a_figure_in_fast_and_a_failure_in_certified() {
-        let spoil: fn(&Ray, &mut Option<Hit>) = |ray, hit| {
-            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
-                hit.t = hit.t.next_up();
-            }
-        };
-        let fast = compared(Precision::Fast, spoil);
-        assert!(fast.passed && fast.max_t_error_ulp == 1, "{fast}");
-        assert_eq!((fast.worst.as_ref().unwrap().pixel, fast.primitive_mismatches), ([8, 9], 0));
-        let certified = compared(Precision::Certified, spoil);
-        assert!(!certified.passed && certified.causes.other == 1, "{certified}");
-    }
-
-    #[test]
-    fn what_hits_another_primitive_has_no_error_of_t() {
-        let found = compared(Precision::Fast, |ray, hit| {
-            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
-                hit.t *= 2.0;
-                hit.id.geometry = crate::geometry::Geometry::Planes;
-            }
-        });
-        let worst = found.worst.unwrap();
-        assert_eq!((found.max_t_error_ulp, worst.t_error_ulp), (0, None));
-        assert_eq!((worst.pixel, worst.cause), ([8, 9], Some("other")));
-    }
-
-    #[test]
-    fn a_weight_that_differs_fails_in_certified() {
-        let found = compared(Precision::Certified, |ray, hit| {
-            if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
-                hit.u = f64::MIN_POSITIVE;
-            }
-        });
-        assert!(!found.passed && found.causes.other == 1, "{found}");
-    }
-
-    #[test]
-    fn a_ball_that_is_not_hit_is_unexplained_and_the_worst_ray_finds_it_again() {
-        let found = compared(Precision::Fast, |ray, hit| {
-            if is_chosen(ray) {
-                *hit = None;
-            }
-        });
-        assert!(!found.passed && found.unexplained_mismatches == 1, "{found}");
-        assert_eq!(found.heatmap.pixel(8, 9), RED);
-        let worst = found.worst.unwrap();
-        assert_eq!((worst.pixel, worst.cause, worst.shadow), ([8, 9], Some("other"), false));
-        assert!(is_chosen(&crate::measure::ray_from_text(&worst.ray).unwrap()));
-    }
 }
