@@ -24,7 +24,7 @@ fn scene_file_of_the_readme_loads() {
 #[test]
 fn files_that_the_readme_links_are_there() {
     for link in read("README.md").split("](").skip(1) {
-        let target = link.split(')').next().unwrap();
+        let target = link.split([')', '#']).next().unwrap();
         if !target.starts_with("http") {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(target);
             assert!(path.exists(), "{target}");
