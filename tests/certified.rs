@@ -8,10 +8,10 @@ mod common;
 use std::path::{Path, PathBuf};
 
 use common::{Random, ball, random_rays, random_scene};
-use envers::geometry::{Hit, PrimitiveId, Ray};
+use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side};
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::load;
-use envers::scene::{Instance, Material, Mesh, Scene, Sphere};
+use envers::scene::{Instance, Material, Mesh, Plane, Scene, Sphere};
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
 
@@ -233,6 +233,55 @@ fn all_agree_on_directions_of_any_length() {
         .map(|ray| Ray::new(ray.origin, ray.direction * r.range(-1015.0, 990.0).exp2()))
         .collect();
     let hits = all_agree("lengths", &scene, &rays, BUDGET);
+    assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+fn all_agree_on_directions_so_short_or_long_that_reciprocals_or_t_overflow() {
+    let scene = random_scene(5, DVec3::ZERO, 1.0);
+    let mut r = Random(7);
+    let rays: Vec<Ray> = random_rays(9, DVec3::ZERO, 1.0, 6000)
+        .into_iter()
+        .enumerate()
+        .map(|(i, ray)| {
+            let (low, high) = [(-1060.0, -1010.0), (990.0, 1015.0)][i % 2];
+            Ray::new(ray.origin, ray.direction * r.range(low, high).exp2())
+        })
+        .filter(|ray| ray.direction != DVec3::ZERO)
+        .collect();
+    let hits = all_agree("extreme lengths", &scene, &rays, BUDGET);
+    assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+fn all_agree_on_a_touching_sphere_that_a_ray_enters_from_just_outside() {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, material));
+    scene.spheres.push(Sphere::new(DVec3::Y, 1.0, material));
+    let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
+    let rays = [3e-16, 1e-15, 5e-15].map(|below| Ray {
+        from,
+        ..Ray::new(DVec3::new(0.0, -below, 0.0), DVec3::new(0.01, 1.0, 0.0))
+    });
+    assert_eq!(all_agree("touching", &scene, &rays, BUDGET), rays.len());
+    let met = closest(&Bvh::build(&scene, Precision::Certified), &rays);
+    assert!(met.iter().flatten().all(|hit| hit.t > 1.9), "{met:?}");
+}
+
+#[test]
+fn all_agree_on_instances_whose_own_space_is_beyond_what_embree_takes() {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    let mut mesh = ball(1);
+    mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| x * 1e20));
+    let mesh = scene.add_mesh(mesh);
+    for place in [DVec3::ZERO, DVec3::X * 3.0] {
+        let transform =
+            DAffine3::from_translation(place) * DAffine3::from_scale(DVec3::splat(1e-20));
+        scene.instances.push(Instance::new(mesh, transform, material));
+    }
+    let hits = all_agree("outsized", &scene, &at_triangles(&scene, 4, 3000), BUDGET);
     assert!(hits > 1000, "{hits}");
 }
 

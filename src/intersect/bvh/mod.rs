@@ -11,9 +11,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
+use crate::intersect::brute::is_extreme;
 use crate::intersect::entry::Entry;
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{Coherence, Intersector, Precision};
+use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
 use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
 use tree::{Line, Tree};
@@ -52,6 +53,11 @@ impl<'s> Bvh<'s> {
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
     /// keeps, until it returns true.
     fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
+        if is_extreme(ray.origin, ray.direction) {
+            let brute = BruteForce::new(self.primitives.scene, self.primitives.precision);
+            brute.all(ray).any(|hit| visit(hit, limit));
+            return;
+        }
         let inverse = sphere::inverse_length_squared(ray.direction);
         let line = Line::new(ray.origin, ray.direction, 0.0);
         let done = self.spheres.walk(&line, limit, |index, limit| {

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Side, sphere, triangle};
+use crate::geometry::{Geometry, Hit, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::layout::Context;
 
 /// Distances and weights side by side, and which of them are proven.
@@ -58,10 +58,10 @@ impl<const W: usize> Context<'_, W> {
                 center[axis][i] = s.center[axis];
             }
             radius[i] = s.radius;
-            // A ray that goes into the sphere that it left meets its far root: few, exactly.
-            let inward =
-                self.leaves && self.rays[i].from.is_some_and(|from| from.side == Side::Back);
-            here[i] = !inward;
+            // A ray that goes into a sphere that it starts on meets its far root. Those were settled
+            // exactly; they are few.
+            let settled = self.leaves && self.nearest.error[i] == 0.0;
+            here[i] = !settled;
         }
         for i in 0..W {
             let (origin, direction) = self.exact.line(i);

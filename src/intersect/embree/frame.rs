@@ -21,6 +21,7 @@
 use glam::DVec3;
 
 use crate::geometry::{Bounds, Ray};
+use crate::intersect::brute::is_extreme;
 
 /// How far from the scene's centre, in units of L, a ray may start for f64 to move it to the box:
 /// the three roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to spare.
@@ -134,7 +135,7 @@ pub struct Lanes<const W: usize> {
     /// Those that come into the box at all.
     pub inside: [bool; W],
     /// Those that no f32 ray can stand for: they start too far away, or their direction is so
-    /// short that f64 has lost its digits. They count as not inside.
+    /// short or long that f64 loses its way. They count as not inside.
     pub astray: [bool; W],
     /// Whether there is one of these.
     pub any_astray: bool,
@@ -200,7 +201,7 @@ impl<const W: usize> Exact<W> {
             let (o, d) = self.line(i);
             let p = (o - frame.center).abs();
             far |= p.max_element() > REACH * frame.extent;
-            far |= d.abs().max_element() < f64::MIN_POSITIVE;
+            far |= is_extreme(o, d);
         }
         self.clip.start = [0.0; W];
         if far {
@@ -208,7 +209,7 @@ impl<const W: usize> Exact<W> {
                 let (o, d) = self.line(i);
                 let distance = (o - frame.center).abs().max_element();
                 let lost = distance > FAR * frame.extent;
-                lanes.astray[i] = lost | (d.abs().max_element() < f64::MIN_POSITIVE);
+                lanes.astray[i] = lost | is_extreme(o, d);
                 lanes.any_astray |= lanes.astray[i];
                 let (start, enters) = self.enter(i, frame);
                 self.clip.start[i] = start;

@@ -8,6 +8,7 @@ use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{QUALITY, attach, certified, user, uses};
+use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Mesh, Scene};
 use embree4_sys::RTCSceneFlags;
 
@@ -25,8 +26,8 @@ pub struct Meshes<'s> {
 const SMALL: f64 = 1e-4;
 
 impl<'s> Meshes<'s> {
-    /// Attaches every instance: a mesh that stands once, and is not small, in world space, the
-    /// others as placements.
+    /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
+    /// one that is outsized in its own; the others as placements.
     pub fn attach(
         &mut self,
         scene: &'s Scene,
@@ -48,7 +49,9 @@ impl<'s> Meshes<'s> {
             let bounds = local.transformed(&instance.transform);
             // A baked vertex may round to just outside the transformed box.
             let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
-            if uses[at] == 1 && !is_small(mesh, &bounds, &frame) {
+            let once = uses[at] == 1 && !is_small(mesh, &bounds, &frame);
+            // f32 vertices reach 3e38, but Embree passes over boxes beyond 1.8e18 without an error.
+            if once || local.max_abs() > MAX_COORDINATE {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
                 attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;

@@ -101,7 +101,9 @@ impl Placement {
         for i in 0..W {
             let (o, d) = world.line(i);
             exact.set_line(i, self.entry.line(o, d));
-            lost[i] = self.entry.error(o) > self.own.spare();
+            // Negated for what is not a number.
+            let placed = self.entry.error(o) <= self.own.spare();
+            lost[i] = !placed;
         }
         let mut ray = RayHit::<W>::new();
         let mut tfar = [0.0; W];

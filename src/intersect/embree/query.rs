@@ -189,13 +189,11 @@ fn closest<const W: usize>(
                     }
                 }
             }
-            Precision::Certified => {
-                context.finish(hits);
-                if entry.any_astray {
-                    for i in (0..rays.len()).filter(|&i| entry.astray[i]) {
-                        hits[i] = target.brute_force().first(&rays[i]);
-                    }
-                }
+            Precision::Certified => context.finish(hits),
+        }
+        if entry.any_astray {
+            for i in (0..rays.len()).filter(|&i| entry.astray[i]) {
+                hits[i] = target.brute_force().first(&rays[i]);
             }
         }
         if !target.scene.planes.is_empty() {
@@ -253,7 +251,7 @@ fn occluded<const W: usize>(
         }
         for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
             let mut found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
-            if entry.any_astray && entry.astray[i] && target.precision == Precision::Certified {
+            if entry.any_astray && entry.astray[i] {
                 found = target.brute_force().blocks(ray);
             }
             *blocked = found || target.primitives().planes_occlude(ray);
