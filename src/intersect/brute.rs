@@ -16,7 +16,7 @@ use crate::scene::Scene;
 pub(in crate::intersect) fn is_extreme(origin: DVec3, direction: DVec3) -> bool {
     const GREATEST: f64 = f64::from_bits((1023 + 300) << 52);
     let (way, place) = (direction.abs().max_element(), origin.abs().max_element());
-    !((way >= 1.0 / GREATEST) & (way <= GREATEST) & (place <= GREATEST))
+    !((1.0 / GREATEST..=GREATEST).contains(&way) && place <= GREATEST)
 }
 
 /// The intersector that tries everything; for tests.

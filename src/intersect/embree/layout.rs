@@ -6,7 +6,7 @@
 //! `canary` proves at start that the library agrees.
 
 use crate::geometry::{Departure, Geometry, Ray, Side};
-use crate::intersect::embree::frame::{Clip, Exact};
+use crate::intersect::embree::exact::{Clip, Exact};
 use crate::intersect::embree::nearest::Nearest;
 use crate::intersect::leaving::greatest_slack;
 use crate::scene::Scene;

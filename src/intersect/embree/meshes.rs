@@ -85,5 +85,5 @@ impl<'s> Meshes<'s> {
 /// Whether a mesh that takes up `bounds` in the world has small triangles for the scene.
 fn is_small(mesh: &Mesh, bounds: &Bounds, frame: &Frame) -> bool {
     let across = (mesh.triangles.len() as f64).sqrt();
-    bounds.diagonal() < SMALL * frame.extent() * across && bounds.diagonal() < 0.25 * frame.extent()
+    bounds.diagonal() < SMALL * frame.extent * across && bounds.diagonal() < 0.25 * frame.extent
 }

@@ -9,7 +9,8 @@
 use embree4_sys as sys;
 
 use crate::geometry::Bounds;
-use crate::intersect::embree::frame::{Exact, Frame};
+use crate::intersect::embree::exact::Exact;
+use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit, Valid};
 use crate::intersect::embree::raw::InnerScene;
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};

@@ -4,8 +4,9 @@
 use embree4_sys as sys;
 
 use crate::geometry::{Hit, PrimitiveId, Ray};
+use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::filter::filter;
-use crate::intersect::embree::frame::{Exact, Frame};
+use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
 use crate::intersect::embree::refine::refine;
 use crate::intersect::embree::width::Width;

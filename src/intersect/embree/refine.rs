@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::{Hit, PrimitiveId, triangle};
-use crate::intersect::embree::frame::Exact;
+use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::layout::{INVALID, RayHit};
 use crate::scene::Scene;
 

@@ -1,0 +1,103 @@
+use super::*;
+use crate::geometry::{Departure, PrimitiveId, Side};
+use crate::intersect::Bvh;
+use crate::scene::{Instance, MaterialId, Mesh, Sphere};
+use glam::{DAffine3, DVec3};
+
+/// Numbers in [-1, 1) from a linear congruence (Knuth's MMIX constants).
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// Spheres, a mesh that stands once and one that stands twice.
+fn scene(state: &mut u64) -> Scene {
+    let mut scene = Scene::default();
+    let mut point = || DVec3::new(random(state), random(state), random(state));
+    for _ in 0..40 {
+        scene.spheres.push(Sphere::new(point() * 2.0, 0.15, MaterialId(0)));
+    }
+    for uses in [1, 2] {
+        let positions: Vec<[f32; 3]> = (0..60).map(|_| point().as_vec3().to_array()).collect();
+        let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
+        for _ in 0..uses {
+            let transform = DAffine3::from_translation(point());
+            scene.instances.push(Instance::new(mesh, transform, MaterialId(0)));
+        }
+    }
+    scene
+}
+
+/// Rays of which a third leaves a sphere and a third a triangle; not a multiple of any width.
+fn rays(state: &mut u64) -> Vec<Ray> {
+    (0..4003)
+        .map(|i| {
+            let mut point = || DVec3::new(random(state), random(state), random(state)) * 3.0;
+            let (origin, target) = (point(), point());
+            let id = match i % 3 {
+                0 => None,
+                1 => Some(PrimitiveId::sphere(i % 40)),
+                _ => Some(PrimitiveId::triangle(0, i % 20, 0)),
+            };
+            let side = if i % 2 == 0 { Side::Front } else { Side::Back };
+            let from = id.map(|id| Departure { id, side });
+            Ray {
+                from,
+                tmax: if i % 5 == 0 { 1.0 } else { f64::INFINITY },
+                ..Ray::new(origin, target - origin)
+            }
+        })
+        .collect()
+}
+
+fn check(width: Width) {
+    compare(width, Precision::Fast);
+    compare(width, Precision::Certified);
+}
+
+fn compare(width: Width, precision: Precision) {
+    let mut state = 7;
+    let scene = scene(&mut state);
+    let rays = rays(&mut state);
+    let embree = Embree::with_width(&scene, precision, 1, Some(width)).unwrap();
+    let judge = Bvh::build(&scene, precision);
+    let closest = |i: &dyn Intersector| {
+        let mut hits = vec![None; rays.len()];
+        i.closest(&rays, Coherence::Incoherent, &mut hits);
+        hits
+    };
+    assert_eq!(closest(&embree), closest(&judge));
+    let occluded = |i: &dyn Intersector| {
+        let mut blocked = vec![false; rays.len()];
+        i.occluded(&rays, Coherence::Coherent, &mut blocked);
+        blocked
+    };
+    assert_eq!(occluded(&embree), occluded(&judge));
+}
+
+#[test]
+fn single_rays_equal_the_bvh() {
+    check(Width::One);
+}
+
+#[test]
+fn packets_of_four_equal_the_bvh() {
+    check(Width::Four);
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn packets_of_eight_equal_the_bvh() {
+    if is_x86_feature_detected!("avx2") {
+        check(Width::Eight);
+    }
+}
+
+#[test]
+#[cfg(target_arch = "x86_64")]
+fn packets_of_sixteen_equal_the_bvh() {
+    if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
+        check(Width::Sixteen);
+    }
+}
