@@ -240,7 +240,7 @@ fn all_agree_on_directions_of_any_length() {
 fn all_agree_on_directions_so_short_or_long_that_reciprocals_or_t_overflow() {
     let scene = random_scene(5, DVec3::ZERO, 1.0);
     let mut r = Random(7);
-    let rays: Vec<Ray> = random_rays(9, DVec3::ZERO, 1.0, 6000)
+    let rays: Vec<Ray> = random_rays(9, DVec3::ZERO, 1.0, 900)
         .into_iter()
         .enumerate()
         .map(|(i, ray)| {
@@ -250,7 +250,7 @@ fn all_agree_on_directions_so_short_or_long_that_reciprocals_or_t_overflow() {
         .filter(|ray| ray.direction != DVec3::ZERO)
         .collect();
     let hits = all_agree("extreme lengths", &scene, &rays, BUDGET);
-    assert!(hits > 1000, "{hits}");
+    assert!(hits > 300, "{hits}");
 }
 
 #[test]
@@ -258,11 +258,13 @@ fn all_agree_on_a_touching_sphere_that_a_ray_enters_from_just_outside() {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
     scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, material));
-    scene.spheres.push(Sphere::new(DVec3::Y, 1.0, material));
+    // So far out that what counts as rounding, 7e-10, is much to a ball of radius 1.
+    let contact = DVec3::X * 1e5;
+    scene.spheres.push(Sphere::new(contact + DVec3::Y, 1.0, material));
     let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
-    let rays = [3e-16, 1e-15, 5e-15].map(|below| Ray {
+    let rays = [3e-11, 1e-10, 5e-10].map(|below| Ray {
         from,
-        ..Ray::new(DVec3::new(0.0, -below, 0.0), DVec3::new(0.01, 1.0, 0.0))
+        ..Ray::new(contact - DVec3::Y * below, DVec3::new(0.01, 1.0, 0.0))
     });
     assert_eq!(all_agree("touching", &scene, &rays, BUDGET), rays.len());
     let met = closest(&Bvh::build(&scene, Precision::Certified), &rays);

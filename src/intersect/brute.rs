@@ -10,13 +10,13 @@ use crate::scene::Scene;
 /// Whether a line is so far out of proportion that its way to a box may overflow or underflow f64,
 /// in the world or in an instance's space; such a ray tries every primitive instead.
 ///
-/// Within 2^±300 for directions and origins t stays normal for any coordinate from 1e-217 to
-/// 1e217, and 1e53 is the most by which a scene's bounds let a transform stretch f32 vertices.
+/// Directions within 2^±500 and origins within 2^500 leave t normal for coordinates from 1e-157 on,
+/// and room for any transform that takes f32 vertices into the bounds of a scene.
 #[inline(always)]
 pub(in crate::intersect) fn is_extreme(origin: DVec3, direction: DVec3) -> bool {
-    const GREATEST: f64 = f64::from_bits((1023 + 300) << 52);
+    const GREATEST: f64 = f64::from_bits((1023 + 500) << 52);
     let (way, place) = (direction.abs().max_element(), origin.abs().max_element());
-    !((1.0 / GREATEST..=GREATEST).contains(&way) && place <= GREATEST)
+    !((1.0 / GREATEST..=GREATEST).contains(&way) & (place <= GREATEST))
 }
 
 /// The intersector that tries everything; for tests.

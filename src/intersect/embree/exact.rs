@@ -127,10 +127,11 @@ impl<const W: usize> Exact<W> {
             for i in 0..W {
                 let (o, d) = self.line(i);
                 let distance = (o - frame.center).abs().max_element();
-                let lost = distance > FAR * frame.extent;
+                let (start, enters) = self.enter(i, frame);
+                // Where one that starts far away passes the box is certain even so.
+                let lost = (distance > FAR * frame.extent) & enters;
                 lanes.astray[i] = lost | is_extreme(o, d);
                 lanes.any_astray |= lanes.astray[i];
-                let (start, enters) = self.enter(i, frame);
                 self.clip.start[i] = start;
                 lanes.inside[i] = enters & !lanes.astray[i];
             }
