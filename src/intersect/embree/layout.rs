@@ -8,11 +8,9 @@
 use crate::geometry::{Departure, Geometry, Ray, Side};
 use crate::intersect::embree::exact::{Clip, Exact};
 use crate::intersect::embree::nearest::Nearest;
+pub use crate::intersect::embree::raw::INVALID;
 use crate::intersect::leaving::greatest_slack;
 use crate::scene::Scene;
-
-/// What Embree writes where there is no geometry or no instance.
-pub const INVALID: u32 = u32::MAX;
 
 /// A packet of `W` rays and their hits: `RTCRayHit`, `RTCRayHit4`, `8` and `16` in one.
 #[repr(C, align(64))]

@@ -1,7 +1,7 @@
 //! The nearest hit of each ray of a packet, while Embree is still looking.
 
 use crate::geometry::{Estimate, Geometry, PrimitiveId};
-use crate::intersect::embree::layout::INVALID;
+use crate::intersect::embree::raw::INVALID;
 use crate::scene::Scene;
 
 /// The nearest hit of each ray so far.

@@ -6,6 +6,9 @@ use embree4_sys as sys;
 
 use crate::error::{Error, Result};
 
+/// What Embree writes where there is no geometry or no instance.
+pub const INVALID: u32 = u32::MAX;
+
 /// The handle of a scene of embree4-rs, which keeps it private.
 ///
 /// This goes when the crate offers its handles itself.
