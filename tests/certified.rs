@@ -271,8 +271,8 @@ fn all_agree_on_a_touching_sphere_that_a_ray_enters_from_just_outside() {
     assert!(met.iter().flatten().all(|hit| hit.t > 1.9), "{met:?}");
 }
 
-#[test]
-fn all_agree_on_instances_whose_own_space_is_beyond_what_embree_takes() {
+/// Two balls whose mesh has vertices of 1e20, shrunk to the size of 1.
+fn outsized() -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
     let mut mesh = ball(1);
@@ -283,8 +283,24 @@ fn all_agree_on_instances_whose_own_space_is_beyond_what_embree_takes() {
             DAffine3::from_translation(place) * DAffine3::from_scale(DVec3::splat(1e-20));
         scene.instances.push(Instance::new(mesh, transform, material));
     }
+    scene
+}
+
+#[test]
+fn all_agree_on_instances_whose_own_space_is_beyond_what_embree_takes() {
+    let scene = outsized();
     let hits = all_agree("outsized", &scene, &at_triangles(&scene, 4, 3000), BUDGET);
     assert!(hits > 1000, "{hits}");
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn fast_sees_instances_whose_own_space_is_beyond_what_embree_takes() {
+    let scene = outsized();
+    let embree = envers::intersect::Embree::build(&scene, Precision::Fast, 0).unwrap();
+    let rays = [0.0, 3.0].map(|x| Ray::new(DVec3::new(x + 0.1, 0.2, 5.0), DVec3::NEG_Z));
+    let instances = closest(&embree, &rays).into_iter().map(|hit| hit.map(|h| h.id.instance));
+    assert_eq!(instances.collect::<Vec<_>>(), [Some(0), Some(1)]);
 }
 
 #[test]

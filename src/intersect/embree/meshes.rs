@@ -7,8 +7,7 @@ use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::width::Width;
-use crate::intersect::embree::{QUALITY, attach, certified, user, uses};
-use crate::scene::check::MAX_COORDINATE;
+use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
 use crate::scene::{Mesh, Scene};
 use embree4_sys::RTCSceneFlags;
 
@@ -37,6 +36,7 @@ impl<'s> Meshes<'s> {
         width: Width,
     ) -> Result<()> {
         let uses = uses(scene);
+        let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
         let mut own: Vec<Option<(usize, Frame)>> = vec![None; scene.meshes.len()];
         let mut placed = Box::new(Placements::new(frame));
         for (index, instance) in (0..).zip(&scene.instances) {
@@ -45,13 +45,12 @@ impl<'s> Meshes<'s> {
             if mesh.triangles.is_empty() {
                 continue;
             }
-            let local = mesh.bounds();
+            let local = bounds[at];
             let bounds = local.transformed(&instance.transform);
             // A baked vertex may round to just outside the transformed box.
             let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
             let once = uses[at] == 1 && !is_small(mesh, &bounds, &frame);
-            // f32 vertices reach 3e38, but Embree passes over boxes beyond 1.8e18 without an error.
-            if once || local.max_abs() > MAX_COORDINATE {
+            if once || is_outsized(&local) {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
                 attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;

@@ -44,9 +44,10 @@ use embree4_rs::{CommittedScene, Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Bounds, Hit, Ray};
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
+use crate::scene::check::MAX_COORDINATE;
 use canary::failed;
 use frame::Frame;
 use meshes::Meshes;
@@ -177,6 +178,12 @@ fn flags() -> RTCSceneFlags {
 
 fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<()> {
     top.attach_geometry(geometry).map(|_| ()).map_err(failed)
+}
+
+/// Whether a mesh cannot be traced in its own space: f32 vertices reach 3e38, but Embree passes
+/// over boxes beyond 1.8e18 without an error.
+fn is_outsized(mesh: &Bounds) -> bool {
+    mesh.max_abs() > MAX_COORDINATE
 }
 
 /// How often each mesh stands in the scene.

@@ -5,13 +5,14 @@ use embree4_rs::geometry::TriangleMeshGeometry;
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
+use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
-use crate::intersect::embree::{QUALITY, attach, flags, uses};
+use crate::intersect::embree::{QUALITY, attach, flags, is_outsized, uses};
 use crate::scene::{Instance, Mesh, Scene};
 
 /// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
-/// stands several times through Embree's instances. Says which instance each geometry is.
+/// stands several times through Embree's instances, unless it is outsized in its own space. Says which instance each geometry is.
 pub fn attach_meshes(
     scene: &Scene,
     top: &embree4_rs::Scene,
@@ -19,6 +20,7 @@ pub fn attach_meshes(
     frame: &Frame,
 ) -> Result<Vec<u32>> {
     let uses = uses(scene);
+    let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
     // An instanced mesh is recentred too: a model may stand far from its own origin.
     let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();
@@ -28,12 +30,12 @@ pub fn attach_meshes(
         if mesh.triangles.is_empty() {
             continue;
         }
-        if uses[at] == 1 {
+        if uses[at] == 1 || is_outsized(&bounds[at]) {
             let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
             attach(top, &geometry)?;
         } else {
             if inner[at].is_none() {
-                let center = mesh.bounds().center();
+                let center = bounds[at].center();
                 let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
                 let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
                 inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
