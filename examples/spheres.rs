@@ -7,7 +7,7 @@ use std::path::Path;
 use envers::error::Result;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Checker, Falloff, Lens, Light, LightKind, Material, Plane, Scene, Sphere,
+    Camera, Checker, Falloff, Lens, Light, LightKind, Material, Plane, Scene, Shadow, Sphere,
 };
 use envers::write::{Settings, write};
 use glam::{DVec3, Vec3};
@@ -39,13 +39,13 @@ fn main() -> Result<()> {
             range: f64::INFINITY,
         },
         intensity: Vec3::ONE,
-        casts_shadow: true,
+        shadow: Shadow::default(),
     });
     scene.lights.push(Light {
         name: "sky".to_owned(),
         kind: LightKind::Ambient,
         intensity: Vec3::new(0.2, 0.22, 0.25),
-        casts_shadow: false,
+        shadow: Shadow::None,
     });
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
     scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(0.6))?);

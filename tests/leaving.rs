@@ -5,7 +5,7 @@ use envers::intersect::{Backend, Precision};
 use envers::render::{Options, Rendering, render};
 use envers::scene::{
     Camera, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Plane, Scene,
-    Sphere,
+    Shadow, Sphere,
 };
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
@@ -31,7 +31,8 @@ fn sun(scene: &mut Scene, direction: DVec3) {
 }
 
 fn light(scene: &mut Scene, kind: LightKind) {
-    let light = Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true };
+    let light =
+        Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() };
     scene.lights.push(light);
 }
 
@@ -90,7 +91,7 @@ fn each(scene: &Scene, mut check: impl FnMut(Rendering, &str)) {
 #[track_caller]
 fn assert_lit_as(scene: &Scene, alone: &Scene) {
     let mut open = alone.clone();
-    open.lights.iter_mut().for_each(|l| l.casts_shadow = false);
+    open.lights.iter_mut().for_each(|l| l.shadow = Shadow::None);
     assert_alike(scene, &open);
 }
 

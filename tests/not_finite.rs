@@ -4,7 +4,8 @@ use envers::integrator::NotFinite;
 use envers::intersect::Backend;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Scene, Sphere,
+    Camera, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Scene, Shadow,
+    Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -27,7 +28,12 @@ fn wall(material: Material) -> Scene {
 fn lamp(distance: f64, intensity: f32) -> Light {
     let (position, range) = (DVec3::Z * distance, f64::INFINITY);
     let kind = LightKind::Point { position, falloff: Falloff::InverseSquare, range };
-    Light { name: String::new(), kind, intensity: Vec3::splat(intensity), casts_shadow: true }
+    Light {
+        name: String::new(),
+        kind,
+        intensity: Vec3::splat(intensity),
+        shadow: Shadow::default(),
+    }
 }
 
 fn matt(diffuse: f32) -> Material {

@@ -9,7 +9,7 @@ use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side, plane, sphere, tr
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::measure::oracle::{self, Oracle};
 use envers::render::{Options, with_intersector};
-use envers::scene::{Camera, Falloff, Lens, Light, LightKind, Scene};
+use envers::scene::{Camera, Falloff, Lens, Light, LightKind, Scene, Shadow};
 use envers::write::Settings;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -253,7 +253,12 @@ fn picture(seed: u64) -> Scene {
         },
     ] {
         let intensity = glam::Vec3::ONE;
-        scene.lights.push(Light { name: String::new(), kind, intensity, casts_shadow: true });
+        scene.lights.push(Light {
+            name: String::new(),
+            kind,
+            intensity,
+            shadow: Shadow::default(),
+        });
     }
     scene
 }

@@ -4,7 +4,7 @@ use envers::integrator::Counts;
 use envers::render::{Options, render};
 use envers::scene::{
     Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Plane,
-    Scene, Sphere,
+    Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -19,7 +19,7 @@ fn scene(material: Material) -> Scene {
 }
 
 fn light(kind: LightKind) -> Light {
-    Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true }
+    Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() }
 }
 
 fn point(position: DVec3, falloff: Falloff) -> Light {
@@ -219,7 +219,7 @@ fn light_without_shadow_shines_through_and_traces_no_shadow_ray() {
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
     scene.spheres.push(Sphere::new(DVec3::Z * 7.0, 0.5, MaterialId(0)));
-    scene.lights.push(Light { casts_shadow: false, ..point(DVec3::Z * 9.0, Falloff::None) });
+    scene.lights.push(Light { shadow: Shadow::None, ..point(DVec3::Z * 9.0, Falloff::None) });
     let (pixel, counts) = rendered(&scene);
     assert_near(pixel, 0.5);
     assert_eq!(counts.rays.shadow, 0);

@@ -1,7 +1,7 @@
 //! The two scenes of the benches, made by formula, and the rays of their pictures.
 
 use envers::geometry::Ray;
-use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind};
+use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind, Shadow};
 use envers::scene::{Material, Mesh, Scene, Sphere};
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -67,7 +67,7 @@ fn finish(mut scene: Scene, eye: DVec3) -> Scene {
         name: String::new(),
         kind: LightKind::Point { position: LIGHT, falloff: Falloff::None, range: f64::INFINITY },
         intensity: Vec3::ONE,
-        casts_shadow: true,
+        shadow: Shadow::default(),
     });
     scene.check().expect("the benches' scenes are valid");
     scene

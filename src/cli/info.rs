@@ -72,7 +72,7 @@ fn skipped(scene: &Scene) -> Vec<&'static str> {
     let mut uses = vec![0u32; scene.meshes.len()];
     scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
     let textured = scene.materials.iter().any(|m| m.is_textured());
-    let shadows = scene.lights.iter().any(|l| l.casts_shadow && l.kind != LightKind::Ambient);
+    let shadows = scene.lights.iter().any(|l| l.casts_shadow());
     [
         (scene.spheres.is_empty(), "user geometry: there are no spheres"),
         (uses.iter().all(|&n| n <= 1), "instance level: no mesh stands twice"),

@@ -179,7 +179,7 @@ impl<'a> Integrator<'a> {
                 if radiance == Vec3::ZERO {
                     continue;
                 }
-                if light.casts_shadow {
+                if light.casts_shadow() {
                     shadow.push(surface.shadow_ray(&arrival));
                     waiting.push((*i, radiance));
                 } else {

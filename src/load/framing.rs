@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::geometry::Bounds;
-use crate::scene::{Camera, Lens, Light, LightKind, Scene};
+use crate::scene::{Camera, Lens, Light, LightKind, Scene, Shadow};
 
 /// Half the vertical field of view of the framing camera, in radians: 35° in all.
 const HALF_FOV: f64 = 17.5 * std::f64::consts::PI / 180.0;
@@ -43,20 +43,20 @@ pub fn frame(scene: &mut Scene) {
 
 /// A key light from the upper left, a weaker fill from the right, and a little from everywhere.
 fn default_lights() -> Vec<Light> {
-    let sun = |name: &str, direction: DVec3, intensity: f32, casts_shadow: bool| Light {
+    let sun = |name: &str, direction: DVec3, intensity: f32, shadow: Shadow| Light {
         name: name.to_owned(),
         kind: LightKind::Directional { direction: direction.normalize() },
         intensity: Vec3::splat(intensity),
-        casts_shadow,
+        shadow,
     };
     vec![
-        sun("key", DVec3::new(0.5, -1.0, -0.6), 0.8, true),
-        sun("fill", DVec3::new(-1.0, -0.3, -0.4), 0.25, false),
+        sun("key", DVec3::new(0.5, -1.0, -0.6), 0.8, Shadow::Tinted),
+        sun("fill", DVec3::new(-1.0, -0.3, -0.4), 0.25, Shadow::None),
         Light {
             name: "ambient".to_owned(),
             kind: LightKind::Ambient,
             intensity: Vec3::splat(0.15),
-            casts_shadow: false,
+            shadow: Shadow::None,
         },
     ]
 }

@@ -129,7 +129,7 @@ fn place_camera(camera: &Camera, transform: &DAffine3) -> Option<Camera> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, Image, Material, Mesh, Texture, Transfer};
+    use crate::scene::{Falloff, Image, Material, Mesh, Shadow, Texture, Transfer};
     use glam::{DMat3, Vec3};
     use std::sync::Arc;
 
@@ -162,7 +162,7 @@ mod tests {
                 outer_angle: 0.2,
             },
             intensity: Vec3::ONE,
-            casts_shadow: true,
+            shadow: Shadow::default(),
         });
         let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Lens::OrthoHeight(2.0));
         model.cameras.push(camera.unwrap());

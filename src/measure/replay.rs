@@ -10,8 +10,8 @@ use crate::geometry::{Geometry, Hit, Ray};
 use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use crate::measure::oracle::Oracle;
 use crate::render;
+use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{LightKind, Scene};
 use crate::surface::Surface;
 
 /// What everyone says of a ray.
@@ -121,7 +121,7 @@ fn ask(scene: &Scene, ray: &Ray, asked: &[(&'static str, &dyn Intersector)]) -> 
     let surface = reference.map(|hit| Surface::new(scene, ray, &hit));
     let shadows: Vec<(usize, Ray)> = (0..)
         .zip(&scene.lights)
-        .filter(|(_, light)| light.casts_shadow && light.kind != LightKind::Ambient)
+        .filter(|(_, light)| light.casts_shadow())
         .filter_map(|(i, light)| {
             let surface = surface.as_ref()?;
             Some((i, surface.shadow_ray(&light.arrival(surface.position)?)))
@@ -226,7 +226,7 @@ pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, Light, Material, Plane, Sphere};
+    use crate::scene::{Falloff, Light, LightKind, Material, Plane, Shadow, Sphere};
     use glam::Vec3;
     use proptest::prelude::*;
 
@@ -240,7 +240,8 @@ mod tests {
             falloff: Falloff::None,
             range: f64::INFINITY,
         };
-        let light = Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true };
+        let light =
+            Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() };
         scene.lights.push(light);
         scene
     }

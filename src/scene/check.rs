@@ -9,9 +9,14 @@ use crate::scene::{Camera, Lens, LightKind, Mesh, Scene, Texture};
 pub const MAX_PIXELS: u64 = 1 << 28;
 /// The most samples a pixel can have.
 pub const MAX_SPP: u32 = 1 << 16;
+/// The most surfaces that light can be followed through.
+pub const MAX_DEPTH: u32 = 1 << 16;
 /// The greatest absolute coordinate in world space; Embree ignores what lies beyond 1.8e18, and
 /// f32 products of coordinates must stay finite.
 pub const MAX_COORDINATE: f64 = 1e15;
+
+/// By how much shares that add up to 1 may exceed it: 0.7 + 0.3 does in f32.
+const SLACK: f32 = 1e-6;
 
 impl Scene {
     /// Checks what the rest of the program takes for granted: numbers are finite and in range,
@@ -23,6 +28,12 @@ impl Scene {
         check_size(self.film.size)?;
         check_spp(self.film.spp)?;
         color("the background", self.film.background)?;
+        require(self.film.max_depth <= MAX_DEPTH, || {
+            format!("max_depth must be at most {MAX_DEPTH}, found {}", self.film.max_depth)
+        })?;
+        require((0.0..=1.0).contains(&self.film.cutoff), || {
+            format!("the cutoff must be from 0 to 1, found {}", self.film.cutoff)
+        })?;
         for (i, material) in self.materials.iter().enumerate() {
             let what = format!("material {i} (`{}`)", material.name);
             color(&format!("{what}: diffuse"), material.diffuse)?;
@@ -31,6 +42,15 @@ impl Scene {
             require(material.shininess > 0.0 && material.shininess.is_finite(), || {
                 format!("{what}: shininess must be above 0, found {}", material.shininess)
             })?;
+            color(&format!("{what}: reflect"), material.reflect)?;
+            color(&format!("{what}: transmit"), material.transmit)?;
+            require((material.reflect + material.transmit).max_element() <= 1.0 + SLACK, || {
+                format!("{what}: reflect and transmit are more than 1 together")
+            })?;
+            require((0.01..=100.0).contains(&material.ior), || {
+                format!("{what}: ior must be from 0.01 to 100, found {}", material.ior)
+            })?;
+            color(&format!("{what}: absorption"), material.absorption)?;
             for map in [material.diffuse_map, material.emission_map].into_iter().flatten() {
                 index(&what, "texture", map.0, self.textures.len())?;
             }

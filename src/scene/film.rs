@@ -71,6 +71,11 @@ pub struct FilmSettings {
     pub background: Vec3,
     /// Where in the pixel the samples are centred.
     pub sample_position: SamplePosition,
+    /// How often light is followed off mirrors and through surfaces; 0 shows neither.
+    pub max_depth: u32,
+    /// Rays with no greater share of their pixel than this are not followed; in \[0, 1\]. At 0
+    /// only those are left out that can add nothing.
+    pub cutoff: f64,
 }
 
 impl Default for FilmSettings {
@@ -81,6 +86,8 @@ impl Default for FilmSettings {
             transfer: Transfer::Srgb,
             background: Vec3::ZERO,
             sample_position: SamplePosition::Center,
+            max_depth: 8,
+            cutoff: 0.0,
         }
     }
 }

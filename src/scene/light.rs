@@ -51,6 +51,19 @@ pub enum LightKind {
     },
 }
 
+/// What keeps a light from what lies behind it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shadow {
+    /// Nothing: every point that faces the light is lit.
+    None,
+    /// What stands in the way; glass lets through what its colour leaves. The light goes straight
+    /// on through it, since a path that bends would have to be searched for.
+    #[default]
+    Tinted,
+    /// What stands in the way, glass like anything else.
+    Opaque,
+}
+
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
@@ -61,8 +74,8 @@ pub struct Light {
     /// Colour times intensity, linear Rec. 709: what a white diffuse surface that faces the light
     /// reflects (at distance 1 with `inverse_square`).
     pub intensity: Vec3,
-    /// Whether objects keep it from what lies behind them.
-    pub casts_shadow: bool,
+    /// What keeps it from what lies behind it.
+    pub shadow: Shadow,
 }
 
 /// The light that reaches a point.
@@ -78,6 +91,12 @@ pub struct Arrival {
 }
 
 impl Light {
+    /// Whether anything keeps it from what lies behind; ambient light comes from no direction in
+    /// which something could stand.
+    pub fn casts_shadow(&self) -> bool {
+        self.shadow != Shadow::None && self.kind != LightKind::Ambient
+    }
+
     /// What arrives at `point`, shadows aside; `None` when nothing does, and for ambient light,
     /// which comes from no direction.
     pub fn arrival(&self, point: DVec3) -> Option<Arrival> {
@@ -138,7 +157,7 @@ mod tests {
             name: String::new(),
             kind: LightKind::Point { position: DVec3::ZERO, falloff, range },
             intensity: Vec3::splat(8.0),
-            casts_shadow: true,
+            shadow: Shadow::default(),
         }
     }
 

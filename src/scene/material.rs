@@ -26,6 +26,20 @@ pub struct Material {
     pub emission: Vec3,
     /// Colours multiplied with `emission`, by the surface's texture coordinates.
     pub emission_map: Option<TextureId>,
+    /// Share of what is seen in it as in a mirror, linear Rec. 709.
+    pub reflect: Vec3,
+    /// Share of what is seen through it as through glass, linear Rec. 709; of it Fresnel's law
+    /// splits off what is reflected. `reflect` and `transmit` are at most 1 together.
+    pub transmit: Vec3,
+    /// The index of refraction of its inside, relative to empty space, in \[0.01, 100\].
+    pub ior: f64,
+    /// What is lost in its inside for each unit of length: light falls to e^(−absorption).
+    pub absorption: Vec3,
+    /// Whether it is a thin sheet with no inside: light goes straight through.
+    pub thin: bool,
+    /// Which of two things holds where both are: the one with the greater priority; of two equal
+    /// ones, the smaller thing.
+    pub priority: i32,
     /// Whether a sphere is lit on its inside too. Planes and meshes always are, on the side that
     /// the viewer sees.
     pub double_sided: bool,
@@ -41,12 +55,28 @@ impl Default for Material {
             shininess: 50.0,
             emission: Vec3::ZERO,
             emission_map: None,
+            reflect: Vec3::ZERO,
+            transmit: Vec3::ZERO,
+            ior: 1.5,
+            absorption: Vec3::ZERO,
+            thin: false,
+            priority: 0,
             double_sided: false,
         }
     }
 }
 
 impl Material {
+    /// Whether light goes on from it, off it or through it.
+    pub fn is_followed(&self) -> bool {
+        self.reflect != Vec3::ZERO || self.transmit != Vec3::ZERO
+    }
+
+    /// Whether what it covers is a body that light goes through, with an inside.
+    pub fn is_body(&self) -> bool {
+        self.transmit != Vec3::ZERO && !self.thin
+    }
+
     /// Whether shading it needs texture coordinates.
     pub fn is_textured(&self) -> bool {
         self.diffuse_map.is_some() || self.emission_map.is_some()

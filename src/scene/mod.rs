@@ -12,7 +12,7 @@ mod texture;
 
 pub use camera::{Camera, Lens, RayMaker};
 pub use film::{FilmSettings, SamplePosition, Transfer};
-pub use light::{Arrival, Falloff, Light, LightKind};
+pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};
 pub use mesh::{Mesh, MeshId};
 pub use object::{Checker, Instance, Plane, Sphere};

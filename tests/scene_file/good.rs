@@ -1,8 +1,8 @@
 //! What scene files mean.
 
 use envers::scene::{
-    Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition, Sphere,
-    Transfer,
+    Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition, Shadow,
+    Sphere, Transfer,
 };
 use glam::{DVec3, Vec3};
 
@@ -23,7 +23,7 @@ fn a_film_left_out_has_the_librarys_defaults() {
 fn every_key_of_the_film_is_read() {
     let film = seen(
         "[film]\nsize = [1000, 500]\nspp = 4\ntransfer = \"none\"\nbackground = \"#323232\"\n\
-         sample_position = \"corner\"\n",
+         sample_position = \"corner\"\nmax_depth = 16\ncutoff = 0.25\n",
     )
     .film;
     let expected = FilmSettings {
@@ -32,6 +32,8 @@ fn every_key_of_the_film_is_read() {
         transfer: Transfer::None,
         background: Vec3::splat(50.0 / 255.0),
         sample_position: SamplePosition::Corner,
+        max_depth: 16,
+        cutoff: 0.25,
     };
     assert_eq!(film, expected);
 }
@@ -115,7 +117,8 @@ fn several_cameras_keep_their_order_and_names() {
 fn every_key_of_a_material_is_read() {
     let scene = seen(
         "[[material]]\nname = \"m\"\ndiffuse = [0.1, 0.2, 0.3]\nspecular = 1\nshininess = 10\n\
-         emission = [0, 0, 4]\ndouble_sided = true\n",
+         emission = [0, 0, 4]\nreflect = 0.5\ntransmit = [0.25, 0.5, 0]\nior = 1.33\n\
+         absorption = [1, 2, 3]\nthin = true\npriority = -2\ndouble_sided = true\n",
     );
     let expected = Material {
         name: "m".to_owned(),
@@ -123,6 +126,12 @@ fn every_key_of_a_material_is_read() {
         specular: Vec3::ONE,
         shininess: 10.0,
         emission: Vec3::Z * 4.0,
+        reflect: Vec3::splat(0.5),
+        transmit: Vec3::new(0.25, 0.5, 0.0),
+        ior: 1.33,
+        absorption: Vec3::new(1.0, 2.0, 3.0),
+        thin: true,
+        priority: -2,
         double_sided: true,
         ..Material::default()
     };
@@ -193,7 +202,7 @@ fn a_point_light_is_read() {
             range: 7.0,
         },
         intensity: Vec3::new(4.0, 2.0, 0.0),
-        casts_shadow: false,
+        shadow: Shadow::None,
     };
     assert_eq!(seen(text).lights, [expected]);
 }
@@ -203,7 +212,7 @@ fn a_point_light_left_plain_is_the_tutorials() {
     let light = &seen("[[light]]\nkind = \"point\"\nposition = [0, 1, 0]\n").lights[0];
     let (position, falloff, range) = (DVec3::Y, Falloff::None, f64::INFINITY);
     assert_eq!(light.kind, LightKind::Point { position, falloff, range });
-    assert_eq!((light.intensity, light.casts_shadow), (Vec3::ONE, true));
+    assert_eq!((light.intensity, light.shadow), (Vec3::ONE, Shadow::Tinted));
 }
 
 #[test]
@@ -225,7 +234,7 @@ fn a_spot_light_is_read_with_its_angles_in_degrees() {
 #[test]
 fn an_ambient_light_is_read_and_casts_no_shadow() {
     let light = &seen("[[light]]\nkind = \"ambient\"\nintensity = 0.1\n").lights[0];
-    assert_eq!((light.kind, light.casts_shadow), (LightKind::Ambient, false));
+    assert_eq!((light.kind, light.shadow), (LightKind::Ambient, Shadow::None));
 }
 
 #[test]

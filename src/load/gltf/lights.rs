@@ -12,7 +12,7 @@ use super::buffers::get;
 use super::nodes::Placed;
 use crate::error::Result;
 use crate::load::tally::Tally;
-use crate::scene::{Camera, Falloff, Lens, Light, LightKind};
+use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Shadow};
 
 /// The light that a node carries.
 ///
@@ -40,7 +40,7 @@ pub fn light(root: &json::Root, placed: &Placed, tally: &mut Tally) -> Result<Op
         name: name(&source.name, placed),
         kind,
         intensity: Vec3::from(intensity.map(|x| if sound(x) { x } else { 0.0 })),
-        casts_shadow: true,
+        shadow: Shadow::default(),
     }))
 }
 

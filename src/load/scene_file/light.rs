@@ -7,7 +7,7 @@ use super::spanned::At;
 use super::suggest;
 use super::tables::{Kind, LightTable};
 use crate::error::Result;
-use crate::scene::{Light, LightKind, Transfer};
+use crate::scene::{Light, LightKind, Shadow, Transfer};
 
 /// The cone of a spot that says nothing of it, in degrees.
 const DEFAULT_INNER_ANGLE: f64 = 0.0;
@@ -55,10 +55,11 @@ pub fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Res
         }
     }
     let kind = kind(source, table)?;
-    let shadow = table.shadow.as_ref().is_none_or(|shadow| shadow.value);
-    // Ambient light comes from no direction in which something could stand.
-    let casts_shadow = shadow && kind != LightKind::Ambient;
-    Ok(Light { name: String::new(), kind, intensity, casts_shadow })
+    let shadow = match kind {
+        LightKind::Ambient => Shadow::None,
+        _ => table.shadow.as_ref().map(|shadow| shadow.value.0).unwrap_or_default(),
+    };
+    Ok(Light { name: String::new(), kind, intensity, shadow })
 }
 
 fn kind(source: &Source<'_>, table: &LightTable) -> Result<LightKind> {

@@ -5,7 +5,7 @@ use super::suggest;
 use crate::error::Error;
 
 /// Keys that a material will have one day.
-const NOT_YET: &[&str] = &["reflect", "transmit", "ior", "absorption", "normal_map"];
+const NOT_YET: &[&str] = &["normal_map"];
 
 /// Tables that are written under double brackets.
 const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];

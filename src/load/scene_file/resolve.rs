@@ -69,6 +69,8 @@ fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
         transfer,
         background: table.background.map_or(default.background, |c| c.linear(transfer)),
         sample_position: table.sample_position.unwrap_or(default.sample_position),
+        max_depth: table.max_depth.map_or(default.max_depth, |depth| depth.0),
+        cutoff: table.cutoff.map_or(default.cutoff, |share| share.0),
     })
 }
 
@@ -103,6 +105,12 @@ impl Resolver<'_> {
             shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
             emission: self.color(table.emission, default.emission),
             emission_map: self.picture(table.emission_map.as_ref())?,
+            reflect: self.color(table.reflect.as_ref().map(|c| c.value), default.reflect),
+            transmit: self.color(table.transmit.as_ref().map(|c| c.value), default.transmit),
+            ior: table.ior.map_or(default.ior, |ior| ior.0),
+            absorption: table.absorption.map_or(default.absorption, |a| a.0),
+            thin: table.thin.unwrap_or(default.thin),
+            priority: table.priority.map_or(default.priority, |p| p.0),
             double_sided: table.double_sided.unwrap_or(default.double_sided),
         };
         if let Some(At { span, .. }) = &table.diffuse
@@ -113,6 +121,13 @@ impl Resolver<'_> {
                  `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
                 self.source.shown(span)
             ));
+        }
+        if let Some(At { span, .. }) = table.transmit.as_ref().or(table.reflect.as_ref())
+            && (material.reflect + material.transmit).max_element() > 1.0 + 1e-6
+        {
+            let message = "`reflect` and `transmit` are more than 1 together";
+            let help = "they are shares of one whole; what they leave is diffuse and specular";
+            return Err(self.source.error(span, message).help(help));
         }
         let id = self.scene.add_material(material);
         match self.materials.insert(name.clone(), (id, span.clone())) {

@@ -9,8 +9,8 @@ use serde::Deserialize;
 use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
-    Amount, Direction, FieldOfView, HalfAngle, Length, Point, Rotation, Scale, Shininess, Size,
-    Whole,
+    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Point, Priority, Rotation,
+    Scale, ShadowKind, Share, Shininess, Size, Triple, Whole,
 };
 use crate::scene::{Falloff, SamplePosition, Transfer};
 
@@ -55,6 +55,13 @@ pub struct FilmTable {
     /// Where in its pixel a sample is centred: the middle or the upper left corner.
     #[schemars(extend("default" = "center"))]
     pub sample_position: Option<SamplePosition>,
+    /// How often light is followed off mirrors and through glass, from 0 to 65536.
+    #[schemars(extend("default" = 8))]
+    pub max_depth: Option<Depth>,
+    /// Rays that can add no more than this share of what they see are not followed; 0 leaves out
+    /// only those that add nothing.
+    #[schemars(extend("default" = 0))]
+    pub cutoff: Option<Share>,
 }
 
 /// The eye. It looks at `look_at` or along `direction`, and sees as much as one of `fov_y`,
@@ -106,6 +113,26 @@ pub struct MaterialTable {
     pub emission: Option<Color>,
     /// Picture file, in sRGB, multiplied with `emission`.
     pub emission_map: Option<At<String>>,
+    /// Share of what is seen in it as in a mirror.
+    #[schemars(extend("default" = 0))]
+    pub reflect: Option<At<Color>>,
+    /// Share of what is seen through it as through glass, less what Fresnel's law reflects.
+    #[schemars(extend("default" = 0))]
+    pub transmit: Option<At<Color>>,
+    /// Index of refraction of what is inside.
+    #[schemars(extend("default" = 1.5))]
+    pub ior: Option<Index>,
+    /// What is lost on the way through it, for each unit of length: light falls to e^(−absorption).
+    /// One number, or three for red, green and blue.
+    #[schemars(extend("default" = 0))]
+    pub absorption: Option<Triple>,
+    /// Whether it is a thin sheet, such as a pane, with nothing inside.
+    #[schemars(extend("default" = false))]
+    pub thin: Option<bool>,
+    /// Which of two things holds where both are: the one with the greater priority, of two equal
+    /// ones the smaller thing.
+    #[schemars(extend("default" = 0))]
+    pub priority: Option<Priority>,
     /// Whether a sphere is lit on its inside too; planes and meshes always are.
     #[schemars(extend("default" = false))]
     pub double_sided: Option<bool>,
@@ -206,9 +233,10 @@ pub struct LightTable {
     pub falloff: Option<At<Falloff>>,
     /// The distance at which it has faded to nothing; without one there is none (point, spot).
     pub range: Option<At<Length>>,
-    /// Whether things keep it from what lies behind them (all but ambient).
+    /// Whether things keep it from what lies behind them (all but ambient): `true` and `"tinted"`
+    /// let glass pass on what its colour leaves, `"opaque"` does not.
     #[schemars(extend("default" = true))]
-    pub shadow: Option<At<bool>>,
+    pub shadow: Option<At<ShadowKind>>,
 }
 
 /// What kind of light.

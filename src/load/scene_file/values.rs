@@ -4,12 +4,13 @@ use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Expected, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::scene::check::MAX_COORDINATE;
+use crate::scene::Shadow;
+use crate::scene::check::{MAX_COORDINATE, MAX_DEPTH};
 
 /// Gives a type of value its part of the JSON Schema.
 macro_rules! value_schema {
@@ -79,6 +80,15 @@ number!(
     Factor, "a number other than 0 (at least 1e-15 and at most 1e15 in size)",
     |x| (1e-15..=1e15).contains(&x.abs()),
     { "type": "number", "not": { "const": 0 } });
+
+number!(
+    /// An index of refraction.
+    Index, "an index of refraction from 0.01 to 100", |x| (0.01..=100.0).contains(&x),
+    { "type": "number", "minimum": 0.01, "maximum": 100 });
+number!(
+    /// A share.
+    Share, "a number from 0 to 1", |x| (0.0..=1.0).contains(&x),
+    { "type": "number", "minimum": 0, "maximum": 1 });
 
 struct NumberVisitor {
     expected: &'static str,
@@ -265,6 +275,98 @@ impl<'de> Deserialize<'de> for Whole {
 }
 
 value_schema!(Whole, { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
+
+/// How many times light is followed from a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Depth(pub u32);
+
+impl<'de> Deserialize<'de> for Depth {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let depth = i64::deserialize(deserializer)?;
+        match u32::try_from(depth) {
+            Ok(depth) if depth <= MAX_DEPTH => Ok(Self(depth)),
+            _ => Err(D::Error::invalid_value(
+                Unexpected::Signed(depth),
+                &"a whole number from 0 to 65536",
+            )),
+        }
+    }
+}
+
+value_schema!(Depth, { "type": "integer", "minimum": 0, "maximum": 65536 });
+
+/// A whole number that says what goes before what.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(transparent)]
+pub struct Priority(pub i32);
+
+value_schema!(Priority, { "type": "integer" });
+
+/// What keeps a light from what lies behind it.
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowKind(pub Shadow);
+
+impl<'de> Deserialize<'de> for ShadowKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ShadowVisitor;
+        impl Visitor<'_> for ShadowVisitor {
+            type Value = Shadow;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("true, false, \"tinted\" or \"opaque\"")
+            }
+            fn visit_bool<E: Error>(self, shadow: bool) -> Result<Shadow, E> {
+                Ok(if shadow { Shadow::Tinted } else { Shadow::None })
+            }
+            fn visit_str<E: Error>(self, text: &str) -> Result<Shadow, E> {
+                match text {
+                    "tinted" => Ok(Shadow::Tinted),
+                    "opaque" => Ok(Shadow::Opaque),
+                    _ => Err(E::invalid_value(Unexpected::Str(text), &self)),
+                }
+            }
+        }
+        deserializer.deserialize_any(ShadowVisitor).map(Self)
+    }
+}
+
+value_schema!(ShadowKind, { "enum": [true, false, "tinted", "opaque"] });
+
+/// One number for red, green and blue, or one for each.
+#[derive(Clone, Copy, Debug)]
+pub struct Triple(pub Vec3);
+
+impl<'de> Deserialize<'de> for Triple {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TripleVisitor;
+        impl<'de> Visitor<'de> for TripleVisitor {
+            type Value = Vec3;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("one number from 0 up, or three of them")
+            }
+            fn visit_f64<E: Error>(self, x: f64) -> Result<Vec3, E> {
+                Amount::deserialize(serde::de::value::F64Deserializer::new(x))
+                    .map(|amount| Vec3::splat(amount.0 as f32))
+            }
+            fn visit_i64<E: Error>(self, x: i64) -> Result<Vec3, E> {
+                self.visit_f64(x as f64)
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Vec3, A::Error> {
+                elements(seq, &self).map(|v: [Amount; 3]| Vec3::from_array(v.map(|x| x.0 as f32)))
+            }
+        }
+        deserializer.deserialize_any(TripleVisitor).map(Self)
+    }
+}
+
+value_schema!(Triple, {
+    "anyOf": [
+        { "type": "number", "minimum": 0 },
+        {
+            "type": "array", "minItems": 3, "maxItems": 3,
+            "items": { "type": "number", "minimum": 0 },
+        },
+    ],
+});
 
 /// A width and a height in pixels.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,8 @@ use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
 use crate::render::{Options, render};
 use crate::scene::{
-    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, Plane, Scene, Sphere,
+    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, Plane, Scene, Shadow,
+    Sphere,
 };
 use crate::write::{Settings, png_bytes};
 
@@ -154,7 +155,12 @@ fn scene(side: u32) -> Scene {
         ),
     ] {
         let intensity = Vec3::splat(intensity);
-        scene.lights.push(Light { name: String::new(), kind, intensity, casts_shadow: true });
+        scene.lights.push(Light {
+            name: String::new(),
+            kind,
+            intensity,
+            shadow: Shadow::default(),
+        });
     }
     let position = DVec3::new(1.0, 2.5, 6.0);
     let forward = -position.normalize();

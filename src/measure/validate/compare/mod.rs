@@ -13,7 +13,7 @@ use crate::intersect::{Coherence, Intersector, Precision};
 use crate::measure::dispute::{Cause, Disputes};
 use crate::measure::replay::ray_to_text;
 use crate::render::{self, Options};
-use crate::scene::{LightKind, RayMaker, Scene};
+use crate::scene::{RayMaker, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
 
@@ -155,7 +155,7 @@ impl Comparer<'_> {
             .zip(rays.iter().zip(hits))
             .filter_map(|(x, (ray, hit))| Some((x, Surface::new(self.scene, ray, hit.as_ref()?))))
             .collect();
-        let casting = |l: &&crate::scene::Light| l.casts_shadow && l.kind != LightKind::Ambient;
+        let casting = |l: &&crate::scene::Light| l.casts_shadow();
         for light in self.scene.lights.iter().filter(casting) {
             let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
                 .iter()

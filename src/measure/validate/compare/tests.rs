@@ -1,6 +1,6 @@
 use super::*;
 use crate::intersect::Bvh;
-use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Material, Plane, Sphere};
+use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Material, Plane, Shadow, Sphere};
 use glam::{DVec3, Vec3};
 
 /// A ball over the ground and a lamp, in 16 × 16 pixels.
@@ -18,7 +18,8 @@ fn scene() -> Scene {
         falloff: Falloff::None,
         range: f64::INFINITY,
     };
-    let light = Light { name: String::new(), kind, intensity: Vec3::ONE, casts_shadow: true };
+    let light =
+        Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() };
     scene.lights.push(light);
     scene
 }
