@@ -36,7 +36,7 @@ impl<'s> Meshes<'s> {
         width: Width,
     ) -> Result<()> {
         let uses = uses(scene);
-        let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
+        let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
         let mut own: Vec<Option<(usize, Frame)>> = vec![None; scene.meshes.len()];
         let mut placed = Box::new(Placements::new(frame));
         for (index, instance) in (0..).zip(&scene.instances) {

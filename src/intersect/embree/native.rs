@@ -20,7 +20,7 @@ pub fn attach_meshes(
     frame: &Frame,
 ) -> Result<Vec<u32>> {
     let uses = uses(scene);
-    let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
+    let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
     // An instanced mesh is recentred too: a model may stand far from its own origin.
     let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();

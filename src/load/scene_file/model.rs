@@ -35,6 +35,7 @@ impl Models {
         };
         let placement = Placement {
             transform: transform(table),
+            node: None,
             material,
             casts_shadow: table.casts_shadow.unwrap_or(true),
             lights: table.lights.unwrap_or(true),
