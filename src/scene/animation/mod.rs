@@ -127,16 +127,8 @@ impl Animation {
         NodeId(self.nodes.len() as u32 - 1)
     }
 
-    /// Where an anchor is at a time in seconds.
-    ///
-    /// # Panics
-    /// When there is no such node.
-    pub fn place(&self, anchor: &Anchor, time: f64) -> DVec3 {
-        anchor.at(&node::worlds(&self.nodes, time))
-    }
-
-    /// Checks what the rest of the program takes for granted, for a scene with so many of each
-    /// thing; `Scene::check` calls it.
+    /// Checks what the rest of the program takes for granted, for the objects of `scene`;
+    /// `Scene::check` calls it.
     ///
     /// # Errors
     /// The first thing that is not so.
