@@ -127,7 +127,6 @@ fn a_surface_that_is_clear_but_absorbs_is_there() {
     let mut with = scene();
     let grey = with.add_material(Material { absorption: Vec3::ONE, ..glass(1.0) });
     with.spheres.push(Sphere::new(DVec3::Y, 2.5, grey));
-    let pictures =
-        [with, scene()].map(|s| pixels(&s, Backend::default(), Precision::Certified));
+    let pictures = [with, scene()].map(|s| pixels(&s, Backend::default(), Precision::Certified));
     assert_ne!(pictures[0], pictures[1]);
 }
