@@ -5,9 +5,15 @@ mod common;
 use common::{random_rays, random_scene};
 use envers::geometry::{Departure, Geometry, Hit, Ray, Side};
 use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::{MaterialId, Plane, Scene, Sphere};
+use envers::scene::{Material, MaterialId, Plane, Scene, Sphere};
 use envers::surface::Surface;
 use glam::DVec3;
+
+fn empty() -> Scene {
+    let mut scene = Scene::default();
+    scene.add_material(Material::default());
+    scene
+}
 
 /// All that lies on each ray's way, in order.
 fn crossings(scene: &Scene, intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Vec<Hit>> {
@@ -80,7 +86,7 @@ fn in_fast_spheres_and_planes_are_all_crossed_on_either_backend() {
 
 #[test]
 fn occlusion_asks_only_about_what_lies_ahead() {
-    let mut scene = Scene::default();
+    let mut scene = empty();
     scene.spheres.push(Sphere::new(DVec3::Z * 5.0, 1.0, MaterialId(0)));
     for precision in [Precision::Fast, Precision::Certified] {
         for backend in [Backend::Rust, Backend::default()] {
@@ -99,7 +105,7 @@ fn occlusion_asks_only_about_what_lies_ahead() {
 
 #[test]
 fn surfaces_at_the_same_distance_are_each_met_once() {
-    let mut scene = Scene::default();
+    let mut scene = empty();
     scene.planes = vec![Plane::new(DVec3::Z * 3.0, DVec3::NEG_Z, MaterialId(0)); 3];
     scene.spheres = vec![Sphere::new(DVec3::Z * 4.0, 1.0, MaterialId(0)); 2];
     let ray = [Ray::new(DVec3::ZERO, DVec3::Z)];
@@ -121,7 +127,7 @@ fn surfaces_at_the_same_distance_are_each_met_once() {
 
 #[test]
 fn a_ray_that_left_a_surface_does_not_meet_it_after_it_went_through_another() {
-    let mut scene = Scene::default();
+    let mut scene = empty();
     scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
     scene.spheres.push(Sphere::new(DVec3::Z * 4.0, 1.0, MaterialId(0)));
     let id = envers::geometry::PrimitiveId::sphere(0);
