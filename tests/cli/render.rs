@@ -123,12 +123,12 @@ fn a_build_without_embree_says_so_when_it_is_asked_for() {
     assert!(message.contains("built without Embree"), "{message}");
 }
 
-/// The scene, with a mirror ball beside its sphere and a mirror below.
+/// The scene, with two mirror balls that see each other.
 fn mirrors() -> String {
-    let mirror = "[[material]]\nname = \"mirror\"\nreflect = 1\n[[plane]]\npoint = [0, -1, 0]\n\
-                  normal = [0, 1, 0]\nmaterial = \"mirror\"\n[[sphere]]\ncenter = [1.5, 0, 0]\n\
-                  radius = 1\nmaterial = \"mirror\"\n";
-    format!("{SPHERE}\n{mirror}")
+    let ball =
+        |x: f64| format!("[[sphere]]\ncenter = [{x}, 1, 2]\nradius = 0.6\nmaterial = \"mirror\"\n");
+    let mirror = "[[material]]\nname = \"mirror\"\nreflect = 1\n";
+    format!("{SPHERE}\n{mirror}{}{}", ball(-0.7), ball(0.7))
 }
 
 fn reflections(flags: &str) -> u64 {
