@@ -79,11 +79,12 @@ impl fmt::Display for Motion {
         ]
         .into_iter()
         .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
+        .map(|(count, what)| counted(count, what))
         .collect();
         let moving = or_none(&moving);
-        let (frames, fps, seconds) = (self.frames, self.fps, self.seconds);
-        write!(f, "{frames} frames at {fps} a second ({seconds:.3} s), moving: {moving}")
+        let (frames, fps, seconds) =
+            (counted(self.frames as usize, "frame"), self.fps, self.seconds);
+        write!(f, "{frames} at {fps} a second ({seconds:.3} s), moving: {moving}")
     }
 }
 
@@ -192,6 +193,10 @@ impl fmt::Display for Summary {
         }
         self.skipped.iter().try_for_each(|what| writeln!(f, "skips      {what}"))
     }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn or_none(list: &[String]) -> String {

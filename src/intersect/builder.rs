@@ -101,7 +101,7 @@ impl Builder {
 impl Shared {
     /// How many meshes were built.
     fn built(&self) -> u64 {
-        let trees = self.trees.built;
+        let trees = self.trees.built();
         #[cfg(feature = "embree")]
         return trees + self.embree.built();
         #[cfg(not(feature = "embree"))]

@@ -145,20 +145,19 @@ fn gif_delay(index: u32, fps: f64) -> u16 {
     (delay as u16).max(GIF_SHORTEST)
 }
 
-/// How long a frame is shown, as a fraction of a second.
+/// How long a frame is shown, as a fraction of a second: of those that a file can hold the simplest
+/// that is exact, or else the nearest.
 fn apng_delay(fps: f64) -> (u16, u16) {
-    let seconds = 1.0 / fps;
-    // Rates are whole numbers, or such divided by the step between frames: exact where it can be.
-    let exact = (1..=1000u16).find_map(|denominator| {
-        let numerator = seconds * f64::from(denominator);
-        let whole = numerator.round();
-        let is_whole = (numerator - whole).abs() < 1e-9 * numerator && whole <= 65535.0;
-        (is_whole && whole >= 1.0).then_some((whole as u16, denominator))
-    });
-    exact.unwrap_or_else(|| {
-        let denominator = (65535.0 / seconds).clamp(1.0, 65535.0).floor();
-        ((seconds * denominator).round() as u16, denominator as u16)
-    })
+    let mut best = (f64::INFINITY, (u16::MAX, 1));
+    for denominator in 1..=u16::MAX {
+        let exact = f64::from(denominator) / fps;
+        let numerator = exact.round().clamp(1.0, 65535.0);
+        let error = (numerator / exact - 1.0).abs();
+        if error < best.0 - 1e-12 {
+            best = (error, (numerator as u16, denominator));
+        }
+    }
+    best.1
 }
 
 fn apng(

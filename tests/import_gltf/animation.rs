@@ -231,3 +231,52 @@ fn the_same_keys_named_a_million_times_take_no_memory() {
     }
     assert_warns(&model.load().unwrap(), "4194304 keys");
 }
+
+/// Loads a scene file beside an animated model that rises by 4 in a second.
+fn scene_file(text: &str, name: Option<&str>) -> envers::error::Result<Scene> {
+    let mut model = animated("translation", "VEC3", &[0., 1.], &[0., 0., 0., 0., 4., 0.], "LINEAR");
+    let mut still = model.json["animations"][0].clone();
+    still["channels"] = json!([]);
+    model.json["animations"].as_array_mut().unwrap().insert(0, still);
+    model.json["animations"][1]["name"] = json!("rise");
+    let folder = Folder::new();
+    folder.write("m.glb", model.glb());
+    let named = name.map(|name| format!("animation = \"{name}\"\n")).unwrap_or_default();
+    let placed = "[[model]]\nname = \"m\"\nfile = \"m.glb\"\ntranslate = [10, 0, 0]\nscale = 2\n";
+    folder.load("scene.toml", format!("{placed}{named}{text}"))
+}
+
+const FRAMES: &str = "[animation]\nframes = 24\n";
+
+#[test]
+fn a_scene_file_plays_the_animation_that_it_names_where_it_places_the_model() {
+    let scene = scene_file(FRAMES, Some("rise")).unwrap();
+    assert!(near(at(&scene, 0.5, [1., 0., 0.]), [12., 4., 0.]));
+}
+
+#[test]
+fn a_model_that_moves_by_itself_goes_round_as_well() {
+    let orbit = "[[animation.orbit]]\nobject = \"m\"\naround = [0, 0, 0]\nperiod = 2\n";
+    let scene = scene_file(&format!("{FRAMES}{orbit}"), Some("rise")).unwrap();
+    assert!(near(at(&scene, 0.5, [0.; 3]), [0., 4., -10.]));
+}
+
+#[test]
+fn a_models_animation_begins_again_in_a_longer_one() {
+    let scene = scene_file(FRAMES, Some("rise")).unwrap();
+    assert_eq!(at(&scene, 3.25, [0.; 3]), at(&scene, 0.25, [0.; 3]));
+}
+
+#[test]
+fn a_scene_file_without_animation_plays_none_and_says_so() {
+    let scene = scene_file("", Some("rise")).unwrap();
+    assert_warns(&scene, "its animation is not played");
+    assert_eq!(scene.animation, None);
+}
+
+#[test]
+fn an_animation_that_the_model_has_not_is_refused_with_those_that_it_has() {
+    let error = scene_file(FRAMES, Some("walk")).map(|_| ()).unwrap_err();
+    assert_eq!(error.message(), "there is no animation `walk`");
+    assert_eq!(error.advice(), Some("the file has `rise`"));
+}

@@ -1,5 +1,6 @@
 //! What moves in a scene, and how: plain data, and the scene as it is at one time.
 
+mod check;
 mod curve;
 mod node;
 
@@ -8,6 +9,7 @@ use glam::{DAffine3, DVec3};
 use crate::error::{Error, Result};
 use crate::scene::{Camera, Light, LightKind, Scene};
 
+pub use check::{check_fps, check_frames};
 pub use curve::{Curve, Interpolation, Value};
 pub use node::{Anchor, Keys, Motion, Node, NodeId, Orbit, Rotation};
 
@@ -139,23 +141,6 @@ impl Animation {
         self.nodes.push(node);
         NodeId(self.nodes.len() as u32 - 1)
     }
-
-    /// Checks what the rest of the program takes for granted, for the objects of `scene`;
-    /// `Scene::check` calls it.
-    ///
-    /// # Errors
-    /// The first thing that is not so.
-    pub(in crate::scene) fn check(&self, scene: &Scene) -> Result<()> {
-        check_frames(self.frames)?;
-        check_fps(self.fps)?;
-        for (i, node) in self.nodes.iter().enumerate() {
-            check_node(i, node).map_err(|e| naming(&format!("animation node {i}"), &e))?;
-        }
-        for mover in &self.movers {
-            check_mover(mover, self.nodes.len(), scene)?;
-        }
-        Ok(())
-    }
 }
 
 impl Scene {
@@ -249,96 +234,5 @@ fn naming(what: &str, error: &Error) -> Error {
     match error.advice() {
         Some(help) => named.help(help),
         None => named,
-    }
-}
-
-/// Checks the number of frames of an animation.
-///
-/// # Errors
-/// When there are none or more than [`MAX_FRAMES`].
-pub fn check_frames(frames: u32) -> Result<()> {
-    if (1..=MAX_FRAMES).contains(&frames) {
-        return Ok(());
-    }
-    Err(Error::input(format!("an animation of {frames} frames cannot be made"))
-        .help(format!("from 1 to {MAX_FRAMES}")))
-}
-
-/// Checks how many frames are in a second.
-///
-/// # Errors
-/// When that is not above 0, or above [`MAX_FPS`].
-pub fn check_fps(fps: f64) -> Result<()> {
-    if (1e-6..=MAX_FPS).contains(&fps) {
-        return Ok(());
-    }
-    Err(Error::input(format!("{fps} frames a second cannot be made"))
-        .help(format!("a number above 0 (and at most {MAX_FPS})")))
-}
-
-fn check_node(index: usize, node: &Node) -> Result<()> {
-    let require = |holds: bool, what: &str| match holds {
-        true => Ok(()),
-        false => Err(Error::input(what)),
-    };
-    let before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
-    require(before(&node.parent), "its parent does not stand before it")?;
-    require(node.place.is_finite(), "its place is not finite")?;
-    match &node.motion {
-        Motion::Keys(keys) => {
-            keys.translation.check()?;
-            match &keys.rotation {
-                Rotation::Angles(curve) => curve.check()?,
-                Rotation::Quaternions(curve) => curve.check()?,
-            }
-            keys.scale.check()?;
-            require(keys.repeats.is_none_or(|p| p > 0.0), "it repeats after no time")
-        }
-        Motion::Orbit(orbit) => {
-            require(before(&orbit.around.node), "its centre does not stand before it")?;
-            let alone = node.parent.is_none() && node.place == DAffine3::IDENTITY;
-            require(alone, "an orbit has neither parent nor place")?;
-            let points = [orbit.around.point, orbit.center, orbit.start];
-            require(points.iter().all(|p| p.is_finite()), "its centre is not finite")?;
-            require((orbit.axis.length() - 1.0).abs() < 1e-6, "its axis must have length 1")?;
-            require(orbit.period != 0.0 && !orbit.period.is_nan(), "its period must not be 0")
-        }
-    }
-}
-
-fn check_mover(mover: &Mover, nodes: usize, scene: &Scene) -> Result<()> {
-    let there = |what: &str, index: usize, count: usize| {
-        if index < count {
-            return Ok(());
-        }
-        Err(Error::input(format!("the animation moves {what} {index}, of {count}")))
-    };
-    let node = |id: &Option<NodeId>| id.map_or(Ok(()), |id| there("node", id.0 as usize, nodes));
-    match mover {
-        Mover::Sphere { sphere, node: of, radius, .. } => {
-            there("sphere", *sphere, scene.spheres.len())?;
-            node(of)?;
-            radius.iter().try_for_each(Curve::check)
-        }
-        Mover::Instance { instance, node: of, .. } => {
-            there("instance", *instance, scene.instances.len())?;
-            node(&Some(*of))
-        }
-        Mover::Light { light, node: of, direction, intensity, .. } => {
-            there("light", *light, scene.lights.len())?;
-            node(of)?;
-            direction.iter().try_for_each(Curve::check)?;
-            intensity.iter().try_for_each(Curve::check)
-        }
-        Mover::Camera { camera, node: of, aim, lens, .. } => {
-            there("camera", *camera, scene.cameras.len())?;
-            node(of)?;
-            lens.iter().try_for_each(Curve::check)?;
-            match aim.as_ref().map(|aim| &aim.toward) {
-                Some(Toward::Anchor(anchor)) => node(&anchor.node),
-                Some(Toward::Points(curve) | Toward::Directions(curve)) => curve.check(),
-                None => Ok(()),
-            }
-        }
     }
 }
