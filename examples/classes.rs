@@ -176,9 +176,10 @@ fn color(objects: &[Box<dyn Object>], u: Vector) -> Vector {
     let to_light = LIGHT - at;
     let cosine = objects[i].normal(at).dot(to_light.unit());
     // The object that the ray leaves is not asked: what is round or flat cannot shade itself.
-    let shaded = objects.iter().enumerate().any(|(j, object)| {
-        j != i && object.intersection(at, to_light).is_some_and(|t| t < 1.0)
-    });
+    let shaded = objects
+        .iter()
+        .enumerate()
+        .any(|(j, object)| j != i && object.intersection(at, to_light).is_some_and(|t| t < 1.0));
     if cosine <= 0.0 || shaded { BACKGROUND * 0.0 } else { objects[i].color(at) * cosine }
 }
 
