@@ -48,8 +48,8 @@ pub fn lamp(d: &mut Drawing, at: DVec2) {
 }
 
 fn shadow_ray() -> Drawing {
-    let mut d = Drawing::new(640.0, 330.0, "M, L: 0 < t < 1");
-    let (eye, light) = (dvec2(60.0, 290.0), dvec2(150.0, 40.0));
+    let mut d = Drawing::new(640.0, 330.0, "M + t ML");
+    let (eye, light) = (dvec2(60.0, 290.0), dvec2(150.0, 50.0));
     let (center, radius) = (dvec2(430.0, 210.0), 80.0);
     let lit = center + dvec2(-0.6, -0.8) * radius;
     let shaded = center - DVec2::X * radius;
@@ -69,8 +69,7 @@ fn shadow_ray() -> Drawing {
     d.label(lit + dvec2(10.0, -10.0), "M", Anchor::Start);
     d.label(shaded + dvec2(12.0, 8.0), "M'", Anchor::Start);
     d.label(center + dvec2(8.0, 22.0), "Ω", Anchor::Start);
-    d.label(light + dvec2(2.0, -22.0), "t = 1", Anchor::Start);
-    d.label(lit + dvec2(-2.0, -34.0), "t = 0", Anchor::Middle);
+    d.label(light + dvec2(24.0, -10.0), "t = 1", Anchor::Start);
     d
 }
 

@@ -218,7 +218,11 @@ fn eclipse() -> Drawing {
     d.label(light + dvec2(0.0, 52.0), "L", Anchor::Middle);
     d.label(planet + dvec2(10.0, 20.0), "Ω", Anchor::Start);
     d.label(moon + dvec2(0.0, -36.0), "Ω'", Anchor::Middle);
-    d.label(planet + dvec2(0.0, 112.0), "R", Anchor::Middle);
+    let [edge, rim] = [planet + dvec2(0.6, 0.8) * large, moon - dvec2(0.8, 0.6) * small];
+    d.line(planet, edge, FINE);
+    d.line(moon, rim, FINE);
+    d.label((planet + edge) / 2.0 + dvec2(12.0, 4.0), "R", Anchor::Start);
+    d.label(rim + dvec2(-6.0, 0.0), "r", Anchor::End);
     d.label(light + dvec2(160.0, -8.0), "δ", Anchor::Start);
     d
 }
