@@ -102,6 +102,11 @@ pub struct RayMaker {
 }
 
 impl RayMaker {
+    /// The one point that all rays start from, if there is one.
+    pub fn eye(&self) -> Option<DVec3> {
+        (!self.parallel).then_some(self.origin)
+    }
+
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
     #[inline]
     pub fn through(&self, x: f64, y: f64) -> Ray {
