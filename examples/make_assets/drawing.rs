@@ -190,7 +190,7 @@ impl Drawing {
     }
 
     fn text(&mut self, middle: DVec2, size: f64, text: &str) {
-        let (x, y) = (number(middle.x), number(middle.y));
+        let (x, y, text) = (number(middle.x), number(middle.y), escaped(text));
         self.push(format_args!("<text x=\"{x}\" y=\"{y}\" font-size=\"{size}\">{text}</text>"));
     }
 
@@ -203,10 +203,16 @@ impl Drawing {
              Modern Roman, Times New Roman, Times, serif\" font-style=\"italic\" \
              text-anchor=\"middle\" fill=\"{}\">\n<title>{}</title>\n<rect width=\"{width}\" \
              height=\"{height}\" rx=\"10\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            INK.color, self.title, self.body
+            INK.color,
+            escaped(self.title),
+            self.body
         )
         .into_bytes()
     }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 /// About how wide a text is, in units of its size.
