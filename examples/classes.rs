@@ -169,9 +169,8 @@ fn objects() -> Vec<Box<dyn Object>> {
 }
 
 fn color(objects: &[Box<dyn Object>], u: Vector) -> Vector {
-    let met = |(i, object): (usize, &Box<dyn Object>)| Some((object.intersection(EYE, u)?, i));
-    let first = objects.iter().enumerate().filter_map(met).min_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((t, i)) = first else { return BACKGROUND };
+    let met = (0..objects.len()).filter_map(|i| Some((objects[i].intersection(EYE, u)?, i)));
+    let Some((t, i)) = met.min_by(|a, b| a.0.total_cmp(&b.0)) else { return BACKGROUND };
     let at = EYE + t * u;
     let to_light = LIGHT - at;
     let cosine = objects[i].normal(at).dot(to_light.unit());
