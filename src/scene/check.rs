@@ -102,7 +102,8 @@ impl Scene {
             color(&format!("light {i}: intensity"), l.intensity)?;
             check_light(i, &l.kind)
         })?;
-        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))
+        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))?;
+        self.animation.iter().try_for_each(|animation| animation.check(self))
     }
 }
 

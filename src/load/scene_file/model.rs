@@ -33,19 +33,22 @@ impl Models {
                 unknown.insert(Part::add(&mut resolver.scene, model))
             }
         };
-        let placement = Placement {
-            transform: transform(table),
-            material,
-            casts_shadow: table.casts_shadow.unwrap_or(true),
-            lights: table.lights.unwrap_or(true),
-        };
-        if part.reach(&placement.transform) > MAX_COORDINATE {
+        let still = transform(table);
+        if part.reach(&still) > MAX_COORDINATE {
             let span = &table.file.span;
             return Err(resolver
                 .source
                 .error(span, "the model reaches beyond 1e15 from 0 as it is placed")
                 .help("make its `scale` or `translate` smaller"));
         }
+        let rig = resolver.rig(&table.name);
+        let placement = Placement {
+            transform: if rig.is_some_and(|rig| rig.is_own) { DAffine3::IDENTITY } else { still },
+            node: rig.and_then(|rig| rig.node),
+            material,
+            casts_shadow: table.casts_shadow.unwrap_or(true),
+            lights: table.lights.unwrap_or(true),
+        };
         part.place(&mut resolver.scene, &placement);
         Ok(())
     }
@@ -112,6 +115,7 @@ mod tests {
 
     fn table(rotate: [f64; 3], scale: DVec3, translate: DVec3) -> ModelTable {
         ModelTable {
+            name: None,
             file: At { span: 0..0, value: String::new() },
             translate: Some(Point(translate)),
             rotate: Some(Rotation(rotate)),
@@ -119,6 +123,7 @@ mod tests {
             material: None,
             casts_shadow: None,
             lights: None,
+            animation: None,
         }
     }
 
