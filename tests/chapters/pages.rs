@@ -57,6 +57,30 @@ fn both_languages_have_as_many_formulas() {
     }
 }
 
+/// The web's Markdown takes `\,` for an escaped comma even within a formula, and knows no inline
+/// formula that goes on in the next line.
+#[test]
+fn formulas_survive_markdown() {
+    for chapter in all() {
+        for line in chapter.prose.lines().filter(|line| line.contains('$')) {
+            let eaten = line
+                .split('\\')
+                .skip(1)
+                .any(|rest| rest.starts_with(|c: char| c.is_ascii_punctuation()));
+            assert!(
+                !eaten,
+                "{}: a backslash before punctuation is lost in {line}",
+                chapter.place()
+            );
+            assert!(
+                line.matches('$').count() % 2 == 0,
+                "{}: open formula: {line}",
+                chapter.place()
+            );
+        }
+    }
+}
+
 #[test]
 fn first_line_leads_to_the_neighbours_the_contents_and_the_other_language() {
     for (language, other) in [("fr", "en"), ("en", "fr")] {

@@ -97,5 +97,7 @@ print("     D/r   rays    wrong    of t      of r    wrong    of t      of r")
 row("III.1", tutorial(), (0, 0, 10), 1)
 for k in range(1, 11):
     row(f"1e{k}", telescope(k), (2 * 10**k, 3 * 10**k, 6 * 10**k), 7)
-# An eye 1.75 m above a planet of 6371 km, in quarters of a metre.
-row("ground", walker(), (0, 25484007, 0), 25484000)
+# An eye 1.75 m above a planet of 6371 km: in quarters of a metre, where the squares of the lengths
+# have less than 53 bits and are exact; and in centimetres, where they are rounded.
+row("m / 4", walker(), (0, 25484007, 0), 25484000)
+row("cm", walker(), (0, 637100175, 0), 637100000)
