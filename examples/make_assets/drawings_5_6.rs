@@ -183,7 +183,7 @@ fn normals() -> Drawing {
 }
 
 fn eclipse() -> Drawing {
-    let mut d = Drawing::new(640.0, 320.0, "sin γ = r/LΩ");
+    let mut d = Drawing::new(640.0, 320.0, "sin γ = r/LQ");
     let light = dvec2(80.0, 190.0);
     let (planet, large) = (dvec2(500.0, 170.0), 84.0);
     let (moon, small) = (dvec2(350.0, 148.0), 26.0);
@@ -216,8 +216,8 @@ fn eclipse() -> Drawing {
     d.angle(light, planet, moon, 130.0, "", FINE);
     [light, planet, moon].into_iter().for_each(|point| d.dot(point));
     d.label(light + dvec2(0.0, 52.0), "L", Anchor::Middle);
-    d.label(planet + dvec2(10.0, 20.0), "Ω", Anchor::Start);
-    d.label(moon + dvec2(0.0, -36.0), "Ω'", Anchor::Middle);
+    d.label(planet + dvec2(10.0, 20.0), "P", Anchor::Start);
+    d.label(moon + dvec2(0.0, -36.0), "Q", Anchor::Middle);
     let [edge, rim] = [planet + dvec2(0.6, 0.8) * large, moon - dvec2(0.8, 0.6) * small];
     d.line(planet, edge, FINE);
     d.line(moon, rim, FINE);

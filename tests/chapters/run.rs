@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
-use image::RgbImage;
+use image::codecs::gif::GifDecoder;
+use image::{AnimationDecoder, RgbImage};
 
 use crate::book::{all, root, tutorial};
 
@@ -154,6 +155,27 @@ fn every_picture_is_what_its_command_makes() {
         }
     }
     assert!(blessed.is_empty(), "written anew, look at them and run again: {blessed:?}");
+}
+
+/// The size and the delay of each frame of an animated picture.
+fn frames(path: &Path) -> Vec<((u32, u32), (u32, u32))> {
+    let file = fs::File::open(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let decoder = GifDecoder::new(std::io::BufReader::new(file)).expect("it is a GIF");
+    let frames = decoder.into_frames().map(|frame| frame.expect("its frames can be read"));
+    frames.map(|f| (f.buffer().dimensions(), f.delay().numer_denom_ms())).collect()
+}
+
+/// Their pixels are not compared: a value that is off by 1 may change a frame's whole palette.
+#[test]
+fn every_animated_picture_has_the_frames_of_its_command() {
+    for chapter in all() {
+        for name in chapter.pictures().into_iter().filter(|name| name.ends_with(".gif")) {
+            let [committed, made] = [tutorial().join("images"), SESSION.folder.path().into()]
+                .map(|folder| frames(&folder.join(name)));
+            assert_eq!(committed, made, "{}: {name}", chapter.place());
+            assert!(committed.len() > 1, "{}: {name}", chapter.place());
+        }
+    }
 }
 
 #[test]
