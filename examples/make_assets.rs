@@ -10,6 +10,10 @@
 mod drawing;
 #[path = "make_assets/drawings_1_3.rs"]
 mod drawings_1_3;
+#[path = "make_assets/drawings_4.rs"]
+mod drawings_4;
+#[path = "make_assets/drawings_5_6.rs"]
+mod drawings_5_6;
 #[path = "make_assets/glb.rs"]
 mod glb;
 #[path = "make_assets/paint.rs"]
@@ -32,7 +36,8 @@ pub const DRAWINGS: &str = "docs/tutorial/images";
 pub fn files() -> Vec<(String, Vec<u8>)> {
     let mut files = vec![(format!("{MODELS}/room.glb"), room::glb())];
     files.extend(vase::files().into_iter().map(|(name, file)| (format!("{MODELS}/{name}"), file)));
-    for (name, drawing) in drawings_1_3::all() {
+    let drawings = [drawings_1_3::all(), drawings_4::all(), drawings_5_6::all()];
+    for (name, drawing) in drawings.into_iter().flatten() {
         files.push((format!("{DRAWINGS}/{name}.svg"), drawing.finish()));
     }
     files

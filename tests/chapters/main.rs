@@ -18,3 +18,4 @@
 mod book;
 mod pages;
 mod run;
+mod vecteur;
