@@ -77,6 +77,7 @@ pub struct Ray {
 
 impl Ray {
     /// An unbounded ray that left no surface.
+    #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, tmax: f64::INFINITY, from: None, past: None }
     }
