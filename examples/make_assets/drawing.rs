@@ -4,8 +4,6 @@
 //! rounded to hundredths, and angles are worked out by [`circle`], so that the bytes are the same
 //! on every platform. Labels need no translation: both languages of a chapter share a drawing.
 
-#![allow(dead_code)] // Until every chapter has its drawings.
-
 use std::fmt::Write;
 
 use glam::{DVec2, dvec2};

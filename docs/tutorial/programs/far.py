@@ -4,9 +4,9 @@ python3 far.py -o far.png
 """
 
 import sys
-import zlib
 from math import sqrt
-from struct import pack
+
+from image import ecrire_png
 
 SIDE = 240  # of each of the three pictures, in pixels
 BACKGROUND, COLOR = (50, 50, 50), (58, 84, 216)
@@ -54,23 +54,11 @@ def pixel(x, y, distance):
     return [round(channel * cosine) for channel in COLOR]
 
 
-def png(rows):
-    """A PNG file of rows of bytes."""
-    size = pack(">IIBBBBB", len(rows[0]) // 3, len(rows), 8, 2, 0, 0, 0)
-    data = zlib.compress(b"".join(b"\0" + bytes(row) for row in rows))
-    file = b"\x89PNG\r\n\x1a\n"
-    for kind, content in ((b"IHDR", size), (b"IDAT", data), (b"IEND", b"")):
-        checked = kind + content
-        file += pack(">I", len(content)) + checked + pack(">I", zlib.crc32(checked))
-    return file
-
-
 def row(y):
     distances = (10**6, 10**7, 10**8)
-    return [c for d in distances for x in range(SIDE) for c in pixel(x, y, d)]
+    return [pixel(x, y, d) for d in distances for x in range(SIDE)]
 
 
 if len(sys.argv) != 3 or sys.argv[1] != "-o":
     sys.exit(__doc__)
-with open(sys.argv[2], "wb") as file:
-    file.write(png([row(y) for y in range(SIDE)]))
+ecrire_png(sys.argv[2], [row(y) for y in range(SIDE)])

@@ -1,12 +1,11 @@
 """Deux sphères, un sol à carreaux, leurs ombres : python3 ombres.py -o image.png
 
-Il ne faut que vecteur.py à côté de ce fichier ; l'image est écrite sans numpy ni matplotlib.
+Il ne faut que vecteur.py et image.py à côté de ce fichier.
 """
 
-import struct
 import sys
-import zlib
 
+from image import ecrire_png
 from vecteur import *
 
 longueur = 400
@@ -61,23 +60,6 @@ def couleur(u):
         return fond
     t, objet = rencontre
     return eclairage(objet, O + t * u)
-
-
-def ecrire_png(nom, lignes):
-    """Écrit une image, donnée par ses lignes de triplets d'octets, au format PNG."""
-
-    def bloc(genre, contenu):
-        somme = zlib.crc32(genre + contenu)
-        return struct.pack(">I", len(contenu)) + genre + contenu + struct.pack(">I", somme)
-
-    # un octet 0 devant chaque ligne : pas de filtre
-    brut = b"".join(b"\0" + bytes(o for pixel in ligne for o in pixel) for ligne in lignes)
-    entete = struct.pack(">IIBBBBB", len(lignes[0]), len(lignes), 8, 2, 0, 0, 0)
-    with open(nom, "wb") as fichier:
-        fichier.write(b"\x89PNG\r\n\x1a\n")
-        fichier.write(bloc(b"IHDR", entete))
-        fichier.write(bloc(b"IDAT", zlib.compress(brut)))
-        fichier.write(bloc(b"IEND", b""))
 
 
 def dessiner(couleur):
