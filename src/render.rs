@@ -81,7 +81,7 @@ impl Statistics {
     }
 }
 
-/// Renders a scene as it stands.
+/// Renders a scene; of an animated one, the first moment.
 ///
 /// `progress` is called with the share done, in (0, 1], from whichever thread finished a part.
 ///
@@ -94,6 +94,8 @@ pub fn render(
 ) -> Result<Rendering> {
     scene.check()?;
     check_camera(scene, options.camera)?;
+    let posed = scene.animation.is_some().then(|| scene.at(0.0)).transpose()?;
+    let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
         let mut builder = Builder::new(options.backend, options.precision, threads);

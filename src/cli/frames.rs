@@ -51,6 +51,8 @@ pub struct Plan {
     pub fps: f64,
     /// How many frames are left out since their files are there.
     pub skipped: usize,
+    /// Whether files that are there are left alone.
+    keeps: bool,
 }
 
 impl Plan {
@@ -61,7 +63,8 @@ impl Plan {
     pub fn new(arguments: &Render, scene: &Scene, outputs: Vec<PathBuf>) -> Result<Self> {
         let is_movie = |path: &PathBuf| Format::of(path).is_ok_and(Format::is_animated);
         let (movies, stills): (Vec<_>, Vec<_>) = outputs.into_iter().partition(is_movie);
-        let mut plan = Self { frames: vec![(None, 0.0)], stills, movies, fps: 1.0, skipped: 0 };
+        let mut plan =
+            Self { frames: vec![(None, 0.0)], stills, movies, fps: 1.0, skipped: 0, keeps: false };
         match &scene.animation {
             Some(animation) => plan.choose(arguments, animation)?,
             None => plan.refuse(arguments)?,
@@ -141,10 +144,11 @@ impl Plan {
                 .at(path)
                 .help("leave out --skip-existing, or this output"));
         }
-        let before = self.frames.len();
-        let stills = &self.stills;
-        self.frames.retain(|(frame, _)| stills.iter().any(|path| !numbered(path, *frame).exists()));
-        self.skipped = before - self.frames.len();
+        self.keeps = true;
+        let all = std::mem::take(&mut self.frames);
+        let count = all.len();
+        self.frames = all.into_iter().filter(|(f, _)| self.files(*f).next().is_some()).collect();
+        self.skipped = count - self.frames.len();
         Ok(())
     }
 
@@ -158,7 +162,8 @@ impl Plan {
         match self.frames[..] {
             [] => {}
             [(frame, _)] => {
-                for path in self.files(frame).chain(self.movies.iter().cloned()) {
+                let stills = self.stills.iter().map(|path| numbered(path, frame));
+                for path in stills.chain(self.movies.iter().cloned()) {
                     text += &format!("{} ({seconds:.2} s)\n", path.display());
                 }
             }
@@ -177,9 +182,10 @@ impl Plan {
         text
     }
 
-    /// The files of one frame.
+    /// The files to write of one frame.
     pub fn files(&self, frame: Option<u32>) -> impl Iterator<Item = PathBuf> {
-        self.stills.iter().map(move |path| numbered(path, frame))
+        let named = self.stills.iter().map(move |path| numbered(path, frame));
+        named.filter(|path| !self.keeps || !path.exists())
     }
 }
 

@@ -38,13 +38,17 @@ impl Part {
     ///
     /// The model's film and warnings are dropped, and so are spheres and planes, which no model
     /// file has.
-    pub fn add(scene: &mut Scene, model: Scene) -> Self {
+    pub fn add(scene: &mut Scene, mut model: Scene) -> Self {
+        if scene.animation.is_none() {
+            // What is flat as the file places it would be there at another time only.
+            model.instances.retain(|instance| !instance.is_flat());
+        }
         let bounds = bounds(&model);
         let first_texture = scene.textures.len() as u32;
         let first_material = scene.materials.len() as u32;
         let first_mesh = scene.meshes.len() as u32;
         scene.textures.extend(model.textures);
-        scene.meshes.extend(model.meshes);
+        scene.meshes.append(&mut model.meshes);
         scene.materials.extend(model.materials.into_iter().map(|mut material| {
             for map in [&mut material.diffuse_map, &mut material.emission_map] {
                 *map = map.map(|texture| TextureId(texture.0 + first_texture));
@@ -63,11 +67,6 @@ impl Part {
     /// How far from the origin something of it may be once it is placed.
     pub fn reach(&self, transform: &DAffine3) -> f64 {
         self.bounds.transformed(transform).max_abs()
-    }
-
-    /// Whether the model brings an animation of its own.
-    pub fn is_animated(&self) -> bool {
-        self.animation.is_some()
     }
 
     /// Places the model in the scene that it was added to. Its own animation is played where the

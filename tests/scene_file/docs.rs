@@ -163,6 +163,13 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
     assert_same(written_out("[[sphere]]", "sphere", needed), camera);
     let needed = "point = [0, 0, 0]\nnormal = [0, 1, 0]\nchecker.colors = [0, 1]";
     assert_same(written_out("[[plane]]", "plane", needed), camera);
+    let ball = format!("{camera}[[sphere]]\nname = \"b\"\ncenter = [1, 0, 0]\nradius = 1\n");
+    assert_same(written_out("[animation]", "animation", "frames = 3"), &ball);
+    let ball = format!("[animation]\nframes = 3\n{ball}");
+    let needed = "object = \"b\"\naround = [0, 0, 0]\nperiod = 1";
+    assert_same(written_out("[[animation.orbit]]", "animation.orbit", needed), &ball);
+    let needed = "object = \"b\"\ntimes = [0, 1]\nradius = [1, 2]";
+    assert_same(written_out("[[animation.track]]", "animation.track", needed), &ball);
     let needed = "kind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]";
     assert_same(written_out("[[light]]", "light", needed), camera);
 }

@@ -14,9 +14,9 @@ use crate::load;
 use crate::load::place::{Part, Placement};
 use crate::scene::check::MAX_COORDINATE;
 
-/// The model files loaded so far, by their canonical paths.
+/// The model files loaded so far, by their canonical paths and the animations that they play.
 #[derive(Default)]
-pub struct Models(HashMap<PathBuf, Part>);
+pub struct Models(HashMap<(PathBuf, Option<String>), Part>);
 
 impl Models {
     /// Places a model in the scene; a file named twice is loaded once.
@@ -24,12 +24,20 @@ impl Models {
         let material = table.material.as_ref().map(|name| resolver.named(name)).transpose()?;
         let path = resolver.source.file(&table.file.value);
         let same = readable(resolver.source, &table.file, &path)?;
-        let part = match self.0.entry(same) {
+        let animation = table.animation.as_ref().map(|name| name.value.clone());
+        let part = match self.0.entry((same, animation.clone())) {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
-                let mut model = load::model(&path)?;
+                let mut model = load::model(&path, animation.as_deref())?;
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
+                let is_still = resolver.scene.animation.is_none();
+                if is_still && model.animation.take().is_some() {
+                    resolver.scene.warnings.push(format!(
+                        "{}: its animation is not played: the scene has no [animation]",
+                        path.display()
+                    ));
+                }
                 unknown.insert(Part::add(&mut resolver.scene, model))
             }
         };

@@ -121,6 +121,19 @@ impl Animation {
         self.movers.iter().any(|m| matches!(m, Mover::Sphere { .. } | Mover::Instance { .. }))
     }
 
+    /// Whether it moves each of so many instances.
+    pub(in crate::scene) fn moved_instances(&self, count: usize) -> Vec<bool> {
+        let mut moved = vec![false; count];
+        for mover in &self.movers {
+            if let Mover::Instance { instance, .. } = mover
+                && let Some(moved) = moved.get_mut(*instance)
+            {
+                *moved = true;
+            }
+        }
+        moved
+    }
+
     /// Adds a node.
     pub fn add_node(&mut self, node: Node) -> NodeId {
         self.nodes.push(node);
@@ -175,7 +188,7 @@ impl Scene {
                 Mover::Instance { instance, node, transform } => {
                     let instance = &mut scene.instances[*instance];
                     instance.transform = world(&Some(*node)) * *transform;
-                    any_flat |= is_flat(&instance.transform);
+                    any_flat |= instance.is_flat();
                 }
                 Mover::Light { light, node, rest, direction: way, intensity } => {
                     let mut rest = rest.clone();
@@ -201,16 +214,10 @@ impl Scene {
             }
         }
         if any_flat {
-            scene.instances.retain(|instance| !is_flat(&instance.transform));
+            scene.instances.retain(|instance| !instance.is_flat());
         }
         Ok(scene)
     }
-}
-
-/// Whether a transform leaves no volume.
-fn is_flat(transform: &DAffine3) -> bool {
-    let determinant = transform.matrix3.determinant();
-    determinant == 0.0 || !determinant.is_finite()
 }
 
 fn pose_camera(
