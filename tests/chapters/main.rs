@@ -17,6 +17,7 @@
 //! - A block of `text` follows a comment `<!-- printed by COMMAND -->`: that command prints it.
 
 mod book;
+mod eclipses;
 mod pages;
 mod run;
 mod vecteur;

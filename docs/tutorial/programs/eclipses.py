@@ -38,12 +38,13 @@ def eclipse(t):
     return "de soleil" if Q.norme() < P.norme() else "de lune"
 
 
-debut = None
-for n in range(1, images + 2):
-    # au-delà de la dernière image, rien : cela termine l'éclipse en cours
-    maintenant = eclipse((n - 1) / par_seconde) if n <= images else None
-    if debut is not None and maintenant != debut[1]:
-        print(f"éclipse {debut[1]} : images {debut[0]} à {n - 1}")
-        debut = None
-    if debut is None and maintenant is not None:
-        debut = (n, maintenant)
+if __name__ == "__main__":
+    debut = None
+    for n in range(1, images + 2):
+        # au-delà de la dernière image, rien : cela termine l'éclipse en cours
+        maintenant = eclipse((n - 1) / par_seconde) if n <= images else None
+        if debut is not None and maintenant != debut[1]:
+            print(f"éclipse {debut[1]} : images {debut[0]} à {n - 1}")
+            debut = None
+        if debut is None and maintenant is not None:
+            debut = (n, maintenant)
