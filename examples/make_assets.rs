@@ -8,8 +8,10 @@
 
 #[path = "make_assets/drawing.rs"]
 mod drawing;
-#[path = "make_assets/drawings_1_3.rs"]
-mod drawings_1_3;
+#[path = "make_assets/drawings_1_2.rs"]
+mod drawings_1_2;
+#[path = "make_assets/drawings_3.rs"]
+mod drawings_3;
 #[path = "make_assets/drawings_4.rs"]
 mod drawings_4;
 #[path = "make_assets/drawings_5_6.rs"]
@@ -36,7 +38,7 @@ pub const DRAWINGS: &str = "docs/tutorial/images";
 pub fn files() -> Vec<(String, Vec<u8>)> {
     let mut files = vec![(format!("{MODELS}/room.glb"), room::glb())];
     files.extend(vase::files().into_iter().map(|(name, file)| (format!("{MODELS}/{name}"), file)));
-    let drawings = [drawings_1_3::all(), drawings_4::all(), drawings_5_6::all()];
+    let drawings = [drawings_1_2::all(), drawings_3::all(), drawings_4::all(), drawings_5_6::all()];
     for (name, drawing) in drawings.into_iter().flatten() {
         files.push((format!("{DRAWINGS}/{name}.svg"), drawing.finish()));
     }
