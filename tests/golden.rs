@@ -115,6 +115,11 @@ fn phong() {
 }
 
 #[test]
+fn first_frame_of_the_orbit() {
+    check("tutorial/6-4-orbit", [160, 80], 4);
+}
+
+#[test]
 fn alpha_10() {
     check("tutorial/3-3-alpha-10", [160, 80], 1);
 }

@@ -269,7 +269,7 @@ mod tests {
         let mut after = vec![0; 3 * 4 * 3];
         after[3 * (4 + 1)] = 9;
         after[3 * (8 + 2) + 2] = 7;
-        let part = changed(&vec![0; 3 * 4 * 3], &after, 4);
+        let part = changed(&[0; 3 * 4 * 3], &after, 4);
         assert_eq!(part, Rectangle { left: 1, top: 1, width: 2, height: 2 });
         assert_eq!(cut(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
     }

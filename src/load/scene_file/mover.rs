@@ -13,12 +13,10 @@ use crate::scene::{Camera, Light, LightKind, Sphere};
 pub fn sphere(resolver: &Resolver<'_>, table: &SphereTable, sphere: &Sphere) -> Option<Mover> {
     let rig = resolver.rig(&table.name)?;
     let radius = rig.curves.radius.clone();
-    (rig.node.is_some() || radius.is_some()).then(|| Mover::Sphere {
-        sphere: resolver.scene.spheres.len(),
-        node: rig.node,
-        center: if rig.is_own { DVec3::ZERO } else { sphere.center },
-        radius,
-    })
+    let (moves, node) = (rig.node.is_some() || radius.is_some(), rig.node);
+    let center = if rig.is_own { DVec3::ZERO } else { sphere.center };
+    let sphere = resolver.scene.spheres.len();
+    moves.then_some(Mover::Sphere { sphere, node, center, radius })
 }
 
 /// How the next light of the scene moves, if it does.

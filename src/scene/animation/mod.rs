@@ -269,7 +269,7 @@ pub fn check_frames(frames: u32) -> Result<()> {
 /// # Errors
 /// When that is not above 0, or above [`MAX_FPS`].
 pub fn check_fps(fps: f64) -> Result<()> {
-    if fps >= 1e-6 && fps <= MAX_FPS {
+    if (1e-6..=MAX_FPS).contains(&fps) {
         return Ok(());
     }
     Err(Error::input(format!("{fps} frames a second cannot be made"))
