@@ -11,7 +11,7 @@ use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering};
-use crate::scene::{Scene, Transfer, detail};
+use crate::scene::{Scene, Tone, detail};
 use crate::write::{self, Format, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -27,6 +27,8 @@ pub fn run(arguments: &Render) -> Outcome {
     if arguments.view != ViewName::Beauty {
         scene.film.spp = 1;
     }
+    scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
+    scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
     let loaded = start.elapsed();
 
     let view = View::from(arguments.view);
@@ -48,10 +50,9 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let before_write = Instant::now();
     let settings = Settings {
-        transfer: scene.film.transfer,
-        exposure: arguments.exposure,
         half: arguments.half,
         metadata: metadata(&scene, camera, view, precision),
+        ..Settings::of(&scene.film)
     };
     for path in &outputs {
         write::write(&rendering.film, path, &settings)?;
@@ -92,13 +93,19 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
         return Err(Error::input("--half is about EXR, and no .exr is asked for")
             .help("add `-o NAME.exr`, or leave --half out"));
     }
-    if arguments.exposure != 0.0 && !formats.contains(&Format::Png) {
-        return Err(Error::input("--exposure is about PNG, and no .png is asked for")
+    let shown =
+        [("--exposure", arguments.exposure.is_some()), ("--tone", arguments.tone.is_some())];
+    if let Some((flag, _)) = shown.iter().find(|(_, given)| *given)
+        && !formats.contains(&Format::Png)
+    {
+        return Err(Error::input(format!("{flag} is about PNG, and no .png is asked for"))
             .help("an EXR always holds the radiance itself"));
     }
     if arguments.view != ViewName::Beauty {
+        let [exposure, tone] = shown;
         let flags = [
-            ("--exposure", arguments.exposure != 0.0),
+            exposure,
+            tone,
             ("--half", arguments.half),
             ("--spp", arguments.tracing.spp.is_some()),
         ];
@@ -127,6 +134,7 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
             )
         });
     } else if film.view == View::Beauty {
+        let exposed = |x: f32| f64::from(x) * scene.film.exposure.exp2();
         let emits = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
         if scene.lights.is_empty() && !emits {
             found.push(
@@ -134,7 +142,7 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
                  to a material)"
                     .to_owned(),
             );
-        } else if film.pixels.iter().all(|p| p.iter().all(|&x| x <= 0.5 / 255.0)) {
+        } else if film.pixels.iter().all(|p| p.iter().all(|&x| exposed(x) <= 0.5 / 255.0)) {
             found.push(
                 "the picture is wholly black: the lights may be behind the surfaces, in their \
                  shadow, or too weak at this distance (try `--exposure 4`)"
@@ -178,10 +186,6 @@ fn metadata(
     precision: Precision,
 ) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
-    let transfer = match scene.film.transfer {
-        Transfer::Srgb => "srgb",
-        Transfer::None => "none",
-    };
     [
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("size", format!("{width}x{height}")),
@@ -189,7 +193,9 @@ fn metadata(
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
         ("view", format!("{view:?}").to_lowercase()),
         ("precision", precision.name().to_owned()),
-        ("png_transfer", transfer.to_owned()),
+        ("png_exposure", scene.film.exposure.to_string()),
+        ("png_tone", format!("{:?}", scene.film.tone).to_lowercase()),
+        ("png_transfer", format!("{:?}", scene.film.transfer).to_lowercase()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()

@@ -34,6 +34,9 @@ impl Scene {
         require((0.0..=1.0).contains(&self.film.cutoff), || {
             format!("the cutoff must be from 0 to 1, found {}", self.film.cutoff)
         })?;
+        require(self.film.exposure.is_finite(), || {
+            format!("the exposure must be finite, found {}", self.film.exposure)
+        })?;
         for (i, material) in self.materials.iter().enumerate() {
             let what = format!("material {i} (`{}`)", material.name);
             color(&format!("{what}: diffuse"), material.diffuse)?;

@@ -9,6 +9,7 @@ mod material;
 mod mesh;
 mod object;
 mod texture;
+mod tone;
 
 pub use camera::{Camera, Lens, RayMaker};
 pub use film::{FilmSettings, SamplePosition, Transfer};
@@ -17,6 +18,7 @@ pub use material::{Material, MaterialId};
 pub use mesh::{Mesh, MeshId};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
+pub use tone::Tone;
 
 use crate::geometry::{Bounds, Geometry, PrimitiveId};
 

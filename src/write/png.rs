@@ -23,20 +23,18 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
 
 /// The bytes of the picture: red, green, blue of each pixel, row by row.
 ///
-/// Beauty: `round(255 · encode(radiance · 2^exposure))`, clamped, with the transfer's curve.
-/// Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
+/// Beauty: [`Settings::byte`]. Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
 /// at the nearest hit to a dark grey at the farthest, black where nothing is hit. Id: a colour for
 /// each object, drawn from its numbers; black where nothing is hit.
 pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     let byte = |x: f32| (x * 255.0).round() as u8;
-    let gain = settings.exposure.exp2();
     let depths = || film.pixels.iter().map(|p| p[0]).filter(|z| z.is_finite());
     let (near, far) = match film.view {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
     let color = |pixel: &[f32; 3]| match film.view {
-        View::Beauty => pixel.map(|x| byte(settings.transfer.encode(x * gain))),
+        View::Beauty => pixel.map(|x| settings.byte(x)),
         View::Normal if *pixel == [0.0; 3] => [0; 3],
         View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
         View::Depth if !pixel[0].is_finite() => [0; 3],

@@ -182,7 +182,7 @@ impl Comparer<'_> {
     /// Renders the picture twice and compares.
     fn pictures(&self, heatmap: &mut Film) -> Differing {
         let options = Options { camera: self.camera, ..Options::default() };
-        let settings = Settings { transfer: self.scene.film.transfer, ..Settings::default() };
+        let settings = Settings::of(&self.scene.film);
         let film = |intersector: &dyn Intersector| {
             render::with_intersector(self.scene, &options, intersector, &|_| {}).0
         };
