@@ -184,10 +184,12 @@ fn things_without_material_share_a_plain_grey() {
 fn every_key_of_a_plane_is_read() {
     let scene = seen(
         "[[material]]\nname = \"a\"\n[[plane]]\npoint = [0, -1, 0]\nnormal = [0, 5, 0]\n\
-         material = \"a\"\nchecker = { colors = [[1, 0, 0], 0.5], size = 2 }\ncasts_shadow = false",
+         material = \"a\"\nchecker = { colors = [[1, 0, 0], 0.5], size = 2 }\n\
+         texture_size = 3\ncasts_shadow = false",
     );
     let plane = scene.planes[0];
     assert_eq!((plane.point, plane.normal, plane.casts_shadow), (-DVec3::Y, DVec3::Y, false));
+    assert_eq!(plane.texture_size, 3.0);
     let checker = plane.checker.unwrap();
     assert_eq!((checker.colors, checker.size), ([Vec3::X, Vec3::splat(0.5)], 2.0));
 }

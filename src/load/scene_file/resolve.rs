@@ -226,6 +226,7 @@ impl Resolver<'_> {
         });
         let plane = Plane {
             checker,
+            texture_size: table.texture_size.map_or(1.0, |size| size.0),
             casts_shadow: table.casts_shadow.unwrap_or(true),
             ..Plane::new(table.point.0, table.normal.0, material)
         };

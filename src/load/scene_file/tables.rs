@@ -171,6 +171,9 @@ pub struct PlaneTable {
     pub material: Option<At<String>>,
     /// A checker in place of the material's diffuse colour.
     pub checker: Option<Table<CheckerTable>>,
+    /// The side of the square that a picture of its material takes before it repeats.
+    #[schemars(extend("default" = 1))]
+    pub texture_size: Option<Length>,
     /// Whether it keeps light from what lies behind it.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
