@@ -2,6 +2,7 @@
 
 mod camera;
 pub mod check;
+pub mod closed;
 pub mod detail;
 mod film;
 mod light;
