@@ -94,8 +94,8 @@ pub fn with_intersector(
 ) -> (Film, Counts, Duration) {
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
-    let rays = scene.cameras[options.camera].rays(size);
-    let integrator = Integrator::new(scene, intersector, rays, options.view, options.tiling);
+    let camera = &scene.cameras[options.camera];
+    let integrator = Integrator::new(scene, intersector, camera, options.view, options.tiling);
     let strip = size[0] as usize * options.tiling.rows;
     let total = film.pixels.len().div_ceil(strip);
     let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));

@@ -72,6 +72,7 @@ impl Surface {
             direction: arrival.toward,
             tmax: if arrival.bounded { 1.0 } else { f64::INFINITY },
             from: Some(Departure { id: self.id, side }),
+            past: None,
         }
     }
 }

@@ -19,4 +19,4 @@ pub mod triangle;
 pub use bounds::Bounds;
 pub use estimate::Estimate;
 pub use hit::{Geometry, Hit, PrimitiveId};
-pub use ray::{Departure, Ray, Side};
+pub use ray::{Departure, Passage, Ray, Side};

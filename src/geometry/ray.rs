@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::PrimitiveId;
+use crate::geometry::{Hit, PrimitiveId};
 
 /// The side of a surface: the geometric normal's, or the other one.
 ///
@@ -15,6 +15,16 @@ pub enum Side {
     Back,
 }
 
+impl Side {
+    /// The other side.
+    pub fn opposite(self) -> Self {
+        match self {
+            Side::Front => Side::Back,
+            Side::Back => Side::Front,
+        }
+    }
+}
+
 /// What a ray was spawned from, so that it is not stopped by the very surface it leaves.
 ///
 /// No distance is skipped: the primitive is left out by identity, and a sphere that is left
@@ -25,6 +35,27 @@ pub struct Departure {
     pub id: PrimitiveId,
     /// The side into which the ray goes.
     pub side: Side,
+}
+
+/// How far a ray has come that went straight through surfaces.
+///
+/// It keeps its origin and direction, and so meets what lies beyond at the very `t` at which it
+/// would if nothing had stood there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// The `t` of the last surface that it went through.
+    pub t: f64,
+    /// That surface.
+    pub through: Departure,
+}
+
+impl Passage {
+    /// Whether a crossing at `t` lies behind, in the order in which hits count: by `t`, then by
+    /// what is hit. Of the sphere that was gone into, only the far side lies ahead.
+    #[inline]
+    pub fn is_beyond(&self, t: f64, id: PrimitiveId) -> bool {
+        t < self.t || (t == self.t && id <= self.through.id)
+    }
 }
 
 /// A half-line from `origin` along `direction`, up to `tmax`.
@@ -40,17 +71,31 @@ pub struct Ray {
     pub tmax: f64,
     /// The surface it left, if any.
     pub from: Option<Departure>,
+    /// How far it has come, if it went straight through a surface: it meets only what lies ahead.
+    pub past: Option<Passage>,
 }
 
 impl Ray {
     /// An unbounded ray that left no surface.
+    #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, tmax: f64::INFINITY, from: None }
+        Self { origin, direction, tmax: f64::INFINITY, from: None, past: None }
     }
 
     /// The segment from `origin` to `target`, both ends excluded.
     pub fn between(origin: DVec3, target: DVec3) -> Self {
-        Self { origin, direction: target - origin, tmax: 1.0, from: None }
+        Self { origin, direction: target - origin, tmax: 1.0, from: None, past: None }
+    }
+
+    /// The same ray beyond a surface that it met, on whose `side` it goes on.
+    pub fn beyond(&self, hit: &Hit, side: Side) -> Self {
+        let through = Departure { id: hit.id, side };
+        Self { past: Some(Passage { t: hit.t, through }), ..*self }
+    }
+
+    /// The `t` up to which it has come.
+    pub fn start(&self) -> f64 {
+        self.past.map_or(0.0, |past| past.t)
     }
 
     /// The point at `t`.

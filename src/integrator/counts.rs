@@ -52,6 +52,25 @@ impl NotFinite {
     }
 }
 
+/// What made a sample's radiance not finite; see [`NotFinite`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    Light,
+    Surface,
+    Sum,
+}
+
+impl Cause {
+    pub(super) fn count(self, counts: &mut Counts) {
+        let to = &mut counts.not_finite;
+        *match self {
+            Cause::Light => &mut to.light,
+            Cause::Surface => &mut to.surface,
+            Cause::Sum => &mut to.sum,
+        } += 1;
+    }
+}
+
 impl std::ops::AddAssign for Counts {
     fn add_assign(&mut self, other: Self) {
         self.rays.primary += other.rays.primary;

@@ -3,7 +3,7 @@
 //! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`leaving`],
 //! [`starts_in_plane`] and [`starts_on`] say which those are.
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, plane, sphere, triangle};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
 use crate::intersect::Precision;
 pub use crate::intersect::leaving::{Leaving, leaving, starts_in_plane, starts_on};
 use crate::scene::Scene;
@@ -28,6 +28,32 @@ impl Primitives<'_> {
         inverse_length_squared: f64,
         limit: f64,
     ) -> Option<Hit> {
+        let Some(past) = ray.past else {
+            return self.sphere_root(index, ray, inverse_length_squared, limit, false);
+        };
+        let id = PrimitiveId::sphere(index);
+        if past.through.id == id {
+            // Gone into, it is met at its far side, which rounding may put at the same t.
+            return (past.through.side == Side::Back)
+                .then(|| self.sphere_root(index, ray, inverse_length_squared, limit, true))?
+                .filter(|hit| hit.t >= past.t);
+        }
+        [false, true].into_iter().find_map(|far| {
+            self.sphere_root(index, ray, inverse_length_squared, limit, far)
+                .filter(|hit| !past.is_beyond(hit.t, id))
+        })
+    }
+
+    /// The first root that counts, or the far one.
+    #[inline(always)]
+    fn sphere_root(
+        &self,
+        index: u32,
+        ray: &Ray,
+        inverse_length_squared: f64,
+        limit: f64,
+        far: bool,
+    ) -> Option<Hit> {
         let s = &self.scene.spheres[index as usize];
         let (origin, direction) = (ray.origin, ray.direction);
         let inverse = inverse_length_squared;
@@ -36,9 +62,9 @@ impl Primitives<'_> {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
                 let t = sphere::first_root(roots, ray.tmax, false)?;
                 match leaving(self.scene, index, ray) {
-                    Leaving::No => t,
                     Leaving::Outward => return None,
-                    Leaving::Inward => sphere::first_root(roots, ray.tmax, true)?,
+                    Leaving::No if !far => t,
+                    _ => sphere::first_root(roots, ray.tmax, true)?,
                 }
             }
             Precision::Certified => {
@@ -48,8 +74,8 @@ impl Primitives<'_> {
                     return None;
                 }
                 let inward = match leaving(self.scene, index, ray) {
-                    Leaving::No => false,
                     Leaving::Outward => return None,
+                    Leaving::No => far,
                     Leaving::Inward => true,
                 };
                 first_root(s.center, s.radius, origin, direction, ray.tmax, inward)?
@@ -70,10 +96,10 @@ impl Primitives<'_> {
                 plane::certified::crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
             }
         };
-        if starts_in_plane(self.scene, index, ray) {
+        let id = PrimitiveId::plane(index);
+        if starts_in_plane(self.scene, index, ray) || lies_behind(ray, t, id) {
             return None;
         }
-        let id = PrimitiveId::plane(index);
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
@@ -96,7 +122,8 @@ impl Primitives<'_> {
             }
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
-        (!starts_on(self.scene, corners, ray)).then_some(hit)
+        let left = starts_on(self.scene, corners, ray) || lies_behind(ray, hit.t, id);
+        (!left).then_some(hit)
     }
 
     /// Where `ray` meets whatever `id` names.
@@ -130,10 +157,16 @@ impl Primitives<'_> {
     }
 }
 
+/// Whether a surface that a line crosses once, at `t`, lies behind a ray that went through others.
+#[inline(always)]
+fn lies_behind(ray: &Ray, t: f64, id: PrimitiveId) -> bool {
+    ray.past.is_some_and(|past| past.through.id == id || past.is_beyond(t, id))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Departure, Side};
+    use crate::geometry::Departure;
     use crate::scene::{Instance, MaterialId, Mesh, Plane, Sphere};
     use glam::{DAffine3, DVec3};
 

@@ -102,16 +102,21 @@ pub struct RayMaker {
 }
 
 impl RayMaker {
+    /// The one point that all rays start from, if there is one.
+    pub fn eye(&self) -> Option<DVec3> {
+        (!self.parallel).then_some(self.origin)
+    }
+
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
     #[inline]
     pub fn through(&self, x: f64, y: f64) -> Ray {
         let offset =
             self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
-        if self.parallel {
-            Ray::new(self.origin + offset, self.forward)
-        } else {
-            Ray::new(self.origin, offset + self.forward)
-        }
+        let (moved, turned) = match self.parallel {
+            true => (offset, DVec3::ZERO),
+            false => (DVec3::ZERO, offset),
+        };
+        Ray::new(self.origin + moved, turned + self.forward)
     }
 }
 

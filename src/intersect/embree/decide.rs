@@ -41,6 +41,12 @@ impl<const W: usize> Context<'_, W> {
         let Some(estimates) = self.estimates(shape, valid) else { return };
         for i in 0..W {
             let e = estimates[i];
+            // What is ahead of a ray that went through surfaces is not the first root.
+            if self.goes_on && valid[i] != 0 {
+                self.settle(i, shape.id());
+                tfar[i] = self.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
+                continue;
+            }
             if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
                 continue;
             }
@@ -105,7 +111,7 @@ impl<const W: usize> Context<'_, W> {
             if self.leaves && shape.is_left(self, i) {
                 continue;
             }
-            let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];
+            let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i] && !self.goes_on;
             let blocked = if clear && !(self.leaves && shape.may_be_left(self, i)) {
                 true
             } else {

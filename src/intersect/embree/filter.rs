@@ -89,7 +89,7 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     let height = context.doubt / 512.0;
     let clear =
         |way: f64| way > f64::from(context.doubt) && way * f64::from(rise) > f64::from(height);
-    let sure = clear(f64::from(t)) && clear(end - f64::from(t));
+    let sure = ray.past.is_none() && clear(f64::from(t)) && clear(end - f64::from(t));
     let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
     sure || primitives.triangle(id, ray, f64::INFINITY).is_some()
 }

@@ -89,8 +89,10 @@ pub struct Context<'a, const W: usize> {
     /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
     /// tested again in f64.
     pub doubt: f32,
-    /// Whether any ray of the packet left a surface.
+    /// Whether any ray of the packet left a surface, or went through one.
     pub leaves: bool,
+    /// Whether any went straight through one.
+    pub goes_on: bool,
     /// The sphere that each ray left toward its outside, and so does not meet, and toward its
     /// inside; `INVALID` for what left none.
     pub outward: [u32; W],
@@ -108,7 +110,8 @@ impl<'a, const W: usize> Context<'a, W> {
         doubt: f32,
         reach: f64,
     ) -> Self {
-        let leaves = rays.iter().any(|ray| ray.from.is_some());
+        let goes_on = rays.iter().any(|ray| ray.past.is_some());
+        let leaves = goes_on || rays.iter().any(|ray| ray.from.is_some());
         let (mut outward, mut inward, mut slack) = ([INVALID; W], [INVALID; W], 0.0);
         if leaves {
             let mut farthest = reach;
@@ -134,6 +137,7 @@ impl<'a, const W: usize> Context<'a, W> {
             nearest: Nearest::new(exact.tmax),
             doubt,
             leaves,
+            goes_on,
             outward,
             inward,
             slack,

@@ -8,11 +8,12 @@
 use embree4_sys as sys;
 
 use crate::geometry::{Bounds, sphere};
+use crate::intersect::Precision;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit};
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
-use crate::intersect::primitive::{Leaving, leaving};
+use crate::intersect::primitive::{Leaving, Primitives, leaving};
 use crate::scene::Scene;
 use glam::DVec3;
 
@@ -159,6 +160,13 @@ fn crossings<const W: usize>(
     valid: &[i32; W],
     primitive: u32,
 ) -> Option<[f64; W]> {
+    if context.goes_on {
+        // What lies ahead of a ray that went through surfaces is not the first root: one by one.
+        return Some(std::array::from_fn(|i| match valid[i] {
+            0 => f64::INFINITY,
+            _ => crossing(context, s, primitive, i),
+        }));
+    }
     let mut crosses = [false; W];
     let mut any = false;
     for i in 0..W {
@@ -196,6 +204,12 @@ fn crossing<const W: usize>(context: &Context<'_, W>, s: &Entry, primitive: u32,
     let line = line(context, s, i);
     if !line.crosses() {
         return f64::INFINITY;
+    }
+    if let Some(ray) = context.rays.get(i).filter(|ray| ray.past.is_some()) {
+        let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
+        let inverse = context.exact.inverse_length_squared[i];
+        let hit = primitives.sphere(primitive, ray, inverse, f64::INFINITY);
+        return hit.map_or(f64::INFINITY, |hit| hit.t);
     }
     let first = |inward| sphere::first_root(line.roots(), f64::INFINITY, inward);
     let left = |ray| leaving(context.scene, primitive, ray);

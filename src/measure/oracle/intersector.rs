@@ -1,6 +1,6 @@
 //! The oracle in an intersector's place.
 
-use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray};
+use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
 use crate::intersect::primitive::{Leaving, leaving, starts_in_plane, starts_on};
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::Scene;
@@ -38,13 +38,25 @@ impl<'s> Oracle<'s> {
     }
 
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+        let Some(past) = ray.past else { return self.crossing(id, ray, false) };
+        if past.through.id != id {
+            return [false, true]
+                .into_iter()
+                .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.is_beyond(h.t, id)));
+        }
+        let inside = id.geometry == Geometry::Spheres && past.through.side == Side::Back;
+        inside.then(|| self.crossing(id, ray, true))?.filter(|hit| hit.t >= past.t)
+    }
+
+    /// Where the ray meets a primitive; a sphere first, or at its far side.
+    fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<Hit> {
         if ray.from.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
             return None;
         }
         let (t, u, v) = match id.geometry {
             Geometry::Spheres => {
                 let inward = match leaving(self.scene, id.primitive, ray) {
-                    Leaving::No => false,
+                    Leaving::No => far,
                     Leaving::Outward => return None,
                     Leaving::Inward => true,
                 };

@@ -1,6 +1,11 @@
-//! How much light a surface sends to the eye: Lambert and Phong. Traces nothing.
+//! How much light a surface sends to the eye: Lambert and Phong, and what it sends on. Traces
+//! nothing.
+
+mod interface;
 
 use glam::{DVec3, Vec3};
+
+pub use interface::{Interface, transmittance};
 
 /// Colours of a surface at one point, with its textures applied.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,290 @@
+//! Bodies that light goes through, and which of them a ray is in.
+
+use glam::{DVec3, Vec3};
+use smallvec::SmallVec;
+
+use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
+use crate::intersect::{Coherence, Intersector};
+use crate::scene::{MaterialId, Scene};
+use crate::surface::Surface;
+
+/// What fills a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    /// Its index of refraction.
+    pub ior: f64,
+    /// What it absorbs for each unit of length.
+    pub absorption: Vec3,
+}
+
+/// Where there is no body.
+const EMPTY_SPACE: Medium = Medium { ior: 1.0, absorption: Vec3::ZERO };
+
+/// A place in the order of the bodies: where two overlap, the one with the lesser rank holds.
+type Rank = u32;
+
+/// What has no rank: it is no body.
+const NONE: Rank = Rank::MAX;
+
+/// The bodies that hold a point, in their order; one stands twice where two parts of one mesh
+/// overlap. The first fills the place.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Interiors(SmallVec<[Rank; 4]>);
+
+impl Interiors {
+    fn with(&self, rank: Rank) -> Self {
+        let mut all = self.0.clone();
+        all.insert(all.partition_point(|&r| r <= rank), rank);
+        Self(all)
+    }
+
+    fn without(&self, rank: Rank) -> Self {
+        let mut all = self.0.clone();
+        if let Some(at) = all.iter().position(|&r| r == rank) {
+            all.remove(at);
+        }
+        Self(all)
+    }
+}
+
+/// The bodies of a scene: spheres, half-spaces behind planes and closed meshes whose material
+/// lets light through.
+///
+/// What fills a point depends on which bodies hold it, and not on how a ray came there: so a path
+/// of light is the same both ways. Of several the one with the greatest priority fills it; of
+/// equal ones the one with the smallest bounding box, so that a bubble is in its glass and the
+/// glass in the water; then the first in the scene.
+#[derive(Debug)]
+pub struct Bodies {
+    media: Vec<Medium>,
+    spheres: Vec<Rank>,
+    planes: Vec<Rank>,
+    instances: Vec<Rank>,
+}
+
+impl Bodies {
+    /// The bodies of a checked scene.
+    pub fn of(scene: &Scene) -> Self {
+        let material = |id: MaterialId| &scene.materials[id.0 as usize];
+        let meshes: Vec<_> = scene.meshes.iter().map(|mesh| mesh.bounds()).collect();
+        let volume = |size: DVec3| size.x * size.y * size.z;
+        let spheres =
+            scene.spheres.iter().map(|s| (s.material, volume(DVec3::splat(2.0 * s.radius))));
+        let planes = scene.planes.iter().map(|p| (p.material, f64::INFINITY));
+        let instances = scene.instances.iter().map(|i| {
+            let bounds = meshes[i.mesh.0 as usize].transformed(&i.transform);
+            (i.material, volume(bounds.upper - bounds.lower))
+        });
+        let all: Vec<(MaterialId, f64)> = spheres.chain(planes).chain(instances).collect();
+        let mut order: Vec<usize> =
+            (0..all.len()).filter(|&i| material(all[i].0).is_body()).collect();
+        order.sort_by(|&a, &b| {
+            let ((a, size_of_a), (b, size_of_b)) = (all[a], all[b]);
+            let priority = material(b).priority.cmp(&material(a).priority);
+            priority.then(size_of_a.total_cmp(&size_of_b))
+        });
+        if order.is_empty() {
+            let (media, spheres, planes, instances) = Default::default();
+            return Self { media, spheres, planes, instances };
+        }
+        let mut ranks = vec![NONE; all.len()];
+        let mut media = Vec::with_capacity(order.len());
+        for (rank, i) in order.into_iter().enumerate() {
+            ranks[i] = rank as Rank;
+            let of = material(all[i].0);
+            media.push(Medium { ior: of.ior, absorption: of.absorption });
+        }
+        let instances = ranks.split_off(scene.spheres.len() + scene.planes.len());
+        let planes = ranks.split_off(scene.spheres.len());
+        Self { media, spheres: ranks, planes, instances }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.media.is_empty()
+    }
+
+    /// What fills a point that these bodies hold.
+    #[inline]
+    pub fn medium(&self, inside: &Interiors) -> Medium {
+        inside.0.first().map_or(EMPTY_SPACE, |&rank| self.media[rank as usize])
+    }
+
+    fn rank(&self, id: PrimitiveId) -> Option<Rank> {
+        let ranks = match id.geometry {
+            Geometry::Spheres => self.spheres.get(id.primitive as usize),
+            Geometry::Planes => self.planes.get(id.primitive as usize),
+            Geometry::Mesh(_) => self.instances.get(id.instance as usize),
+        };
+        ranks.copied().filter(|&rank| rank != NONE)
+    }
+
+    /// What lies before and behind a surface that is seen from its `side` by a ray in `inside`.
+    ///
+    /// A ray that comes out of a body that it never went into, through a hole in its mesh or from
+    /// the very surface of another, was in it.
+    pub fn around(&self, id: PrimitiveId, side: Side, inside: &Interiors) -> Around {
+        let Some(rank) = self.rank(id) else {
+            return Around { before: inside.clone(), behind: inside.clone(), is_hidden: false };
+        };
+        let (before, behind) = match side {
+            Side::Front => (inside.clone(), inside.with(rank)),
+            Side::Back if inside.0.contains(&rank) => (inside.clone(), inside.without(rank)),
+            Side::Back => (inside.with(rank), inside.clone()),
+        };
+        let is_hidden = before.0.first() == behind.0.first();
+        Around { before, behind, is_hidden }
+    }
+
+    /// The bodies that hold a point.
+    ///
+    /// Spheres and half-spaces are known by their equations; of meshes, those that a ray from the
+    /// point comes out of more often than it goes in.
+    pub fn holding(&self, point: DVec3, scene: &Scene, intersector: &dyn Intersector) -> Interiors {
+        let mut inside = Interiors::default();
+        for (sphere, &rank) in scene.spheres.iter().zip(&self.spheres) {
+            if rank != NONE
+                && (point - sphere.center).length_squared() < sphere.radius * sphere.radius
+            {
+                inside = inside.with(rank);
+            }
+        }
+        for (plane, &rank) in scene.planes.iter().zip(&self.planes) {
+            if rank != NONE && plane.normal.dot(point - plane.point) < 0.0 {
+                inside = inside.with(rank);
+            }
+        }
+        if self.instances.iter().all(|&rank| rank == NONE) {
+            return inside;
+        }
+        let mut depth = vec![0i64; self.instances.len()];
+        // Along no axis, so that it seldom runs along a face; any direction would do.
+        let mut ray = Ray::new(point, DVec3::new(0.537_7, 0.243_1, 0.807_4));
+        let mut hit = [None];
+        loop {
+            intersector.closest(&[ray], Coherence::Incoherent, &mut hit);
+            let Some(hit) = &hit[0] else { break };
+            let surface = Surface::new(scene, &ray, hit);
+            if let Geometry::Mesh(_) = hit.id.geometry {
+                depth[hit.id.instance as usize] += match surface.side {
+                    Side::Front => -1,
+                    Side::Back => 1,
+                };
+            }
+            ray = ray.beyond(hit, surface.side.opposite());
+        }
+        for (&rank, depth) in self.instances.iter().zip(depth) {
+            for _ in 0..depth.max(0) {
+                if rank != NONE {
+                    inside = inside.with(rank);
+                }
+            }
+        }
+        inside
+    }
+}
+
+/// What lies on the two sides of a surface.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Around {
+    /// The bodies on the side that the ray comes from.
+    pub before: Interiors,
+    /// Those on the other side.
+    pub behind: Interiors,
+    /// Whether the same body fills both, so that the surface is none: it lies within a body that
+    /// goes before its own.
+    pub is_hidden: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::intersect::{BruteForce, Precision};
+    use crate::scene::{Instance, Material, Mesh, Plane, Sphere};
+    use glam::DAffine3;
+
+    fn glass(ior: f64, priority: i32) -> Material {
+        Material { transmit: Vec3::ONE, ior, priority, ..Material::default() }
+    }
+
+    /// Water below y = 0, a glass ball across its surface, a bubble in the ball, an opaque ball.
+    fn pond(priority_of_water: i32) -> Scene {
+        let mut scene = Scene::default();
+        let water = scene.add_material(glass(1.33, priority_of_water));
+        let ball = scene.add_material(glass(1.5, 0));
+        let air = scene.add_material(glass(1.0, 0));
+        let matt = scene.add_material(Material::default());
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, water));
+        scene.spheres.push(Sphere::new(DVec3::ZERO, 2.0, ball));
+        scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, air));
+        scene.spheres.push(Sphere::new(DVec3::X * 9.0, 1.0, matt));
+        scene
+    }
+
+    fn ior_at(scene: &Scene, point: DVec3) -> f64 {
+        let bodies = Bodies::of(scene);
+        let intersector = BruteForce::new(scene, Precision::Fast);
+        bodies.medium(&bodies.holding(point, scene, &intersector)).ior
+    }
+
+    #[test]
+    fn the_smaller_of_two_bodies_fills_where_both_are() {
+        let scene = pond(0);
+        let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
+        assert_eq!([at(0.0, 9.0), at(0.0, -9.0)], [1.0, 1.33]);
+        assert_eq!([at(0.0, 1.5), at(0.0, -1.5), at(0.0, -0.5)], [1.5, 1.5, 1.0]);
+    }
+
+    #[test]
+    fn a_greater_priority_goes_before_size() {
+        let scene = pond(1);
+        let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
+        assert_eq!([at(0.0, -1.5), at(0.0, -0.5), at(0.0, 1.5)], [1.33, 1.33, 1.5]);
+    }
+
+    #[test]
+    fn a_surface_within_a_body_that_goes_before_it_is_hidden() {
+        let scene = pond(0);
+        let bodies = Bodies::of(&scene);
+        let ball = bodies.around(PrimitiveId::sphere(0), Side::Front, &Interiors::default());
+        assert!(!ball.is_hidden);
+        let water = bodies.around(PrimitiveId::plane(0), Side::Front, &ball.behind);
+        assert!(water.is_hidden);
+        let out = bodies.around(PrimitiveId::sphere(0), Side::Back, &water.behind);
+        assert!(!out.is_hidden);
+        assert_eq!([&out.before, &out.behind].map(|i| bodies.medium(i).ior), [1.5, 1.33]);
+    }
+
+    #[test]
+    fn what_is_no_body_changes_nothing() {
+        let scene = pond(0);
+        let bodies = Bodies::of(&scene);
+        let inside = Interiors::default().with(1);
+        let around = bodies.around(PrimitiveId::sphere(2), Side::Front, &inside);
+        assert_eq!((&around.before, &around.behind), (&inside, &inside));
+        assert!(!around.is_hidden);
+    }
+
+    #[test]
+    fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
+        let scene = pond(0);
+        let bodies = Bodies::of(&scene);
+        let around = bodies.around(PrimitiveId::sphere(0), Side::Back, &Interiors::default());
+        assert_eq!([&around.before, &around.behind].map(|i| bodies.medium(i).ior), [1.5, 1.0]);
+    }
+
+    #[test]
+    fn eye_within_a_closed_mesh_is_in_it_and_eye_beside_it_is_not() {
+        let mut scene = Scene::default();
+        let material = scene.add_material(glass(1.5, 0));
+        let mesh = scene.add_mesh(Mesh {
+            positions: vec![[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [0., 0., 4.]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+            ..Mesh::default()
+        });
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+        assert_eq!(ior_at(&scene, DVec3::splat(0.5)), 1.5);
+        assert_eq!(ior_at(&scene, DVec3::splat(-0.5)), 1.0);
+        assert_eq!(ior_at(&scene, DVec3::splat(3.0)), 1.0);
+    }
+}

@@ -1,0 +1,266 @@
+//! Light that goes on: off mirrors, into glass and out of it.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Departure, Hit, Ray, Side};
+use crate::integrator::bodies::{Around, Interiors};
+use crate::integrator::{Counts, Integrator, Scratch, Wave};
+use crate::intersect::Coherence;
+use crate::scene::Material;
+use crate::shading::{Interface, reflect};
+use crate::surface::Surface;
+
+/// Where a ray comes from, and what it is worth.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    /// The sample that it adds to.
+    pub sample: u32,
+    /// How many surfaces sent it on.
+    pub depth: u32,
+    /// The share that what it brings back has of the sample.
+    pub throughput: DVec3,
+    /// The bodies that it is in.
+    pub inside: Interiors,
+}
+
+/// A ray that a surface sent on.
+#[derive(Clone, Debug)]
+pub(super) struct Next {
+    /// The ray.
+    pub ray: Ray,
+    /// Whether it went through.
+    pub is_refracted: bool,
+    /// Its path.
+    pub path: Path,
+}
+
+/// The most rays that are traced together; so many more wait at most for each level of depth.
+const WAVE: usize = 1 << 14;
+
+/// A share of which even the greatest f32 is less than half of the least one: it changes no sum.
+const NOTHING: f64 = 1.0 / (1u128 << 127) as f64 / (1u128 << 127) as f64 / (1u64 << 26) as f64;
+
+impl Integrator<'_> {
+    /// Works out the samples of a wave of primary rays that have their hits.
+    ///
+    /// The rays that surfaces send on form the next wave, in the order in which the surfaces were
+    /// met; so that a sample's sum has one order. Where there are too many for one wave, it is cut:
+    /// between samples, which do not depend on each other, or, if all are of one sample, in the
+    /// middle, whatever else is traced with them.
+    pub(super) fn follow(&self, scratch: &mut Scratch, counts: &mut Counts) {
+        let Scratch { wave, sample, next, .. } = scratch;
+        sample.clear();
+        sample.resize(wave.rays.len(), Vec3::ZERO);
+        wave.paths.clear();
+        wave.paths.extend((0..).zip(&wave.rays).map(|(sample, ray)| {
+            let inside = match &self.eye {
+                Some(inside) => inside.clone(),
+                None => self.bodies.holding(ray.origin, self.scene, self.intersector),
+            };
+            Path { sample, depth: 0, throughput: DVec3::ONE, inside }
+        }));
+        next.clear();
+        self.finish(scratch, counts);
+        let mut waiting = vec![std::mem::take(&mut scratch.next)];
+        while let Some(mut rays) = waiting.pop() {
+            if rays.len() > WAVE {
+                let second = rays.split_off(middle(&rays));
+                waiting.extend([second, rays]);
+                continue;
+            }
+            let wave = &mut scratch.wave;
+            wave.rays.clear();
+            wave.paths.clear();
+            for next in rays.drain(..) {
+                let of_kind = match next.is_refracted {
+                    true => &mut counts.rays.refraction,
+                    false => &mut counts.rays.reflection,
+                };
+                *of_kind += 1;
+                wave.rays.push(next.ray);
+                wave.paths.push(next.path);
+            }
+            if wave.rays.is_empty() {
+                scratch.next = rays; // Its memory serves the next tile.
+                continue;
+            }
+            wave.trace(self.intersector, Coherence::Incoherent);
+            self.finish(scratch, counts);
+            let sent = std::mem::replace(&mut scratch.next, rays);
+            waiting.push(sent);
+        }
+    }
+
+    /// Adds what the rays of a wave bring back to their samples, and sends on what goes on from
+    /// there, to `scratch.next`.
+    fn finish(&self, scratch: &mut Scratch, counts: &mut Counts) {
+        let Scratch { wave, light, sample, next, .. } = scratch;
+        if self.transmits {
+            self.pass_clear(wave, counts);
+        }
+        self.shade(wave, light, counts);
+        for (radiance, path) in light.radiance.iter().zip(&wave.paths) {
+            let to = &mut sample[path.sample as usize];
+            if !to.is_nan() && !radiance.is_nan() {
+                *to += (path.throughput * radiance.as_dvec3()).as_vec3();
+            }
+        }
+        for (i, cause) in light.spoilt.drain(..) {
+            let to = &mut sample[wave.paths[i as usize].sample as usize];
+            if !to.is_nan() {
+                cause.count(counts);
+                *to = Vec3::NAN;
+            }
+        }
+        for (i, surface) in &light.bounces {
+            let i = *i as usize;
+            if let Some(hit) = &wave.hits[i] {
+                self.send_on(&wave.rays[i], hit, surface, &wave.paths[i], next);
+            }
+        }
+    }
+
+    /// Takes rays through what is no surface, and off their throughput what is absorbed on their
+    /// way. They go on in the same wave, so that nothing tells that something was there.
+    fn pass_clear(&self, wave: &mut Wave, counts: &mut Counts) {
+        let Wave { rays, hits, paths } = wave;
+        let (mut passed, mut ahead, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let mut open: Vec<u32> = (0..rays.len() as u32).collect();
+        while !open.is_empty() {
+            passed.clear();
+            ahead.clear();
+            for &i in &open {
+                let at = i as usize;
+                let (ray, path) = (&mut rays[at], &mut paths[at]);
+                let end = hits[at].map_or(f64::INFINITY, |hit| hit.t);
+                path.throughput *= self.absorbed(ray, end, &path.inside);
+                let Some(hit) = &hits[at] else { continue };
+                let material = &self.scene.materials[self.scene.material_of(hit.id).0 as usize];
+                if material.transmit == Vec3::ZERO {
+                    continue;
+                }
+                let surface = Surface::new(self.scene, ray, hit);
+                let around = self.bodies.around(hit.id, surface.side, &path.inside);
+                if self.is_clear(material, &around) {
+                    *ray = ray.beyond(hit, surface.side.opposite());
+                    path.inside = around.behind;
+                    passed.push(i);
+                    ahead.push(*ray);
+                }
+            }
+            found.clear();
+            found.resize(ahead.len(), None);
+            self.intersector.closest(&ahead, Coherence::Incoherent, &mut found);
+            counts.rays.refraction += ahead.len() as u64;
+            for (&i, &hit) in passed.iter().zip(&found) {
+                hits[i as usize] = hit;
+            }
+            std::mem::swap(&mut open, &mut passed);
+        }
+    }
+
+    /// Whether a surface is none: hidden in another body, or clear and with the same index of
+    /// refraction on both sides.
+    fn is_clear(&self, material: &Material, around: &Around) -> bool {
+        let ior = |inside| self.bodies.medium(inside).ior;
+        let behind = if material.thin { material.ior } else { ior(&around.behind) };
+        let clear = material.transmit == Vec3::ONE && material.emission == Vec3::ZERO;
+        around.is_hidden || (clear && ior(&around.before) == behind)
+    }
+
+    /// The rays that a surface sends on, which `ray` hit.
+    fn send_on(&self, ray: &Ray, hit: &Hit, surface: &Surface, path: &Path, next: &mut Vec<Next>) {
+        if path.depth >= self.scene.film.max_depth {
+            return;
+        }
+        let material = &self.scene.materials[surface.material.0 as usize];
+        let around = self.bodies.around(surface.id, surface.side, &path.inside);
+        let scattered = self.scatter(material, surface, &around, ray.direction.normalize());
+        let mut send = |ray: Ray, share: DVec3, is_refracted: bool, inside: Interiors| {
+            let throughput = path.throughput * share;
+            if throughput.max_element() > self.scene.film.cutoff.max(NOTHING) {
+                let (sample, depth) = (path.sample, path.depth + 1);
+                let path = Path { sample, depth, throughput, inside };
+                next.push(Next { ray, is_refracted, path });
+            }
+        };
+        let spawn = |direction: DVec3, side: Side| Ray {
+            from: Some(Departure { id: surface.id, side }),
+            ..Ray::new(surface.position, direction)
+        };
+        let [back, through] = scattered.shares;
+        send(spawn(scattered.reflected, surface.side), back, false, around.before);
+        let onward = surface.side.opposite();
+        let ray = match scattered.refracted {
+            Some(direction) => spawn(direction, onward),
+            None => ray.beyond(hit, onward),
+        };
+        send(ray, through, true, around.behind);
+    }
+
+    /// What becomes of light that comes along `incoming`, of length 1.
+    fn scatter(
+        &self,
+        material: &Material,
+        surface: &Surface,
+        around: &Around,
+        incoming: DVec3,
+    ) -> Scattered {
+        let facing = surface.facing_normal();
+        let shading = surface.normal * -surface.normal.dot(incoming).signum();
+        let ior = |inside| self.bodies.medium(inside).ior;
+        let by = |normal: DVec3| {
+            let cosine = -normal.dot(incoming);
+            let interface = if material.transmit == Vec3::ZERO {
+                Interface::new(cosine, 1.0, 1.0)
+            } else if material.thin {
+                Interface::sheet(cosine, ior(&around.before), material.ior)
+            } else {
+                Interface::new(cosine, ior(&around.before), ior(&around.behind))
+            };
+            let refracted = match interface.is_straight() {
+                true => None,
+                false => interface.refract(incoming, normal),
+            };
+            let (reflect_share, transmit) =
+                (material.reflect.as_dvec3(), material.transmit.as_dvec3());
+            Scattered {
+                reflected: reflect(incoming, normal).normalize(),
+                refracted,
+                shares: [
+                    reflect_share + transmit * interface.reflected,
+                    transmit * (1.0 - interface.reflected),
+                ],
+            }
+        };
+        let scattered = by(shading);
+        // An interpolated normal may send light to the wrong side of the surface itself.
+        let wrong = scattered.reflected.dot(facing) <= 0.0
+            || scattered.refracted.is_some_and(|refracted| refracted.dot(facing) >= 0.0);
+        if wrong && shading != facing { by(facing) } else { scattered }
+    }
+}
+
+/// Where a surface sends light, and how much of it.
+struct Scattered {
+    reflected: DVec3,
+    /// `None` where it goes straight on, and where all is reflected.
+    refracted: Option<DVec3>,
+    /// Of the reflected and of the refracted ray.
+    shares: [DVec3; 2],
+}
+
+/// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.
+fn middle(rays: &[Next]) -> usize {
+    let sample = |i: usize| rays[i].path.sample;
+    let half = rays.len() / 2;
+    let changes = |&i: &usize| sample(i - 1) != sample(i);
+    let up = (half..rays.len()).find(changes);
+    let down = (1..half).rev().find(changes);
+    match (down, up) {
+        (Some(down), Some(up)) if half - down < up - half => down,
+        (_, Some(up)) => up,
+        (Some(down), None) => down,
+        (None, None) => half,
+    }
+}
