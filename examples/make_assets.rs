@@ -5,6 +5,8 @@
 //! is exact everywhere. PNG bytes are those of the `image` crate in Cargo.lock: after an update
 //! that compresses otherwise, run it again.
 
+#[path = "make_assets/gallery.rs"]
+mod gallery;
 #[path = "make_assets/glb.rs"]
 mod glb;
 #[path = "make_assets/paint.rs"]
@@ -22,6 +24,7 @@ use std::path::Path;
 pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     let mut files = vec![("room.glb", room::glb())];
     files.extend(vase::files());
+    files.extend(gallery::files());
     files
 }
 
