@@ -11,7 +11,7 @@ use crate::geometry::Ray;
 use crate::intersect::{Backend, Precision};
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
-use crate::scene::check::MAX_SPP;
+use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 use crate::scene::{Scene, Tone};
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
@@ -60,6 +60,10 @@ pub struct Tracing {
     /// Samples per pixel [default: the scene's; bare models 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)))]
     pub spp: Option<u32>,
+    /// How often light is followed off mirrors and through glass, from 0 to 65536 [default: the
+    /// scene's, else 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)))]
+    pub max_depth: Option<u32>,
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
@@ -128,7 +132,7 @@ pub struct Validate {
     pub tracing: Tracing,
     /// Only trace this ray, origin and direction, and say what each intersector makes of it in each
     /// precision, held against exact arithmetic
-    #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with_all = ["heatmap", "precision", "size", "spp", "camera", "threads"])]
+    #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with_all = ["heatmap", "precision", "size", "spp", "max_depth", "camera", "threads"])]
     pub ray: Option<Ray>,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
@@ -306,6 +310,9 @@ impl Tracing {
         let mut scene = crate::load::load_for(&self.scene, self.size)?;
         if let Some(spp) = self.spp {
             scene.film.spp = spp;
+        }
+        if let Some(depth) = self.max_depth {
+            scene.film.max_depth = depth;
         }
         let camera = match &self.camera {
             None => 0,

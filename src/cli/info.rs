@@ -72,6 +72,7 @@ fn skipped(scene: &Scene) -> Vec<&'static str> {
     let mut uses = vec![0u32; scene.meshes.len()];
     scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
     let textured = scene.materials.iter().any(|m| m.is_textured());
+    let followed = scene.materials.iter().any(|m| m.is_followed());
     let shadows = scene.lights.iter().any(|l| l.casts_shadow());
     [
         (scene.spheres.is_empty(), "user geometry: there are no spheres"),
@@ -79,6 +80,7 @@ fn skipped(scene: &Scene) -> Vec<&'static str> {
         (scene.planes.is_empty(), "plane tests: there are no planes"),
         (!textured, "texture coordinates: no material has a texture"),
         (!shadows, "shadow rays: no light casts a shadow"),
+        (!followed, "reflected and refracted rays: there are no mirrors and no glass"),
     ]
     .into_iter()
     .filter_map(|(skip, what)| skip.then_some(what))

@@ -108,6 +108,7 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
             tone,
             ("--half", arguments.half),
             ("--spp", arguments.tracing.spp.is_some()),
+            ("--max-depth", arguments.tracing.max_depth.is_some()),
         ];
         if let Some((flag, _)) = flags.iter().find(|(_, given)| *given) {
             return Err(Error::input(format!("{flag} says nothing to a view other than beauty"))
@@ -190,6 +191,8 @@ fn metadata(
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
+        ("max_depth", scene.film.max_depth.to_string()),
+        ("cutoff", scene.film.cutoff.to_string()),
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
         ("view", format!("{view:?}").to_lowercase()),
         ("precision", precision.name().to_owned()),

@@ -161,7 +161,7 @@ impl Integrator<'_> {
 
     /// Whether a surface is none: hidden in another body, or clear and with the same index of
     /// refraction on both sides.
-    fn is_clear(&self, material: &Material, around: &Around) -> bool {
+    pub(super) fn is_clear(&self, material: &Material, around: &Around) -> bool {
         let ior = |inside| self.bodies.medium(inside).ior;
         let behind = if material.thin { material.ior } else { ior(&around.behind) };
         let clear = material.transmit == Vec3::ONE && material.emission == Vec3::ZERO;
@@ -169,7 +169,14 @@ impl Integrator<'_> {
     }
 
     /// The rays that a surface sends on, which `ray` hit.
-    fn send_on(&self, ray: &Ray, hit: &Hit, surface: &Surface, path: &Path, next: &mut Vec<Next>) {
+    pub(super) fn send_on(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &Surface,
+        path: &Path,
+        next: &mut Vec<Next>,
+    ) {
         if path.depth >= self.scene.film.max_depth {
             return;
         }
@@ -262,5 +269,38 @@ fn middle(rays: &[Next]) -> usize {
         (_, Some(up)) => up,
         (Some(down), None) => down,
         (None, None) => half,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(samples: &[u32]) -> Vec<Next> {
+        let next = |&sample: &u32| Next {
+            ray: Ray::new(DVec3::ZERO, DVec3::Z),
+            is_refracted: false,
+            path: Path { sample, depth: 1, throughput: DVec3::ONE, inside: Interiors::default() },
+        };
+        samples.iter().map(next).collect()
+    }
+
+    #[test]
+    fn a_wave_is_cut_between_samples_near_its_middle() {
+        assert_eq!(middle(&wave(&[0, 0, 0, 1, 1, 1])), 3);
+        assert_eq!(middle(&wave(&[0, 0, 1, 1, 1, 1])), 2);
+        assert_eq!(middle(&wave(&[0, 0, 0, 0, 1, 1])), 4);
+        assert_eq!(middle(&wave(&[0, 1, 1, 1, 1, 1, 1])), 1);
+    }
+
+    #[test]
+    fn a_wave_of_one_sample_is_cut_in_its_middle() {
+        assert_eq!(middle(&wave(&[7; 5])), 2);
+    }
+
+    #[test]
+    fn the_least_share_that_counts_is_half_of_what_moves_the_least_f32() {
+        assert_eq!(NOTHING, 2f64.powi(-280));
+        assert_eq!((NOTHING * f64::from(f32::MAX)) as f32, 0.0);
     }
 }

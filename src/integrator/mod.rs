@@ -9,6 +9,8 @@
 mod bodies;
 mod counts;
 mod follow;
+#[cfg(test)]
+mod reversal;
 mod samples;
 mod shade;
 mod shadow;

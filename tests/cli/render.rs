@@ -123,6 +123,42 @@ fn a_build_without_embree_says_so_when_it_is_asked_for() {
     assert!(message.contains("built without Embree"), "{message}");
 }
 
+/// The scene, with two mirror balls that see each other.
+fn mirrors() -> String {
+    let ball =
+        |x: f64| format!("[[sphere]]\ncenter = [{x}, 1, 2]\nradius = 0.6\nmaterial = \"mirror\"\n");
+    let mirror = "[[material]]\nname = \"mirror\"\nreflect = 1\n";
+    format!("{SPHERE}\n{mirror}{}{}", ball(-0.7), ball(0.7))
+}
+
+fn reflections(flags: &str) -> u64 {
+    let folder = Folder::with(&mirrors());
+    folder.run(&format!("render scene.toml -o a.png --stats stats.json {flags}")).good();
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("stats.json")).unwrap();
+    stats["rays"]["reflection"].as_u64().unwrap()
+}
+
+#[test]
+fn max_depth_says_how_often_light_is_followed() {
+    assert_eq!(reflections("--max-depth 0"), 0);
+    assert!(reflections("--max-depth 1") < reflections(""));
+}
+
+#[test]
+fn a_depth_of_ten_thousand_ends_in_little_memory() {
+    let folder = Folder::with(&mirrors());
+    let command = "render scene.toml -o a.png --max-depth 10000 --stats stats.json";
+    folder.run(command).good();
+    let stats: serde_json::Value = serde_json::from_slice(&folder.read("stats.json")).unwrap();
+    // Not every system tells; that a depth needs no memory is what the loop is made for.
+    assert!(stats["peak_memory_bytes"].as_u64().unwrap_or(0) < 200 << 20, "{stats}");
+}
+
+#[test]
+fn a_depth_beyond_what_is_supported_is_refused() {
+    Folder::with(SPHERE).run("render scene.toml --max-depth 65537").refused();
+}
+
 #[test]
 fn a_camera_is_chosen_by_name() {
     let folder = Folder::with_everything();

@@ -80,6 +80,36 @@ fn a_key_of_a_later_version_says_so() {
 }
 
 #[test]
+fn an_index_of_refraction_must_be_above_nothing() {
+    for bad in ["0", "-1.5", "nan", "1e3"] {
+        let error = refused_seen(&format!("[[material]]\nname = \"m\"\nior = ¦{bad}\n"));
+        assert!(error.message().contains("an index of refraction from 0.01 to 100"), "{error}");
+    }
+}
+
+#[test]
+fn reflect_and_transmit_are_shares_of_one_whole() {
+    let error =
+        refused_seen("[[material]]\nname = \"m\"\nreflect = 0.5\ntransmit = ¦[0.5, 0.6, 0.5]\n");
+    assert!(error.message().contains("more than 1 together"), "{error}");
+    refused_seen("[[material]]\nname = \"m\"\nreflect = ¦1.5\n");
+}
+
+#[test]
+fn a_depth_is_a_whole_number_up_to_65536() {
+    for bad in ["-1", "65537", "1.5"] {
+        refused(&format!("[film]\nmax_depth = ¦{bad}\n{CAMERA}"));
+    }
+}
+
+#[test]
+fn a_shadow_is_there_or_not_tinted_or_opaque() {
+    let light = "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n";
+    let error = refused_seen(&format!("{light}shadow = ¦\"soft\"\n"));
+    assert!(error.message().contains("true, false, \"tinted\" or \"opaque\""), "{error}");
+}
+
+#[test]
 fn a_missing_key_is_at_its_tables_header() {
     let error = refused_seen("\n  ¦[[sphere]]\ncenter = [0, 0, 0]\n");
     assert_eq!(error.message(), "[[sphere]] needs the key `radius`");

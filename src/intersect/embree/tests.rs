@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::{Departure, PrimitiveId, Side};
+use crate::geometry::{Departure, Passage, PrimitiveId, Side};
 use crate::intersect::Bvh;
 use crate::scene::{Instance, MaterialId, Mesh, Sphere};
 use glam::{DAffine3, DVec3};
@@ -29,7 +29,8 @@ fn scene(state: &mut u64) -> Scene {
     scene
 }
 
-/// Rays of which a third leaves a sphere and a third a triangle; not a multiple of any width.
+/// Rays of which a third leaves a sphere and a third a triangle, and a fourth has gone through a
+/// sphere; not a multiple of any width.
 fn rays(state: &mut u64) -> Vec<Ray> {
     (0..4003)
         .map(|i| {
@@ -42,8 +43,13 @@ fn rays(state: &mut u64) -> Vec<Ray> {
             };
             let side = if i % 2 == 0 { Side::Front } else { Side::Back };
             let from = id.map(|id| Departure { id, side });
+            let past = (i % 4 == 1).then(|| {
+                let id = PrimitiveId::sphere(i % 40);
+                Passage { t: 0.3, through: Departure { id, side } }
+            });
             Ray {
                 from,
+                past,
                 tmax: if i % 5 == 0 { 1.0 } else { f64::INFINITY },
                 ..Ray::new(origin, target - origin)
             }
