@@ -2,9 +2,27 @@
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
 use crate::scene::{Mesh, Scene};
 
 impl Mesh {
+    /// The volume of a closed mesh: above 0 where its triangles wind counterclockwise seen from
+    /// outside, below 0 where clockwise.
+    ///
+    /// # Panics
+    /// When a triangle names a vertex that is not there.
+    pub fn volume(&self) -> f64 {
+        // About its middle, so that an open mesh has a sensible sign and a far one keeps its digits.
+        let middle = self.bounds().center();
+        let six = |triangle: &[u32; 3]| {
+            let [a, b, c] =
+                triangle.map(|i| DVec3::from(self.positions[i as usize].map(f64::from)) - middle);
+            a.cross(b).dot(c)
+        };
+        self.triangles.iter().map(six).sum::<f64>() / 6.0
+    }
+
     /// At how many edges the mesh is not closed: edges at which it does not have as many triangles
     /// on one side, by the order of their corners, as on the other. Vertices at one place count as
     /// one, however many there are for the sake of normals and textures.
@@ -92,6 +110,14 @@ mod tests {
     #[test]
     fn a_tetrahedron_is_closed() {
         assert_eq!(tetrahedron().open_edges(), 0);
+    }
+
+    #[test]
+    fn the_volume_of_a_mesh_is_below_0_where_it_winds_inward() {
+        let mut mesh = tetrahedron();
+        assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15);
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
+        assert!((mesh.volume() + 1.0 / 6.0).abs() < 1e-15);
     }
 
     #[test]
