@@ -1,4 +1,4 @@
-//! Makes the models of the demo scenes: `cargo run --example make_assets` writes `assets/models/`.
+//! Makes the models of the demo scenes and the gallery: `cargo run --example make_assets` writes `assets/models/`.
 //!
 //! What it makes is committed, so that nobody has to run it; `tests/assets.rs` holds the committed
 //! files to it byte by byte. It asks nothing of a platform's mathematics library but `sqrt`, which

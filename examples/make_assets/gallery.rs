@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use glam::DVec3;
 
-use crate::paint;
-use crate::shape::circle;
+use super::paint;
+use super::shape::circle;
 
 /// Flat polygons, without shared corners' normals.
 #[derive(Default)]
