@@ -298,6 +298,60 @@ fn certified_pictures_equal_the_oracles_byte_by_byte() {
     }
 }
 
+/// The same, of mirrors, glass, absorbing bodies within each other, and thin sheets.
+fn glass_picture(seed: u64, size: [u32; 2]) -> Scene {
+    use envers::scene::{Material, MaterialId};
+    use glam::Vec3;
+    let mut scene = picture(seed);
+    scene.film.size = size;
+    scene.film.max_depth = 16;
+    scene.film.cutoff = 1e-2;
+    scene.film.background = Vec3::new(0.3, 0.5, 0.9);
+    let glass = |ior: f64, thin| Material {
+        transmit: Vec3::new(1.0, 0.95, 0.9),
+        ior,
+        absorption: Vec3::new(0.1, 0.3, 0.0),
+        thin,
+        ..Material::default()
+    };
+    let mirror = Material { reflect: Vec3::splat(0.8), ..Material::default() };
+    let first = scene.add_material(mirror).0;
+    for material in [glass(1.5, false), glass(1.2, false), glass(1.0, false), glass(1.4, true)] {
+        scene.add_material(material);
+    }
+    for (i, sphere) in (0..).zip(&mut scene.spheres) {
+        sphere.radius *= 1.5;
+        sphere.material = [MaterialId(0), MaterialId(first + i % 5)][usize::from(i % 3 != 0)];
+    }
+    for (i, instance) in (0..).zip(&mut scene.instances) {
+        instance.material = MaterialId(first + 1 + (i + 3) % 4);
+    }
+    scene.planes.iter_mut().for_each(|plane| plane.material = MaterialId(first + 1));
+    scene
+}
+
+#[test]
+fn pictures_of_mirrors_and_glass_equal_the_oracles_byte_by_byte() {
+    for seed in 0..2 {
+        let scene = glass_picture(seed, [24, 18]);
+        let expected = exr(&film(&scene, &Oracle::new(&scene), View::Beauty));
+        for who in certified(&scene) {
+            let found = exr(&film(&scene, &*who, View::Beauty));
+            assert!(found == expected, "{}, scene {seed}", who.name());
+        }
+    }
+}
+
+#[test]
+fn pictures_of_mirrors_and_glass_are_the_same_bytes_from_each_certified_intersector() {
+    for seed in 2..6 {
+        let scene = glass_picture(seed, [96, 72]);
+        let pictures: Vec<_> =
+            certified(&scene).iter().map(|who| exr(&film(&scene, &**who, View::Beauty))).collect();
+        assert!(pictures.windows(2).all(|pair| pair[0] == pair[1]), "scene {seed}");
+    }
+}
+
 #[test]
 fn certified_hits_equal_the_oracles_to_the_bit() {
     let (mut hits_seen, mut weights_apart) = (0, 0.0f64);

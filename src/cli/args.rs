@@ -113,8 +113,9 @@ pub struct Render {
 
 #[derive(Args)]
 #[command(after_help = "\
-Of Embree in the given precision and the certified pure-Rust intersector, every primary hit, every \
-shadow ray and every pixel is compared. fast passes where each mismatch is explained by what f32 \
+Of Embree in the given precision and the certified pure-Rust intersector, every hit, of the \
+eye's rays and of those off mirrors and through glass, every shadow ray from what the eye sees and \
+every pixel is compared. fast passes where each mismatch is explained by what f32 \
 rays and f64 formulas promise (edge, tangency, tie), on at most 1e-4 of the rays, and at most 1e-5 \
 of the pixels differ by more than 1 of 255; certified where nothing differs by any bit.
 

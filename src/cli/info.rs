@@ -72,7 +72,7 @@ fn skipped(scene: &Scene) -> Vec<&'static str> {
     let mut uses = vec![0u32; scene.meshes.len()];
     scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
     let textured = scene.materials.iter().any(|m| m.is_textured());
-    let followed = scene.materials.iter().any(|m| m.is_followed());
+    let followed = scene.materials_in_use().any(|m| m.is_followed());
     let shadows = scene.lights.iter().any(|l| l.casts_shadow());
     [
         (scene.spheres.is_empty(), "user geometry: there are no spheres"),

@@ -80,8 +80,8 @@ impl<'a> Integrator<'a> {
         let spp = if view == View::Beauty { scene.film.spp } else { 1 };
         let samples = sample_positions(&FilmSettings { spp, ..scene.film.clone() });
         let rays = camera.rays(scene.film.size);
-        let follows = scene.materials.iter().any(|m| m.is_followed());
-        let transmits = scene.materials.iter().any(|m| m.transmit != Vec3::ZERO);
+        let follows = scene.materials_in_use().any(|m| m.is_followed());
+        let transmits = scene.materials_in_use().any(|m| m.transmit != Vec3::ZERO);
         let bodies = Bodies::of(scene);
         let eye = match bodies.is_empty() {
             true => Some(Interiors::default()),

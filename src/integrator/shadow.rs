@@ -15,7 +15,7 @@ use crate::scene::Shadow;
 use crate::shading::{Interface, transmittance};
 use crate::surface::Surface;
 
-/// A shadow ray that something stands in the way of.
+/// A shadow ray that nothing blocks, on its way.
 struct Beam {
     /// Which of the shadow rays it is.
     at: usize,
@@ -34,20 +34,18 @@ impl Integrator<'_> {
     }
 
     /// Works out what is left of the light along each shadow ray, of which it is known whether
-    /// anything stands in its way.
+    /// anything blocks it.
     pub(super) fn let_through(&self, shadow: Shadow, shadows: &mut Shadows, counts: &mut Counts) {
         let Shadows { rays, inside, blocked, left, .. } = shadows;
         left.clear();
         let mut beams = Vec::new();
         let mut ahead = Vec::new();
         for (at, (ray, inside)) in rays.iter().zip(inside).enumerate() {
-            if blocked[at] {
+            left.push(DVec3::ZERO);
+            if !blocked[at] {
                 let inside = std::mem::take(inside);
                 beams.push(Beam { at, inside, left: DVec3::ONE });
                 ahead.push(*ray);
-                left.push(DVec3::ZERO);
-            } else {
-                left.push(self.absorbed(ray, ray.tmax, inside));
             }
         }
         let mut hits = Vec::new();

@@ -37,9 +37,9 @@ impl<'s> BruteForce<'s> {
         best
     }
 
-    /// Whether anything that casts a shadow stands in the ray's way.
+    /// Whether anything that blocks light stands in the ray's way.
     pub(crate) fn blocks(&self, ray: &Ray) -> bool {
-        self.all(ray).any(|hit| self.primitives.scene.casts_shadow(hit.id))
+        self.all(ray).any(|hit| self.primitives.scene.blocks_light(hit.id))
     }
 
     /// Every hit of the ray, in no particular order.

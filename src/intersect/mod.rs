@@ -47,8 +47,8 @@ pub trait Intersector: Send + Sync {
     /// When the two slices differ in length.
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]);
 
-    /// Whether anything that casts a shadow stands in each ray's way, written to the same place
-    /// in `blocked`.
+    /// Whether anything that blocks light stands in each ray's way, written to the same place in
+    /// `blocked`; see [`Scene::blocks_light`].
     ///
     /// # Panics
     /// When the two slices differ in length.

@@ -149,11 +149,11 @@ impl Primitives<'_> {
         }
     }
 
-    /// Whether a plane that casts a shadow stands in the ray's way.
+    /// Whether a plane that blocks light stands in the ray's way.
     #[inline]
     pub fn planes_occlude(&self, ray: &Ray) -> bool {
         (0..self.scene.planes.len() as u32)
-            .any(|i| self.scene.planes[i as usize].casts_shadow && self.plane(i, ray).is_some())
+            .any(|i| self.scene.blocks_light(PrimitiveId::plane(i)) && self.plane(i, ray).is_some())
     }
 }
 

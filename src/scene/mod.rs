@@ -83,7 +83,18 @@ impl Scene {
         }
     }
 
-    /// Whether a primitive keeps light from what lies behind it.
+    /// Whether a primitive keeps all light from what lies behind it: whether it casts a shadow, and
+    /// lets nothing through.
+    ///
+    /// # Panics
+    /// When the primitive is not one of this scene.
+    #[inline]
+    pub fn blocks_light(&self, id: PrimitiveId) -> bool {
+        let material = || self.materials.get(self.material_of(id).0 as usize);
+        self.casts_shadow(id) && material().is_none_or(|m| m.transmit == glam::Vec3::ZERO)
+    }
+
+    /// Whether a primitive keeps light from what lies behind it, or some of it.
     ///
     /// # Panics
     /// When the primitive is not one of this scene.
@@ -94,6 +105,19 @@ impl Scene {
             Geometry::Planes => self.planes[id.primitive as usize].casts_shadow,
             Geometry::Mesh(_) => self.instances[id.instance as usize].casts_shadow,
         }
+    }
+
+    /// The materials that anything is made of, each once.
+    ///
+    /// # Panics
+    /// When an object has none.
+    pub fn materials_in_use(&self) -> impl Iterator<Item = &Material> {
+        let mut used = vec![false; self.materials.len()];
+        let spheres = self.spheres.iter().map(|s| s.material);
+        let planes = self.planes.iter().map(|p| p.material);
+        let instances = self.instances.iter().map(|i| i.material);
+        spheres.chain(planes).chain(instances).for_each(|id| used[id.0 as usize] = true);
+        self.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material))
     }
 
     /// The corners, in world space, of the triangle that `id` names.

@@ -117,7 +117,7 @@ impl Intersector for Bvh<'_> {
             if !*blocked {
                 let mut limit = ray.tmax;
                 self.visit(ray, &mut limit, |hit, _| {
-                    *blocked = self.primitives.scene.casts_shadow(hit.id);
+                    *blocked = self.primitives.scene.blocks_light(hit.id);
                     *blocked
                 });
             }

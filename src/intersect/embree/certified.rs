@@ -29,7 +29,7 @@ pub trait Shape {
 
     fn id(&self) -> PrimitiveId;
 
-    fn casts_shadow(&self) -> bool;
+    fn blocks_light(&self) -> bool;
 
     /// Whether a line may meet it: false only where it certainly passes.
     fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
@@ -49,7 +49,7 @@ struct Ball {
     index: u32,
     center: DVec3,
     radius: f64,
-    casts_shadow: bool,
+    blocks_light: bool,
 }
 
 impl Shape for Ball {
@@ -62,7 +62,7 @@ impl Shape for Ball {
         // SAFETY: the user data of the spheres' geometry is their table.
         let table = unsafe { &*user.cast::<SphereTable>() };
         let s = &table.spheres[index as usize];
-        Ball { index, center: s.center, radius: s.radius, casts_shadow: s.casts_shadow }
+        Ball { index, center: s.center, radius: s.radius, blocks_light: s.blocks_light }
     }
 
     #[inline(always)]
@@ -71,8 +71,8 @@ impl Shape for Ball {
     }
 
     #[inline(always)]
-    fn casts_shadow(&self) -> bool {
-        self.casts_shadow
+    fn blocks_light(&self) -> bool {
+        self.blocks_light
     }
 
     #[inline(always)]
@@ -103,7 +103,7 @@ impl Shape for Ball {
 struct Face {
     id: PrimitiveId,
     corners: [DVec3; 3],
-    casts_shadow: bool,
+    blocks_light: bool,
 }
 
 impl Shape for Face {
@@ -117,8 +117,8 @@ impl Shape for Face {
         let table = unsafe { &*user.cast::<Triangles<'_>>() };
         let instance = if table.instance == INVALID { context.instance } else { table.instance };
         let id = PrimitiveId::triangle(table.mesh, index, instance);
-        let casts_shadow = context.scene.instances[instance as usize].casts_shadow;
-        Face { id, corners: context.scene.triangle(id), casts_shadow }
+        let blocks_light = context.scene.blocks_light(id);
+        Face { id, corners: context.scene.triangle(id), blocks_light }
     }
 
     #[inline(always)]
@@ -127,8 +127,8 @@ impl Shape for Face {
     }
 
     #[inline(always)]
-    fn casts_shadow(&self) -> bool {
-        self.casts_shadow
+    fn blocks_light(&self) -> bool {
+        self.blocks_light
     }
 
     #[inline(always)]
@@ -201,7 +201,7 @@ unsafe fn occluded<S: Shape, const W: usize>(args: *const sys::RTCOccludedFuncti
         let args = &*args;
         let context = &mut *args.context.cast::<Context<'_, W>>();
         let shape = S::of(args.geometryUserPtr, args.primID, context);
-        if !shape.casts_shadow() {
+        if !shape.blocks_light() {
             return;
         }
         let (n, valid) = (args.N as usize, args.valid.cast_const());

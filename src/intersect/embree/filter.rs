@@ -1,5 +1,5 @@
 //! The filter that secondary rays carry: it drops the surface that a ray left, triangles that f64
-//! says are not in its way, and, for shadow rays, what casts no shadow.
+//! says are not in its way, and, for shadow rays, what blocks no light.
 //!
 //! Primary rays carry none.
 #![allow(unsafe_code)]
@@ -77,10 +77,10 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     let attached = if inst == INVALID { geom } else { inst };
     let Some(&instance) = context.instance_of.get(attached as usize) else { return true };
     let placed = &context.scene.instances[instance as usize];
-    if SHADOW && !placed.casts_shadow {
+    let id = PrimitiveId::triangle(placed.mesh.0, prim, instance);
+    if SHADOW && !context.scene.blocks_light(id) {
         return false;
     }
-    let id = PrimitiveId::triangle(placed.mesh.0, prim, instance);
     if ray.from.is_some_and(|from| from.id == id) {
         return false;
     }

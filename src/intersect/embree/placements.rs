@@ -8,7 +8,7 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, PrimitiveId};
 use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit, Valid};
@@ -192,7 +192,8 @@ unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArgumen
         let Some(placement) = table.placements.get((*args).primID as usize) else { return };
         let context = (*args).context.cast::<Context<'_, W>>();
         let scene = (*context).scene;
-        if !scene.instances[placement.instance as usize].casts_shadow {
+        let mesh = scene.instances[placement.instance as usize].mesh.0;
+        if !scene.blocks_light(PrimitiveId::triangle(mesh, 0, placement.instance)) {
             return;
         }
         let floats = (*args).ray.cast::<f32>();

@@ -7,7 +7,7 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::{Bounds, sphere};
+use crate::geometry::{Bounds, PrimitiveId, sphere};
 use crate::intersect::Precision;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit};
@@ -28,18 +28,18 @@ pub struct SphereTable {
 pub struct Entry {
     pub center: DVec3,
     pub radius: f64,
-    pub casts_shadow: bool,
+    pub blocks_light: bool,
 }
 
 impl SphereTable {
     /// On the heap, since Embree keeps its address.
     pub fn new(scene: &Scene, frame: Frame) -> Box<Self> {
-        let entry = |s: &crate::scene::Sphere| Entry {
+        let entry = |(i, s): (u32, &crate::scene::Sphere)| Entry {
             center: s.center,
             radius: s.radius,
-            casts_shadow: s.casts_shadow,
+            blocks_light: scene.blocks_light(PrimitiveId::sphere(i)),
         };
-        Box::new(Self { frame, spheres: scene.spheres.iter().map(entry).collect() })
+        Box::new(Self { frame, spheres: (0..).zip(&scene.spheres).map(entry).collect() })
     }
 }
 
@@ -120,7 +120,7 @@ unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArgumen
         let args = &*args;
         let table = &*args.geometryUserPtr.cast::<SphereTable>();
         let s = table.spheres.get_unchecked(args.primID as usize);
-        if !s.casts_shadow {
+        if !s.blocks_light {
             return;
         }
         let context = &mut *args.context.cast::<Context<'_, W>>();

@@ -90,7 +90,7 @@ impl Disputes<'_> {
             (0..count).map(move |t| PrimitiveId::triangle(mesh, t, instance))
         });
         for id in spheres.chain(planes).chain(triangles) {
-            if !self.scene.casts_shadow(id) {
+            if !self.scene.blocks_light(id) {
                 continue;
             }
             let doubt = match id.geometry {

@@ -125,7 +125,7 @@ impl Intersector for Oracle<'_> {
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.all(ray).any(|hit| self.scene.casts_shadow(hit.id));
+            *blocked = self.all(ray).any(|hit| self.scene.blocks_light(hit.id));
         }
     }
 }

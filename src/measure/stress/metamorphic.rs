@@ -111,7 +111,7 @@ fn picture(scene: &Scene, options: &Options, camera: usize) -> Result<(Vec<u8>, 
     Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
 }
 
-/// Spheres, a checkered plane, meshes, and a light of every kind.
+/// Spheres of paint, glass and mirrors, a checkered plane, meshes, and a light of every kind.
 fn scene(side: u32) -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [side, side];
@@ -119,10 +119,15 @@ fn scene(side: u32) -> Scene {
         Material { diffuse: Vec3::new(0.3, 0.5, 0.8), specular: Vec3::ONE, ..<_>::default() };
     let glossy = scene.add_material(glossy);
     let matt = scene.add_material(Material::default());
+    let mirror = Material { reflect: Vec3::new(0.9, 0.8, 0.6), ..<_>::default() };
+    let absorption = Vec3::new(1.0, 0.25, 0.0);
+    let glass = Material { transmit: Vec3::ONE, absorption, ..<_>::default() };
+    let [mirror, glass] = [mirror, glass].map(|material| scene.add_material(material));
     for i in 0..12 {
         let angle = f64::from(i) * 0.7;
         let center = DVec3::new(2.0 * angle.cos(), 0.3 + 0.1 * f64::from(i), 2.0 * angle.sin());
-        scene.spheres.push(Sphere::new(center, 0.2 + 0.03 * f64::from(i), glossy));
+        let material = [glossy, glass, mirror][i as usize % 3];
+        scene.spheres.push(Sphere::new(center, 0.2 + 0.03 * f64::from(i), material));
     }
     let mut ground = Plane::new(DVec3::Y * -0.2, DVec3::new(0.05, 1.0, 0.02), matt);
     ground.checker = Some(Checker { colors: [Vec3::splat(0.2), Vec3::ONE], size: 0.7 });
@@ -180,6 +185,9 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
     for sphere in &mut scene.spheres {
         sphere.center *= by;
         sphere.radius *= by;
+    }
+    for material in &mut scene.materials {
+        material.absorption /= by as f32;
     }
     for plane in &mut scene.planes {
         plane.point *= by;

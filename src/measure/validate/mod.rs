@@ -70,10 +70,14 @@ pub struct Worst {
 pub struct Validation {
     /// In which precision Embree was held against the judge, which is always certified.
     pub precision: &'static str,
-    /// Primary and shadow rays traced by both.
+    /// Rays traced by both: from the eye, from there to the lights, and those that mirrors and
+    /// glass send on.
     pub rays_compared: u64,
     /// Of these, rays from the eye.
     pub primary_rays: u64,
+    /// Of these, rays that mirrors and glass send on; they have no place in the heat map, and none
+    /// of them is the worst ray.
+    pub secondary_rays: u64,
     /// Rays about which the two disagree: which primitive, or whether any; in `certified` also
     /// any bit of t, u or v.
     pub primitive_mismatches: u64,
@@ -137,7 +141,7 @@ impl fmt::Display for Worst {
 }
 
 /// Renders a scene with Embree in `precision` and with the certified pure-Rust intersector, and
-/// compares every primary hit, every shadow ray and every pixel. `threads` 0 means all there are.
+/// compares every hit, every shadow ray from what the eye sees, and every pixel. `threads` 0 means all there are.
 ///
 /// # Errors
 /// When the scene is not valid, has no such camera, or this build has no Embree.
@@ -148,7 +152,7 @@ pub fn validate(_: &Scene, _: Precision, _: usize, _: usize) -> Result<Validatio
 }
 
 /// Renders a scene with Embree in `precision` and with the certified pure-Rust intersector, and
-/// compares every primary hit, every shadow ray and every pixel. `threads` 0 means all there are.
+/// compares every hit, every shadow ray from what the eye sees, and every pixel. `threads` 0 means all there are.
 ///
 /// # Errors
 /// When the scene is not valid, has no such camera, or Embree cannot be started.

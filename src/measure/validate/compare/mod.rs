@@ -2,6 +2,7 @@
 
 #[cfg(test)]
 mod tests;
+mod witness;
 
 use rayon::prelude::*;
 
@@ -16,6 +17,7 @@ use crate::render::{self, Options};
 use crate::scene::{RayMaker, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
+use witness::Witness;
 
 pub struct Comparer<'a> {
     pub scene: &'a Scene,
@@ -33,6 +35,7 @@ pub struct Comparer<'a> {
 struct Tally {
     primary: u64,
     shadow: u64,
+    secondary: u64,
     causes: Causes,
     max_ulp: u64,
     worst: Option<(Severity, Worst)>,
@@ -46,11 +49,12 @@ const YELLOW: [f32; 3] = [1.0, 1.0, 0.0];
 const BLUE: [f32; 3] = [0.2, 0.4, 1.0];
 const GREY: [f32; 3] = [0.15; 3];
 
-/// Where a ray was sent.
-#[derive(Clone, Copy)]
-struct Place<'r> {
+/// The pixel that a ray is of, and its mark in the heat map.
+struct Place<'m> {
     pixel: [u32; 2],
-    ray: &'r Ray,
+    /// The ray from the eye, which is what can be replayed.
+    ray: &'m Ray,
+    mark: &'m mut [f32; 3],
 }
 
 impl Comparer<'_> {
@@ -65,10 +69,10 @@ impl Comparer<'_> {
             .enumerate()
             .map(|(y, row)| self.row(&rays, y, row))
             .collect();
-        let sum = tallies.into_iter().fold(Tally::default(), Tally::and);
-        let pictures = self.pictures(&mut heatmap);
+        let (pictures, secondary) = self.pictures(&mut heatmap);
+        let sum = tallies.into_iter().fold(secondary, Tally::and);
         let (causes, explained) = (sum.causes, sum.causes.explained());
-        let rays_compared = sum.primary + sum.shadow;
+        let rays_compared = sum.primary + sum.shadow + sum.secondary;
         let pixels = heatmap.pixels.len() as u64;
         let passed = causes.other == 0
             && match self.precision {
@@ -82,6 +86,7 @@ impl Comparer<'_> {
             precision: self.precision.name(),
             rays_compared,
             primary_rays: sum.primary,
+            secondary_rays: sum.secondary,
             primitive_mismatches: explained + causes.other,
             causes,
             unexplained_mismatches: causes.other,
@@ -108,22 +113,24 @@ impl Comparer<'_> {
                 if truth[x].is_some() && row[x] == [0.0; 3] {
                     row[x] = GREY;
                 }
-                let place = Place { pixel: [x as u32, y as u32], ray };
-                self.primary(place, found[x].as_ref(), truth[x].as_ref(), &mut tally, &mut row[x]);
+                let place = Place { pixel: [x as u32, y as u32], ray, mark: &mut row[x] };
+                let (found, truth) = (found[x].as_ref(), truth[x].as_ref());
+                self.nearest(ray, Some(place), found, truth, &mut tally);
             }
             self.shadows(y, &rays, &truth, row, &mut tally);
         }
         tally
     }
 
-    /// Compares what subject and judge say of a ray from the eye.
-    fn primary(
+    /// Compares what subject and judge say of a ray: from the eye, if it has a place, or from a
+    /// mirror or glass.
+    fn nearest(
         &self,
-        place: Place<'_>,
+        ray: &Ray,
+        place: Option<Place<'_>>,
         found: Option<&Hit>,
         truth: Option<&Hit>,
         tally: &mut Tally,
-        mark: &mut [f32; 3],
     ) {
         let same = found.map(|h| h.id) == truth.map(|h| h.id);
         let ulp =
@@ -131,14 +138,17 @@ impl Comparer<'_> {
         tally.max_ulp = tally.max_ulp.max(ulp.unwrap_or(0));
         match self.precision {
             Precision::Certified if found.map(bits) != truth.map(bits) => {
-                tally.mismatch(place, None, false, ulp, mark);
+                tally.mismatch(place, None, false, ulp);
             }
             Precision::Fast if !same => {
-                let cause = self.disputes().primary(place.ray, found, truth);
-                tally.mismatch(place, cause, false, ulp, mark);
+                let cause = self.disputes().primary(ray, found, truth);
+                tally.mismatch(place, cause, false, ulp);
             }
-            _ if ulp > Some(0) => tally.note((0, ulp.unwrap_or(0)), place, None, false, ulp),
-            _ => {}
+            _ => {
+                if let Some(place) = place.filter(|_| ulp > Some(0)) {
+                    tally.note((0, ulp.unwrap_or(0)), &place, None, false, ulp);
+                }
+            }
         }
     }
 
@@ -169,8 +179,8 @@ impl Comparer<'_> {
                     Precision::Certified => None,
                 };
                 let x = columns[i];
-                let place = Place { pixel: [x as u32, y as u32], ray: &rays[x] };
-                tally.mismatch(place, cause, true, None, &mut row[x]);
+                let place = Place { pixel: [x as u32, y as u32], ray: &rays[x], mark: &mut row[x] };
+                tally.mismatch(Some(place), cause, true, None);
             }
         }
     }
@@ -179,14 +189,15 @@ impl Comparer<'_> {
         Disputes { scene: self.scene, margin: self.margin }
     }
 
-    /// Renders the picture twice and compares.
-    fn pictures(&self, heatmap: &mut Film) -> Differing {
+    /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
+    fn pictures(&self, heatmap: &mut Film) -> (Differing, Tally) {
         let options = Options { camera: self.camera, ..Options::default() };
         let settings = Settings::of(&self.scene.film);
         let film = |intersector: &dyn Intersector| {
             render::with_intersector(self.scene, &options, intersector, &|_| {}).0
         };
-        let (a, b) = (film(self.subject), film(self.judge));
+        let witness = Witness::new(self);
+        let (a, b) = (film(self.subject), film(&witness));
         let values = |film: &Film| film.pixels.as_flattened().to_vec();
         let differ = |(x, y): &(f32, f32)| x.to_bits() != y.to_bits();
         let values = values(&a).into_iter().zip(values(&b)).filter(differ).count() as u64;
@@ -202,7 +213,7 @@ impl Comparer<'_> {
                 }
             }
         }
-        differing
+        (differing, witness.tally())
     }
 }
 
@@ -220,6 +231,7 @@ impl Tally {
     fn and(mut self, next: Self) -> Self {
         self.primary += next.primary;
         self.shadow += next.shadow;
+        self.secondary += next.secondary;
         self.causes.edge += next.causes.edge;
         self.causes.tangency += next.causes.tangency;
         self.causes.tie += next.causes.tie;
@@ -234,28 +246,28 @@ impl Tally {
     /// Counts a mismatch, and marks its pixel.
     fn mismatch(
         &mut self,
-        place: Place<'_>,
+        place: Option<Place<'_>>,
         cause: Option<Cause>,
         shadow: bool,
         ulp: Option<u64>,
-        mark: &mut [f32; 3],
     ) {
         *self.causes.of(cause) += 1;
+        let Some(place) = place else { return };
         let explained = cause.is_some();
         if !explained {
-            *mark = RED;
-        } else if *mark != RED {
-            *mark = YELLOW;
+            *place.mark = RED;
+        } else if *place.mark != RED {
+            *place.mark = YELLOW;
         }
         let severity = (if explained { 1 } else { 2 }, ulp.unwrap_or(0));
-        self.note(severity, place, Some(cause.map_or("other", Cause::name)), shadow, ulp);
+        self.note(severity, &place, Some(cause.map_or("other", Cause::name)), shadow, ulp);
     }
 
     /// Keeps the ray if none so far is as bad.
     fn note(
         &mut self,
         severity: Severity,
-        place: Place<'_>,
+        place: &Place<'_>,
         cause: Option<&'static str>,
         shadow: bool,
         t_error_ulp: Option<u64>,

@@ -24,6 +24,36 @@ fn scene() -> Scene {
     scene
 }
 
+/// The same with a mirror for a ball, in which the ground is seen.
+fn mirror() -> Scene {
+    let mut scene = scene();
+    let mirror = Material { reflect: Vec3::ONE, ..Material::default() };
+    scene.spheres[0].material = scene.add_material(mirror);
+    scene
+}
+
+#[test]
+fn rays_off_a_mirror_are_compared_too() {
+    let scene = mirror();
+    let judge = Bvh::build(&scene, Precision::Certified);
+    let subject = Spoilt(Bvh::build(&scene, Precision::Certified), |ray, hit| {
+        if ray.from.is_some() {
+            *hit = None;
+        }
+    });
+    let (subject, judge): (&dyn Intersector, &dyn Intersector) = (&subject, &judge);
+    let precision = Precision::Fast;
+    let found =
+        Comparer { scene: &scene, precision, subject, margin: 1e-6, judge, camera: 0 }.run();
+    assert!(found.secondary_rays > 20, "{found}");
+    assert!(found.causes.other > 20 && !found.passed, "{found}");
+}
+
+#[test]
+fn without_mirrors_there_are_no_secondary_rays() {
+    assert_eq!(compared(Precision::Certified, |_, _| {}).secondary_rays, 0);
+}
+
 /// An intersector that is right, but for what `spoil` does to its hits.
 struct Spoilt<'s>(Bvh<'s>, fn(&Ray, &mut Option<Hit>));
 
