@@ -24,18 +24,14 @@ impl Mesh {
     }
 
     /// At how many edges the mesh is not closed: edges at which it does not have as many triangles
-    /// on one side, by the order of their corners, as on the other. Vertices at one place count as
-    /// one, however many there are for the sake of normals and textures.
+    /// on one side, by the order of their corners, as on the other. Vertices count as one that are
+    /// within a millionth of the mesh's size of each other: there are several for the sake of
+    /// normals and textures, and programs round the poles of a sphere each by itself.
     ///
     /// # Panics
     /// When a triangle names a vertex that is not there.
     pub fn open_edges(&self) -> usize {
-        let mut places = HashMap::with_capacity(self.positions.len());
-        let place: Vec<u32> = (0..)
-            .zip(&self.positions)
-            // 0 and −0 are one place.
-            .map(|(i, p)| *places.entry(p.map(|x| (x + 0.0).to_bits())).or_insert(i))
-            .collect();
+        let place = self.places();
         let mut edges: Vec<([u32; 2], i8)> = Vec::with_capacity(3 * self.triangles.len());
         for triangle in &self.triangles {
             let [a, b, c] = triangle.map(|i| place[i as usize]);
@@ -48,6 +44,31 @@ impl Mesh {
         edges.sort_unstable();
         let balance = |of: &[([u32; 2], i8)]| of.iter().map(|&(_, way)| i64::from(way)).sum();
         edges.chunk_by(|a, b| a.0 == b.0).map(balance).filter(|&sum: &i64| sum != 0).count()
+    }
+
+    /// For each vertex the first one at its place.
+    fn places(&self) -> Vec<u32> {
+        let size = self.bounds();
+        let near = ((size.upper - size.lower).max_element() * 1e-6).max(f64::MIN_POSITIVE);
+        // A place as large as its cell lies in at most two of them along each axis.
+        let cell = |p: DVec3| (p / (2.0 * near)).floor().to_array().map(|x| x as i64);
+        let mut firsts: HashMap<[i64; 3], Vec<(DVec3, u32)>> = HashMap::new();
+        let position = |&p: &[f32; 3]| DVec3::from(p.map(f64::from));
+        (0..)
+            .zip(self.positions.iter().map(position))
+            .map(|(i, p)| {
+                let (lower, upper) = (cell(p - near), cell(p + near));
+                let found = (0..8).find_map(|corner| {
+                    let key = [0, 1, 2].map(|k| [lower[k], upper[k]][corner >> k & 1]);
+                    let is_near = |first: &&(DVec3, u32)| (first.0 - p).abs().max_element() <= near;
+                    Some(firsts.get(&key)?.iter().find(is_near)?.1)
+                });
+                found.unwrap_or_else(|| {
+                    firsts.entry(cell(p)).or_default().push((p, i));
+                    i
+                })
+            })
+            .collect()
     }
 }
 
@@ -64,11 +85,14 @@ pub fn open_bodies(scene: &Scene) -> Vec<String> {
         let Some(material) = body else { continue };
         let edges = mesh.open_edges();
         if edges > 0 {
-            let name = &mesh.name;
-            let glass = &material.name;
+            let named = |name: &str, before: &str, after: &str| match name {
+                "" => String::new(),
+                name => format!("{before}`{name}`{after}"),
+            };
+            let (mesh, glass) = (named(&mesh.name, " (", ")"), named(&material.name, " ", ""));
             found.push(format!(
-                "mesh {i} (`{name}`) is not closed at {edges} edges, and so no body of glass: \
-                 light may enter it and never leave (close it, or make its material `{glass}` thin)"
+                "mesh {i}{mesh} is not closed at {edges} edges, and so no body of glass: light may \
+                 enter it and never leave (close it, or make its material{glass} thin)"
             ));
         }
     }
@@ -118,6 +142,15 @@ mod tests {
         assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15);
         mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
         assert!((mesh.volume() + 1.0 / 6.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn corners_that_differ_by_rounding_are_one() {
+        let mut mesh = tetrahedron();
+        mesh.positions[3] = [1e-7, -1e-7, 0.0];
+        assert_eq!(mesh.open_edges(), 0);
+        mesh.positions[3] = [1e-4, 0.0, 0.0];
+        assert_ne!(mesh.open_edges(), 0);
     }
 
     #[test]
