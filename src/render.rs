@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
-use crate::intersect::{Backend, Intersector, Precision};
+use crate::intersect::{Backend, Builder, Built, Intersector, Precision};
 use crate::scene::Scene;
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
@@ -49,13 +49,39 @@ pub struct Statistics {
     pub threads: usize,
     /// Rays and other counts.
     pub counts: Counts,
+    /// Meshes that were built for the intersector.
+    pub built: Built,
     /// Time to build the intersector.
     pub build: Duration,
     /// Time from the first ray to the last pixel.
     pub render: Duration,
 }
 
-/// Renders a scene.
+impl Statistics {
+    /// What nothing took, to add frames to.
+    pub fn none(options: &Options) -> Self {
+        Self {
+            backend: (options.backend.name(), String::new()),
+            precision: options.precision,
+            threads: options.threads,
+            counts: Counts::default(),
+            built: Built::default(),
+            build: Duration::ZERO,
+            render: Duration::ZERO,
+        }
+    }
+
+    /// Adds what another frame of the same animation took.
+    pub fn add(&mut self, other: &Statistics) {
+        (self.backend, self.threads) = (other.backend.clone(), other.threads);
+        self.counts += other.counts;
+        self.built += other.built;
+        self.build += other.build;
+        self.render += other.render;
+    }
+}
+
+/// Renders a scene; of an animated one, the first moment.
 ///
 /// `progress` is called with the share done, in (0, 1], from whichever thread finished a part.
 ///
@@ -68,18 +94,83 @@ pub fn render(
 ) -> Result<Rendering> {
     scene.check()?;
     check_camera(scene, options.camera)?;
+    let posed = scene.animation.is_some().then(|| scene.at(0.0)).transpose()?;
+    let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
-        let start = Instant::now();
-        let intersector =
-            options.backend.build(scene, options.precision, rayon::current_num_threads())?;
-        let build = start.elapsed();
-        let (film, counts, render) = with_intersector(scene, options, &*intersector, progress);
-        let backend = (intersector.name(), intersector.version());
         let threads = rayon::current_num_threads();
-        let precision = options.precision;
-        let statistics = Statistics { backend, precision, threads, counts, build, render };
-        Ok(Rendering { film, statistics })
+        let mut builder = Builder::new(options.backend, options.precision, threads);
+        let start = Instant::now();
+        let intersector = builder.build(scene)?;
+        let built = (start.elapsed(), builder.built());
+        Ok(picture(scene, options, &*intersector, built, progress))
     })
+}
+
+/// Renders a scene at each of several times, in seconds, and hands each picture to `each` with its
+/// index before the next is begun. Of the intersector only what moves is built again.
+///
+/// `progress` is called with the share of the whole that is done, in (0, 1].
+///
+/// # Errors
+/// When the scene is not valid at one of the times, as for [`render`], and what `each` returns;
+/// nothing after that is rendered.
+pub fn render_frames(
+    scene: &Scene,
+    times: &[f64],
+    options: &Options,
+    progress: &(dyn Fn(f32) + Sync),
+    each: &mut (dyn FnMut(usize, Rendering) -> Result<()> + Send),
+) -> Result<()> {
+    scene.check()?;
+    check_camera(scene, options.camera)?;
+    in_pool(options.threads, || {
+        let (backend, precision) = (options.backend, options.precision);
+        let threads = rayon::current_num_threads();
+        let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
+        let mut builder = match moves {
+            true => Builder::for_frames(backend, precision, threads),
+            false => Builder::new(backend, precision, threads),
+        };
+        // Where lights and cameras alone move, one intersector serves all frames.
+        let mut still: Option<Box<dyn Intersector + '_>> = None;
+        for (i, &time) in times.iter().enumerate() {
+            let posed = scene.at(time)?;
+            posed.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
+            let start = Instant::now();
+            let before = builder.built();
+            let rendering = if moves {
+                let intersector = builder.build(&posed)?;
+                let built = (start.elapsed(), builder.built() - before);
+                picture(&posed, options, &*intersector, built, &share)
+            } else if let Some(intersector) = &still {
+                let built = Built { meshes: 0, reused: before.meshes };
+                picture(&posed, options, &**intersector, (start.elapsed(), built), &share)
+            } else {
+                let intersector = still.insert(builder.build(scene)?);
+                let built = (start.elapsed(), builder.built());
+                picture(&posed, options, &**intersector, built, &share)
+            };
+            each(i, rendering)?;
+        }
+        Ok(())
+    })
+}
+
+/// A picture of a checked scene, by an intersector that took so long, and so many meshes, to build.
+fn picture(
+    scene: &Scene,
+    options: &Options,
+    intersector: &dyn Intersector,
+    (build, built): (Duration, Built),
+    progress: &(dyn Fn(f32) + Sync),
+) -> Rendering {
+    let (film, counts, render) = with_intersector(scene, options, intersector, progress);
+    let backend = (intersector.name(), intersector.version());
+    let threads = rayon::current_num_threads();
+    let precision = options.precision;
+    let statistics = Statistics { backend, precision, threads, counts, built, build, render };
+    Rendering { film, statistics }
 }
 
 /// Renders a checked scene with an intersector that is there already, on the current rayon pool.

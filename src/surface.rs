@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn normal_of_a_stretched_mesh_stays_across_its_surface() {
         let mut scene = scene();
-        scene.meshes[0].normals = vec![[1., 0., 1.]; 3];
+        std::sync::Arc::make_mut(&mut scene.meshes[0]).normals = vec![[1., 0., 1.]; 3];
         scene.instances[0].transform = DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0));
         let ray = Ray::new(DVec3::new(0.2, 0.2, 1.0), DVec3::NEG_Z);
         let id = PrimitiveId::triangle(0, 0, 0);

@@ -1,4 +1,4 @@
-//! The committed models are what `examples/make_assets.rs` makes, and the scenes that use them
+//! The committed models and drawings are what `examples/make_assets.rs` makes, and the scenes that use them
 //! load without a warning.
 
 #[path = "../examples/make_assets.rs"]
@@ -8,31 +8,43 @@ use std::path::Path;
 
 use envers::load::load;
 
-/// The largest model that is committed, in bytes.
+/// The largest file that is committed, in bytes.
 const LIMIT: usize = 500_000;
 
 /// Byte by byte on every platform: the generator asks its mathematics library for nothing but
 /// square roots.
 #[test]
-fn committed_models_are_those_of_the_generator() {
+fn committed_models_and_drawings_are_those_of_the_generator() {
     for (name, bytes) in make_assets::files() {
         assert!(bytes.len() < LIMIT, "{name} is {} bytes long", bytes.len());
-        let committed = std::fs::read(make_assets::folder().join(name)).unwrap_or_default();
+        let committed = std::fs::read(make_assets::root().join(&name)).unwrap_or_default();
         assert!(
             committed == bytes,
-            "assets/models/{name} is not what the generator makes; run `cargo run --example \
-             make_assets`, and look at the scenes that use it"
+            "{name} is not what the generator makes; run `cargo run --example make_assets`, and \
+             look at the scenes or chapters that use it"
         );
+    }
+}
+
+/// Holds a folder's files with one of the endings to the generator.
+fn made(folder: &str, endings: &[&str]) {
+    let made: Vec<_> = make_assets::files().into_iter().map(|(name, _)| name).collect();
+    for entry in std::fs::read_dir(make_assets::root().join(folder)).expect(folder) {
+        let name = entry.expect("the folder can be read").file_name().display().to_string();
+        if endings.iter().any(|ending| name.ends_with(ending)) {
+            assert!(made.contains(&format!("{folder}/{name}")), "{name}");
+        }
     }
 }
 
 #[test]
 fn no_model_is_committed_that_the_generator_does_not_make() {
-    let made: Vec<_> = make_assets::files().into_iter().map(|(name, _)| name).collect();
-    for entry in std::fs::read_dir(make_assets::folder()).expect("assets/models is there") {
-        let name = entry.expect("the folder can be read").file_name();
-        assert!(made.iter().any(|made| name == *made), "{}", name.display());
-    }
+    made(make_assets::MODELS, &[""]);
+}
+
+#[test]
+fn no_drawing_is_committed_that_the_generator_does_not_make() {
+    made(make_assets::DRAWINGS, &[".svg"]);
 }
 
 #[test]
@@ -47,7 +59,7 @@ fn demo_scenes_and_models_load_without_a_warning() {
 /// What the room is there to show: instances of one mesh, textures, lights and a camera of its own.
 #[test]
 fn room_uses_what_gltf_offers() {
-    let scene = load(&make_assets::folder().join("room.glb")).expect("the room loads");
+    let scene = load(&make_assets::root().join("assets/models/room.glb")).expect("the room loads");
     assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
     assert_eq!((scene.lights.len(), scene.textures.len()), (2, 3));
     assert_eq!(scene.cameras[0].name, "view");
@@ -56,6 +68,6 @@ fn room_uses_what_gltf_offers() {
 /// What the vase is there to show: two materials, one with a texture, on smooth polygons.
 #[test]
 fn vase_uses_what_obj_offers() {
-    let scene = load(&make_assets::folder().join("vase.obj")).expect("the vase loads");
+    let scene = load(&make_assets::root().join("assets/models/vase.obj")).expect("the vase loads");
     assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));
 }

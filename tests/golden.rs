@@ -95,6 +95,11 @@ fn check(name: &str, size: [u32; 2], spp: u32) {
 }
 
 #[test]
+fn far() {
+    check("tutorial/2-2-far", [80, 80], 1);
+}
+
+#[test]
 fn circle() {
     check("tutorial/3-1-circle", [160, 80], 1);
 }
@@ -107,6 +112,11 @@ fn lambert() {
 #[test]
 fn phong() {
     check("tutorial/3-3-phong", [160, 80], 1);
+}
+
+#[test]
+fn first_frame_of_the_orbit() {
+    check("tutorial/6-4-orbit", [160, 80], 4);
 }
 
 #[test]

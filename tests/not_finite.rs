@@ -72,7 +72,7 @@ fn light_that_is_hidden_spoils_nothing() {
 #[test]
 fn vertex_colour_times_diffuse_is_counted_as_surface() {
     let mut scene = wall(matt(1e20));
-    scene.meshes[0].colors = vec![[1e20; 3]; 3];
+    std::sync::Arc::make_mut(&mut scene.meshes[0]).colors = vec![[1e20; 3]; 3];
     scene.lights.push(lamp(1.0, 1.0));
     assert_counted(&scene, NotFinite { surface: 1, ..NONE });
 }

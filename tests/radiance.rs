@@ -153,7 +153,7 @@ fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
     use envers::scene::{Image, Texture, Transfer};
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
-    scene.meshes[0].colors = vec![[0.5; 3]; 4];
+    std::sync::Arc::make_mut(&mut scene.meshes[0]).colors = vec![[0.5; 3]; 4];
     let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[51; 4]] };
     let texture = scene.add_texture(Texture {
         image: image.into(),
@@ -161,7 +161,7 @@ fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
         wrap: Default::default(),
         filter: Default::default(),
     });
-    scene.meshes[0].uvs = vec![[0.0; 2]; 4];
+    std::sync::Arc::make_mut(&mut scene.meshes[0]).uvs = vec![[0.0; 2]; 4];
     scene.materials[0].diffuse_map = Some(texture);
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
     assert_near(radiance(&scene), 0.5 * 0.5 * 0.2);

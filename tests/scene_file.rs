@@ -8,6 +8,8 @@ mod docs;
 mod good;
 #[path = "scene_file/models.rs"]
 mod models;
+#[path = "scene_file/motion.rs"]
+mod motion;
 #[path = "scene_file/random.rs"]
 mod random;
 

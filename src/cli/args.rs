@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::cli::files;
+use crate::cli::frames::Range;
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::geometry::Ray;
@@ -67,6 +68,9 @@ pub struct Tracing {
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
+    /// One moment of an animation, in seconds [default: the first frame, at 0]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub time: Option<f64>,
     /// How far hits can be trusted: fast is f64 formulas and f32 traversal, certified is proven
     #[arg(long, value_enum, default_value = "fast")]
     pub precision: PrecisionName,
@@ -83,13 +87,23 @@ pub struct Tracing {
 Examples:
   envers render model.glb -o out.png
   envers render scene.toml -o out.png -o out.exr --size 1920x1080 --spp 16
-  envers render scene.toml -o depth.exr --view depth --stats -")]
+  envers render scene.toml -o depth.exr --view depth --stats -
+  envers render orbit.toml -o orbit.gif
+  envers render orbit.toml --frames 1-120x2 -o out/frame-####.png --skip-existing")]
 pub struct Render {
     #[command(flatten)]
     pub tracing: Tracing,
-    /// Output file, .png or .exr; may be given several times [default: NAME.png in this folder]
+    /// Output file, .png or .exr, of an animation also .gif or .apng; may be given several times.
+    /// #### stands for the number of the frame [default: NAME.png in this folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
+    /// Frames of an animation: one, such as 7, or some, such as 1-120 or 1-120x2 [default: all for
+    /// .gif, .apng and ####, otherwise the first]
+    #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time")]
+    pub frames: Option<Range>,
+    /// Leave alone what is there already, to go on where a rendering was interrupted
+    #[arg(long)]
+    pub skip_existing: bool,
     /// Who finds the hits [default: embree where it is built in]
     #[arg(long, value_enum)]
     pub backend: Option<BackendName>,
@@ -292,6 +306,11 @@ fn goal(text: &str) -> std::result::Result<Goal, String> {
     Goal::ALL.into_iter().find(named).ok_or("expected a goal, G1 to G7".to_owned())
 }
 
+fn seconds(text: &str) -> std::result::Result<f64, String> {
+    let in_range = |x: &f64| (0.0..=1e15).contains(x);
+    text.parse().ok().filter(in_range).ok_or("expected seconds, 0 or above".to_owned())
+}
+
 fn finite(text: &str) -> std::result::Result<f64, String> {
     text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or("expected a finite number".to_owned())
 }
@@ -302,11 +321,21 @@ fn not_negative(text: &str) -> std::result::Result<f32, String> {
 }
 
 impl Tracing {
-    /// Loads the scene and applies the flags; says which camera is asked for.
+    /// Loads the scene as it is at one moment, as [`Tracing::load_animated`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn load(&self) -> Result<(Scene, usize)> {
+        let (scene, camera) = self.load_animated()?;
+        Ok((scene.at(0.0)?, camera))
+    }
+
+    /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
+    /// for a moment the scene is that.
     ///
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
-    pub fn load(&self) -> Result<(Scene, usize)> {
+    pub fn load_animated(&self) -> Result<(Scene, usize)> {
         files::check_input(&self.scene)?;
         let mut scene = crate::load::load_for(&self.scene, self.size)?;
         if let Some(spp) = self.spp {
@@ -319,6 +348,13 @@ impl Tracing {
             None => 0,
             Some(wanted) => find_camera(&scene, wanted)?,
         };
+        if let Some(time) = self.time {
+            if scene.animation.is_none() {
+                let error = Error::input("the scene has no animation, and so no --time");
+                return Err(error.at(&self.scene).help("leave --time out"));
+            }
+            scene = scene.at(time).map_err(|e| e.at(&self.scene))?;
+        }
         Ok((scene, camera))
     }
 

@@ -9,6 +9,7 @@ use crate::cli::json::Geometry;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load;
+use crate::scene::animation::{Animation, Mover};
 use crate::scene::{Lens, LightKind, Scene, detail};
 
 /// `info --json`.
@@ -24,6 +25,8 @@ struct Summary {
     textures: usize,
     lights: Vec<String>,
     cameras: Vec<String>,
+    /// What moves, and for how long; null when nothing does.
+    animation: Option<Motion>,
     /// The corners of the box around all that is finite; null when nothing is.
     bounds: Option<[[f64; 3]; 2]>,
     /// What the scene does not need, and so is not done.
@@ -31,11 +34,66 @@ struct Summary {
     warnings: Vec<String>,
 }
 
+/// An animation, and how many of each kind of thing it moves.
+#[derive(Serialize)]
+struct Motion {
+    frames: u32,
+    fps: f64,
+    seconds: f64,
+    spheres: usize,
+    instances: usize,
+    lights: usize,
+    cameras: usize,
+}
+
+impl Motion {
+    fn of(animation: &Animation) -> Self {
+        let mut motion = Self {
+            frames: animation.frames,
+            fps: animation.fps,
+            seconds: animation.seconds(),
+            spheres: 0,
+            instances: 0,
+            lights: 0,
+            cameras: 0,
+        };
+        for mover in &animation.movers {
+            *match mover {
+                Mover::Sphere { .. } => &mut motion.spheres,
+                Mover::Instance { .. } => &mut motion.instances,
+                Mover::Light { .. } => &mut motion.lights,
+                Mover::Camera { .. } => &mut motion.cameras,
+            } += 1;
+        }
+        motion
+    }
+}
+
+impl fmt::Display for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let moving: Vec<String> = [
+            (self.spheres, "sphere"),
+            (self.instances, "instance"),
+            (self.lights, "light"),
+            (self.cameras, "camera"),
+        ]
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{count} {what}{}", if count == 1 { "" } else { "s" }))
+        .collect();
+        let moving = or_none(&moving);
+        let (frames, fps, seconds) = (self.frames, self.fps, self.seconds);
+        write!(f, "{frames} frames at {fps} a second ({seconds:.3} s), moving: {moving}")
+    }
+}
+
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
     let scene = load::load(&arguments.scene)?;
-    let summary = summarize(&scene);
+    let motion = scene.animation.as_ref().map(Motion::of);
+    // The rest is that of the first frame.
+    let summary = summarize(&scene.at(0.0)?, motion);
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&summary.to_string())?;
         summary.warnings.iter().for_each(|w| report::warning(w));
@@ -46,7 +104,7 @@ pub fn run(arguments: &Info) -> Outcome {
     Ok(Verdict::Good)
 }
 
-fn summarize(scene: &Scene) -> Summary {
+fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     let bounds = scene.bounds();
     // As the default of `render`: precision fast, on Embree where it is built in.
     let mut warnings = scene.warnings.clone();
@@ -61,6 +119,7 @@ fn summarize(scene: &Scene) -> Summary {
         textures: scene.textures.len(),
         lights: scene.lights.iter().map(|l| named(light_kind(&l.kind), &l.name)).collect(),
         cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
+        animation,
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
         skipped: skipped(scene),
         warnings,
@@ -124,6 +183,9 @@ impl fmt::Display for Summary {
         writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
         writeln!(f, "lights     {}", or_none(&self.lights))?;
         writeln!(f, "cameras    {}", or_none(&self.cameras))?;
+        if let Some(motion) = &self.animation {
+            writeln!(f, "animation  {motion}")?;
+        }
         match self.bounds {
             Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
             None => writeln!(f, "bounds     nothing finite")?,

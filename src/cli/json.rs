@@ -14,7 +14,10 @@ pub struct Stats {
     pub threads: usize,
     pub size: [u32; 2],
     pub spp: u32,
+    /// How many frames were rendered; what is counted and timed is that of all of them.
+    pub frames: usize,
     pub geometry: Geometry,
+    pub build: Build,
     pub rays: Rays,
     /// Samples that were left out, by what made them not finite.
     pub not_finite: NotFinite,
@@ -50,6 +53,15 @@ impl Geometry {
             instances: scene.instances.len(),
         }
     }
+}
+
+/// The meshes of all frames.
+#[derive(Serialize)]
+pub struct Build {
+    /// Meshes that were built.
+    pub meshes: u64,
+    /// Meshes that were there from a frame before.
+    pub reused: u64,
 }
 
 #[derive(Serialize)]
@@ -93,6 +105,7 @@ pub struct Seconds {
 impl Stats {
     pub fn new(
         scene: &Scene,
+        frames: usize,
         statistics: &Statistics,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
@@ -106,7 +119,9 @@ impl Stats {
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,
+            frames,
             geometry: Geometry::of(scene),
+            build: Build { meshes: statistics.built.meshes, reused: statistics.built.reused },
             rays: rays.into(),
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },

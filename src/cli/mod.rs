@@ -3,6 +3,7 @@
 mod args;
 mod diff;
 mod files;
+mod frames;
 mod info;
 mod json;
 mod output;

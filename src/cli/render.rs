@@ -1,18 +1,19 @@
 //! `envers render`.
 
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::cli::args::{Render, ViewName};
+use crate::cli::frames::Plan;
 use crate::cli::json::Stats;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
-use crate::render::{self, Options, Rendering};
+use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::{Scene, Tone, detail};
-use crate::write::{self, Format, Settings};
+use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
     let start = Instant::now();
@@ -22,13 +23,14 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let (mut scene, camera) = arguments.tracing.load()?;
-    files::check_not_a_texture(&scene, &outputs)?;
+    let (mut scene, camera) = arguments.tracing.load_animated()?;
     if arguments.view != ViewName::Beauty {
         scene.film.spp = 1;
     }
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
+    let plan = Plan::new(arguments, &scene, outputs)?;
+    let first = first(&scene, &plan).map_err(|e| e.at(&arguments.tracing.scene))?;
     let loaded = start.elapsed();
 
     let view = View::from(arguments.view);
@@ -36,41 +38,106 @@ pub fn run(arguments: &Render) -> Outcome {
     let precision = arguments.tracing.precision.into();
     let options = Options { backend, precision, threads, camera, view, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
-    let rendering =
-        render::render(&scene, &options, &|share| progress.set_position((share * 1000.0) as u64))?;
-    progress.finish_and_clear();
-
-    let mut warnings = scene.warnings.clone();
-    let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(detail::lost(&scene, f32_rays));
-    warnings.extend(oddities(&scene, camera, &rendering));
-    if !arguments.tracing.quiet {
-        warnings.iter().for_each(|w| report::warning(w));
-    }
-
-    let before_write = Instant::now();
     let settings = Settings {
         half: arguments.half,
         metadata: metadata(&scene, camera, view, precision),
         ..Settings::of(&scene.film)
     };
-    for path in &outputs {
-        write::write(&rendering.film, path, &settings)?;
-    }
-    let write = before_write.elapsed();
-    let total = start.elapsed();
+    let mut sink = Sink::new(&plan, settings, &options, scene.film.size)?;
+    let times: Vec<f64> = plan.frames.iter().map(|(_, time)| *time).collect();
+    let step = |share: f32| progress.set_position((share * 1000.0) as u64);
+    render::render_frames(&scene, &times, &options, &step, &mut |i, frame| sink.take(i, frame))
+        .map_err(|e| e.at(&arguments.tracing.scene))?;
+    progress.finish_and_clear();
+    let done = sink.finish()?;
 
+    let mut warnings = scene.warnings.clone();
+    let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
+    warnings.extend(detail::lost(&first, f32_rays));
+    warnings.extend(oddities(&first, camera, view, &done));
+    if !arguments.tracing.quiet {
+        warnings.iter().for_each(|w| report::warning(w));
+    }
+    let total = start.elapsed();
     if !arguments.tracing.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
-        for path in &outputs {
-            output::print(&format!("{} ({:.2} s)\n", path.display(), total.as_secs_f64()))?;
-        }
+        output::print(&plan.summary(total.as_secs_f64()))?;
     }
     if let Some(path) = &arguments.stats {
-        let seconds = [loaded, write, total].map(|d| d.as_secs_f64());
-        let stats = Stats::new(&scene, &rendering.statistics, seconds, warnings);
+        let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
+        let stats = Stats::new(&first, times.len(), &done.statistics, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)
+}
+
+/// The first frame's scene; each frame is tried, and its files, before any is rendered.
+fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
+    for (i, (frame, time)) in plan.frames.iter().enumerate() {
+        scene.at(*time)?;
+        let files: Vec<PathBuf> = plan.files(*frame).collect();
+        files::check_not_a_texture(scene, &files)?;
+        if i == 0 {
+            files.iter().try_for_each(|path| write::check(path))?;
+        }
+    }
+    files::check_not_a_texture(scene, &plan.movies)?;
+    scene.at(plan.frames.first().map_or(0.0, |(_, time)| *time))
+}
+
+/// Where the frames go.
+struct Sink<'a> {
+    plan: &'a Plan,
+    settings: Settings,
+    movies: Vec<Movie>,
+    done: Done,
+}
+
+/// What all frames took, and what they show.
+struct Done {
+    statistics: Statistics,
+    write: Duration,
+    /// Whether there is nothing but black in any frame.
+    is_black: bool,
+}
+
+impl<'a> Sink<'a> {
+    fn new(plan: &'a Plan, settings: Settings, options: &Options, size: [u32; 2]) -> Result<Self> {
+        let frames = plan.frames.len() as u32;
+        let movie = |path: &PathBuf| Movie::create(path, size, frames, plan.fps);
+        let movies = plan.movies.iter().map(movie).collect::<Result<_>>()?;
+        let statistics = Statistics::none(options);
+        let done = Done { statistics, write: Duration::ZERO, is_black: true };
+        Ok(Self { plan, settings, movies, done })
+    }
+
+    /// Writes a frame.
+    fn take(&mut self, index: usize, rendering: Rendering) -> Result<()> {
+        let start = Instant::now();
+        let (frame, time) = self.plan.frames[index];
+        let mut settings = self.settings.clone();
+        if frame.is_some() {
+            settings.metadata.push(("time".to_owned(), format!("{time} s")));
+        }
+        for path in self.plan.files(frame) {
+            write::write(&rendering.film, &path, &settings)?;
+        }
+        for movie in &mut self.movies {
+            movie.push(&rendering.film, &settings)?;
+        }
+        let dark = 0.5 / 255.0 / self.settings.exposure.exp2();
+        let is_dark = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= dark);
+        self.done.is_black &= rendering.film.pixels.iter().all(is_dark);
+        self.done.statistics.add(&rendering.statistics);
+        self.done.write += start.elapsed();
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Done> {
+        let start = Instant::now();
+        self.movies.into_iter().try_for_each(Movie::finish)?;
+        self.done.write += start.elapsed();
+        Ok(self.done)
+    }
 }
 
 /// The output files, checked: named, distinct, of a known format, and writable.
@@ -96,7 +163,7 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
     let shown =
         [("--exposure", arguments.exposure.is_some()), ("--tone", arguments.tone.is_some())];
     if let Some((flag, _)) = shown.iter().find(|(_, given)| *given)
-        && !formats.contains(&Format::Png)
+        && formats.iter().all(|&format| format == Format::Exr)
     {
         return Err(Error::input(format!("{flag} is about PNG, and no .png is asked for"))
             .help("an EXR always holds the radiance itself"));
@@ -119,11 +186,13 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
 }
 
 /// What in a picture is probably not what was meant, with the likely cause.
-fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> {
-    let (film, counts) = (&rendering.film, &rendering.statistics.counts);
+fn oddities(scene: &Scene, camera: usize, view: View, done: &Done) -> Vec<String> {
+    let counts = &done.statistics.counts;
     let mut found = Vec::new();
     found.extend(not_finite(&counts.not_finite));
-    if counts.hits == 0 {
+    if counts.rays.primary == 0 {
+        // Every frame was there already.
+    } else if counts.hits == 0 {
         let bounds = scene.bounds();
         found.push(if bounds.is_empty() && scene.planes.is_empty() {
             "the picture is empty: nothing stands in the scene".to_owned()
@@ -134,8 +203,7 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
                 bounds.center()
             )
         });
-    } else if film.view == View::Beauty {
-        let exposed = |x: f32| f64::from(x) * scene.film.exposure.exp2();
+    } else if view == View::Beauty {
         let emits = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
         if scene.lights.is_empty() && !emits {
             found.push(
@@ -143,7 +211,7 @@ fn oddities(scene: &Scene, camera: usize, rendering: &Rendering) -> Vec<String> 
                  to a material)"
                     .to_owned(),
             );
-        } else if film.pixels.iter().all(|p| p.iter().all(|&x| exposed(x) <= 0.5 / 255.0)) {
+        } else if done.is_black {
             found.push(
                 "the picture is wholly black: the lights may be behind the surfaces, in their \
                  shadow, or too weak at this distance (try `--exposure 4`)"

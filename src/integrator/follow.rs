@@ -7,7 +7,6 @@ use crate::integrator::bodies::{Around, Interiors};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
 use crate::scene::Material;
-use crate::shading::{Interface, reflect};
 use crate::surface::Surface;
 
 /// Where a ray comes from, and what it is worth.
@@ -204,57 +203,6 @@ impl Integrator<'_> {
         };
         send(ray, through, true, around.behind);
     }
-
-    /// What becomes of light that comes along `incoming`, of length 1.
-    fn scatter(
-        &self,
-        material: &Material,
-        surface: &Surface,
-        around: &Around,
-        incoming: DVec3,
-    ) -> Scattered {
-        let facing = surface.facing_normal();
-        let shading = surface.normal * -surface.normal.dot(incoming).signum();
-        let ior = |inside| self.bodies.medium(inside).ior;
-        let by = |normal: DVec3| {
-            let cosine = -normal.dot(incoming);
-            let interface = if material.transmit == Vec3::ZERO {
-                Interface::new(cosine, 1.0, 1.0)
-            } else if material.thin {
-                Interface::sheet(cosine, ior(&around.before), material.ior)
-            } else {
-                Interface::new(cosine, ior(&around.before), ior(&around.behind))
-            };
-            let refracted = match interface.is_straight() {
-                true => None,
-                false => interface.refract(incoming, normal),
-            };
-            let (reflect_share, transmit) =
-                (material.reflect.as_dvec3(), material.transmit.as_dvec3());
-            Scattered {
-                reflected: reflect(incoming, normal).normalize(),
-                refracted,
-                shares: [
-                    reflect_share + transmit * interface.reflected,
-                    transmit * (1.0 - interface.reflected),
-                ],
-            }
-        };
-        let scattered = by(shading);
-        // An interpolated normal may send light to the wrong side of the surface itself.
-        let wrong = scattered.reflected.dot(facing) <= 0.0
-            || scattered.refracted.is_some_and(|refracted| refracted.dot(facing) >= 0.0);
-        if wrong && shading != facing { by(facing) } else { scattered }
-    }
-}
-
-/// Where a surface sends light, and how much of it.
-struct Scattered {
-    reflected: DVec3,
-    /// `None` where it goes straight on, and where all is reflected.
-    refracted: Option<DVec3>,
-    /// Of the reflected and of the refracted ray.
-    shares: [DVec3; 2],
 }
 
 /// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.

@@ -12,6 +12,7 @@ mod follow;
 #[cfg(test)]
 mod reversal;
 mod samples;
+mod scatter;
 mod shade;
 mod shadow;
 mod tiling;

@@ -5,6 +5,7 @@
 //! They share the primitives' tests in [`primitive`]; what differs is which primitives they try.
 
 mod brute;
+mod builder;
 mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
@@ -13,6 +14,7 @@ mod leaving;
 pub mod primitive;
 
 pub use brute::BruteForce;
+pub use builder::{Builder, Built};
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, version as embree_version};
@@ -96,6 +98,15 @@ impl Default for Backend {
 }
 
 impl Backend {
+    /// What its intersector is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            #[cfg(feature = "embree")]
+            Backend::Embree => "embree",
+            Backend::Rust => "rust",
+        }
+    }
+
     /// Builds the intersector of a checked scene, on `threads` threads (0: all there are).
     ///
     /// # Errors
@@ -106,13 +117,6 @@ impl Backend {
         precision: Precision,
         threads: usize,
     ) -> Result<Box<dyn Intersector + '_>> {
-        match self {
-            #[cfg(feature = "embree")]
-            Backend::Embree => Ok(Box::new(Embree::build(scene, precision, threads)?)),
-            Backend::Rust => {
-                let _ = threads; // The BVH is built on the caller's rayon pool.
-                Ok(Box::new(Bvh::build(scene, precision)))
-            }
-        }
+        Builder::new(self, precision, threads).build(scene)
     }
 }

@@ -41,7 +41,7 @@ pub fn load(path: &Path) -> Result<Scene> {
 /// As [`load`].
 pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
     let from_file = extension(path) == "toml";
-    let mut scene = if from_file { scene_file::load(path)? } else { model(path)? };
+    let mut scene = if from_file { scene_file::load(path)? } else { model(path, None)? };
     if let Some(size) = size {
         scene.film.size = size;
     }
@@ -56,10 +56,14 @@ pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Loads a model file as it is: with its own cameras and lights, or none.
-fn model(path: &Path) -> Result<Scene> {
+/// Loads a model file as it is: with its own cameras and lights, or none, and with its animation of
+/// that name, or the first.
+fn model(path: &Path, animation: Option<&str>) -> Result<Scene> {
     match extension(path).as_str() {
-        "gltf" | "glb" => gltf::load(path),
+        "gltf" | "glb" => gltf::load(path, animation),
+        "obj" if animation.is_some() => Err(Error::input("an OBJ file has no animations")
+            .at(path)
+            .help("leave `animation` out")),
         "obj" => obj::load(path),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),

@@ -1,11 +1,10 @@
 //! Placing a model's scene within another one.
 
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 
 use crate::geometry::Bounds;
-use crate::scene::{
-    Camera, Instance, Lens, Light, LightKind, MaterialId, MeshId, Scene, TextureId,
-};
+use crate::scene::animation::{Animation, Mover, Node, NodeId};
+use crate::scene::{Camera, Instance, Light, LightKind, MaterialId, MeshId, Scene, TextureId};
 
 /// A model whose meshes, materials and textures are in a scene, where it can be placed any number
 /// of times without being stored again.
@@ -14,6 +13,7 @@ pub struct Part {
     instances: Vec<Instance>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
+    animation: Option<Animation>,
     /// Around all of it, its lights and cameras too, before it is placed.
     bounds: Bounds,
 }
@@ -21,8 +21,10 @@ pub struct Part {
 /// How a model is to stand.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement {
-    /// From the model's space to the world's; invertible.
+    /// From the model's space to the world's, or to that of `node`; invertible.
     pub transform: DAffine3,
+    /// The space that it moves with, in which `transform` places it; none for the world.
+    pub node: Option<NodeId>,
     /// A material for all of it, in place of its own.
     pub material: Option<MaterialId>,
     /// Whether it keeps light from what lies behind it.
@@ -36,13 +38,17 @@ impl Part {
     ///
     /// The model's film and warnings are dropped, and so are spheres and planes, which no model
     /// file has.
-    pub fn add(scene: &mut Scene, model: Scene) -> Self {
+    pub fn add(scene: &mut Scene, mut model: Scene) -> Self {
+        if scene.animation.is_none() {
+            // What is flat as the file places it would be there at another time only.
+            model.instances.retain(|instance| !instance.is_flat());
+        }
         let bounds = bounds(&model);
         let first_texture = scene.textures.len() as u32;
         let first_material = scene.materials.len() as u32;
         let first_mesh = scene.meshes.len() as u32;
         scene.textures.extend(model.textures);
-        scene.meshes.extend(model.meshes);
+        scene.meshes.append(&mut model.meshes);
         scene.materials.extend(model.materials.into_iter().map(|mut material| {
             for map in [&mut material.diffuse_map, &mut material.emission_map] {
                 *map = map.map(|texture| TextureId(texture.0 + first_texture));
@@ -54,7 +60,8 @@ impl Part {
             instance.mesh = MeshId(instance.mesh.0 + first_mesh);
             instance.material = MaterialId(instance.material.0 + first_material);
         }
-        Self { instances, lights: model.lights, cameras: model.cameras, bounds }
+        let (lights, cameras) = (model.lights, model.cameras);
+        Self { instances, lights, cameras, animation: model.animation, bounds }
     }
 
     /// How far from the origin something of it may be once it is placed.
@@ -62,9 +69,11 @@ impl Part {
         self.bounds.transformed(transform).max_abs()
     }
 
-    /// Places the model in the scene that it was added to.
+    /// Places the model in the scene that it was added to. Its own animation is played where the
+    /// scene has one.
     pub fn place(&self, scene: &mut Scene, placement: &Placement) {
         let transform = &placement.transform;
+        let first = Firsts { instance: scene.instances.len(), light: scene.lights.len() };
         scene.instances.extend(self.instances.iter().map(|instance| Instance {
             transform: *transform * instance.transform,
             material: placement.material.unwrap_or(instance.material),
@@ -72,18 +81,134 @@ impl Part {
             mesh: instance.mesh,
         }));
         if placement.lights {
-            scene.lights.extend(self.lights.iter().map(|light| place_light(light, transform)));
+            scene.lights.extend(self.lights.iter().map(|light| light.placed(transform)));
         }
+        // A camera that is left out has no index.
+        let mut cameras = Vec::with_capacity(self.cameras.len());
         for camera in &self.cameras {
-            match place_camera(camera, transform) {
-                Some(placed) => scene.cameras.push(placed),
-                None => scene.warnings.push(format!(
-                    "the model's camera `{}` is left out: its scale leaves it no upward direction",
-                    camera.name
-                )),
+            match camera.placed(transform) {
+                Some(placed) => {
+                    cameras.push(Some(scene.cameras.len()));
+                    scene.cameras.push(placed);
+                }
+                None => {
+                    cameras.push(None);
+                    scene.warnings.push(format!(
+                        "the model's camera `{}` is left out: its scale leaves it no upward \
+                         direction",
+                        camera.name
+                    ));
+                }
+            }
+        }
+        if let Some(mut animation) = scene.animation.take() {
+            self.animate(&mut animation, placement, &first, &cameras);
+            scene.animation = Some(animation);
+        }
+    }
+
+    /// Adds how the placed model moves: as its own animation says, all of it with the placement's
+    /// node.
+    fn animate(
+        &self,
+        animation: &mut Animation,
+        placement: &Placement,
+        first: &Firsts,
+        cameras: &[Option<usize>],
+    ) {
+        let shift = animation.nodes.len() as u32;
+        let (nodes, movers) =
+            self.animation.as_ref().map_or((&[][..], &[][..]), |own| (&own.nodes, &own.movers));
+        animation.nodes.extend(nodes.iter().map(|node| match node.parent {
+            Some(NodeId(parent)) => Node { parent: Some(NodeId(parent + shift)), ..node.clone() },
+            None => Node {
+                parent: placement.node,
+                place: placement.transform * node.place,
+                motion: node.motion.clone(),
+            },
+        }));
+        let mut moves = Moves {
+            instances: vec![false; self.instances.len()],
+            lights: vec![false; self.lights.len()],
+            cameras: vec![false; self.cameras.len()],
+        };
+        let shifted = |node: &NodeId| NodeId(node.0 + shift);
+        for mover in movers {
+            let mut mover = mover.clone();
+            match &mut mover {
+                Mover::Sphere { .. } => continue,
+                Mover::Instance { instance, node, .. } => {
+                    moves.instances[*instance] = true;
+                    (*instance, *node) = (*instance + first.instance, shifted(node));
+                }
+                Mover::Light { light, node, .. } => {
+                    moves.lights[*light] = true;
+                    (*light, *node) = (*light + first.light, node.as_ref().map(shifted));
+                    if !placement.lights {
+                        continue;
+                    }
+                }
+                Mover::Camera { camera, node, .. } => {
+                    moves.cameras[*camera] = true;
+                    let Some(index) = cameras[*camera] else { continue };
+                    (*camera, *node) = (index, node.as_ref().map(shifted));
+                }
+            }
+            animation.movers.push(mover);
+        }
+        if let Some(node) = placement.node {
+            self.carry(animation, placement, node, first, cameras, &moves);
+        }
+    }
+
+    /// Makes what does not move by itself move with the placement's node.
+    fn carry(
+        &self,
+        animation: &mut Animation,
+        placement: &Placement,
+        node: NodeId,
+        first: &Firsts,
+        cameras: &[Option<usize>],
+        moves: &Moves,
+    ) {
+        let transform = placement.transform;
+        for (i, instance) in self.instances.iter().enumerate().filter(|(i, _)| !moves.instances[*i])
+        {
+            let transform = transform * instance.transform;
+            let instance = first.instance + i;
+            animation.movers.push(Mover::Instance { instance, node, transform });
+        }
+        let lights = self.lights.iter().enumerate().filter(|(i, _)| !moves.lights[*i]);
+        for (i, light) in lights.filter(|_| placement.lights) {
+            animation.movers.push(Mover::Light {
+                light: first.light + i,
+                node: Some(node),
+                rest: light.placed(&transform),
+                direction: None,
+                intensity: None,
+            });
+        }
+        for (i, camera) in self.cameras.iter().enumerate().filter(|(i, _)| !moves.cameras[*i]) {
+            if let Some((index, rest)) = cameras[i].zip(camera.placed(&transform)) {
+                let (aim, lens) = (None, None);
+                let node = Some(node);
+                animation.movers.push(Mover::Camera { camera: index, node, rest, aim, lens });
             }
         }
     }
+}
+
+/// The indices in the scene of a placed model's first objects.
+struct Firsts {
+    instance: usize,
+    light: usize,
+}
+
+/// Which of a model's objects move by its own animation.
+struct Moves {
+    instances: Vec<bool>,
+    lights: Vec<bool>,
+    cameras: Vec<bool>,
 }
 
 fn bounds(model: &Scene) -> Bounds {
@@ -95,42 +220,11 @@ fn bounds(model: &Scene) -> Bounds {
     model.bounds().union(Bounds::of(lights.chain(cameras)))
 }
 
-/// Moves and turns a light. Its intensity and its range stay as they are under any scale, as
-/// KHR_lights_punctual has it.
-fn place_light(light: &Light, transform: &DAffine3) -> Light {
-    let turned = |v: DVec3| transform.transform_vector3(v).normalize();
-    let mut light = light.clone();
-    match &mut light.kind {
-        LightKind::Ambient => {}
-        LightKind::Directional { direction } => *direction = turned(*direction),
-        LightKind::Point { position, .. } => *position = transform.transform_point3(*position),
-        LightKind::Spot { position, direction, .. } => {
-            *position = transform.transform_point3(*position);
-            *direction = turned(*direction);
-        }
-    }
-    light
-}
-
-/// Moves and turns a camera, so that it sees the placed model as it saw the model; only a mirror
-/// or a shear it does not follow. None when the transform is too uneven to leave it an up.
-fn place_camera(camera: &Camera, transform: &DAffine3) -> Option<Camera> {
-    let forward = transform.transform_vector3(camera.forward).try_normalize()?;
-    let up = transform.transform_vector3(camera.up);
-    let lens = match camera.lens {
-        Lens::OrthoHeight(height) => Lens::OrthoHeight(height * up.length()),
-        lens => lens,
-    };
-    let placed = Camera::look_at(DVec3::ZERO, forward, up, lens).ok()?;
-    let position = transform.transform_point3(camera.position);
-    Some(Camera { name: camera.name.clone(), position, ..placed })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, Image, Material, Mesh, Shadow, Texture, Transfer};
-    use glam::{DMat3, Vec3};
+    use crate::scene::{Falloff, Image, Lens, Material, Mesh, Shadow, Texture, Transfer};
+    use glam::{DMat3, DVec3, Vec3};
     use std::sync::Arc;
 
     /// One triangle with a textured material, a spot light and a camera.
@@ -170,7 +264,7 @@ mod tests {
     }
 
     fn placed(transform: DAffine3) -> Placement {
-        Placement { transform, material: None, casts_shadow: true, lights: true }
+        Placement { transform, node: None, material: None, casts_shadow: true, lights: true }
     }
 
     /// A quarter turn about z, twice as large, moved by 10 along x.

@@ -43,6 +43,9 @@ impl Picture {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
         match Format::of(path)? {
+            Format::Gif | Format::Apng => Err(Error::input("animated pictures are not compared")
+                .at(path)
+                .help("compare their frames: render them as `-o frame-####.png`")),
             Format::Png => {
                 let image = image::open(path).map_err(|e| damaged(&e))?.into_rgb8();
                 Ok(Self {

@@ -1,6 +1,6 @@
 //! The eye.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
@@ -22,6 +22,18 @@ pub enum Lens {
     },
     /// Parallel rays; the height of what is seen, above 0, in world units.
     OrthoHeight(f64),
+}
+
+impl Lens {
+    /// The same kind of lens with another angle, in radians, distance or height.
+    pub fn with(self, value: f64) -> Self {
+        match self {
+            Lens::FovY(_) => Lens::FovY(value),
+            Lens::FovX(_) => Lens::FovX(value),
+            Lens::FocalPx { width, .. } => Lens::FocalPx { focal: value, width },
+            Lens::OrthoHeight(_) => Lens::OrthoHeight(value),
+        }
+    }
 }
 
 /// A pinhole or orthographic camera.
@@ -59,6 +71,21 @@ impl Camera {
         let right = right.normalize();
         let up = right.cross(forward);
         Ok(Self { name: String::new(), position, forward, right, up, lens })
+    }
+
+    /// The camera moved and turned, so that it sees the placed scene as it saw the scene; only a
+    /// mirror or a shear it does not follow. None when the transform is too uneven to leave it an
+    /// up.
+    pub fn placed(&self, transform: &DAffine3) -> Option<Self> {
+        let forward = transform.transform_vector3(self.forward).try_normalize()?;
+        let up = transform.transform_vector3(self.up);
+        let lens = match self.lens {
+            Lens::OrthoHeight(height) => Lens::OrthoHeight(height * up.length()),
+            lens => lens,
+        };
+        let placed = Self::look_at(DVec3::ZERO, forward, up, lens).ok()?;
+        let position = transform.transform_point3(self.position);
+        Some(Self { name: self.name.clone(), position, ..placed })
     }
 
     /// The rays of a picture of `size` pixels.

@@ -90,13 +90,15 @@ impl Scene {
         for (i, mesh) in self.meshes.iter().enumerate() {
             check_mesh(i, mesh)?;
         }
+        let moved = self.animation.as_ref().map(|a| a.moved_instances(self.instances.len()));
         for (i, instance) in self.instances.iter().enumerate() {
             let what = format!("instance {i}");
             index(&what, "mesh", instance.mesh.0, self.meshes.len())?;
             index(&what, "material", instance.material.0, self.materials.len())?;
-            let t = &instance.transform;
-            let determinant = t.matrix3.determinant();
-            require(t.is_finite() && determinant != 0.0 && determinant.is_finite(), || {
+            // What moves may be flat at one time; it then is not there.
+            let may_be_flat = moved.as_ref().is_some_and(|moved| moved[i]);
+            let is_sound = instance.transform.is_finite() && (may_be_flat || !instance.is_flat());
+            require(is_sound, || {
                 format!("{what}: its transform cannot be inverted (a scale of 0?)")
             })?;
         }
@@ -108,7 +110,8 @@ impl Scene {
             color(&format!("light {i}: intensity"), l.intensity)?;
             check_light(i, &l.kind)
         })?;
-        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))
+        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))?;
+        self.animation.iter().try_for_each(|animation| animation.check(self))
     }
 }
 

@@ -29,7 +29,7 @@ pub fn lost(scene: &Scene, f32_rays: bool) -> Vec<String> {
     if bounds.is_empty() {
         return Vec::new();
     }
-    let meshes: Vec<Grain> = scene.meshes.iter().map(Grain::of).collect();
+    let meshes: Vec<Grain> = scene.meshes.iter().map(|m| Grain::of(m)).collect();
     let extent = bounds.size().max_element();
     let mut found = Vec::new();
 

@@ -1,6 +1,6 @@
 //! Lights.
 
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -95,6 +95,23 @@ impl Light {
     /// which something could stand.
     pub fn casts_shadow(&self) -> bool {
         self.shadow != Shadow::None && self.kind != LightKind::Ambient
+    }
+
+    /// The light moved and turned. Its intensity and its range stay as they are under any scale, as
+    /// KHR_lights_punctual has it.
+    pub fn placed(&self, transform: &DAffine3) -> Self {
+        let turned = |v: DVec3| transform.transform_vector3(v).normalize();
+        let mut light = self.clone();
+        match &mut light.kind {
+            LightKind::Ambient => {}
+            LightKind::Directional { direction } => *direction = turned(*direction),
+            LightKind::Point { position, .. } => *position = transform.transform_point3(*position),
+            LightKind::Spot { position, direction, .. } => {
+                *position = transform.transform_point3(*position);
+                *direction = turned(*direction);
+            }
+        }
+        light
     }
 
     /// What arrives at `point`, shadows aside; `None` when nothing does, and for ambient light,

@@ -1,5 +1,6 @@
 //! The scene: plain, validated data with typed indices, and nothing that parses or traces.
 
+pub mod animation;
 mod camera;
 pub mod check;
 pub mod closed;
@@ -21,7 +22,10 @@ pub use object::{Checker, Instance, Plane, Sphere};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
 pub use tone::Tone;
 
+use std::sync::Arc;
+
 use crate::geometry::{Bounds, Geometry, PrimitiveId};
+use animation::Animation;
 
 /// Everything that determines the picture.
 ///
@@ -41,12 +45,15 @@ pub struct Scene {
     pub spheres: Vec<Sphere>,
     /// The infinite planes.
     pub planes: Vec<Plane>,
-    /// The meshes, each stored once.
-    pub meshes: Vec<Mesh>,
+    /// The meshes, each stored once; a scene shares them with itself at another time.
+    pub meshes: Vec<Arc<Mesh>>,
     /// Where the meshes stand.
     pub instances: Vec<Instance>,
     /// The lights.
     pub lights: Vec<Light>,
+    /// How the scene changes with time. What is above is the scene as its files place it;
+    /// [`Scene::at`] says how it is at a time.
+    pub animation: Option<Animation>,
     /// What the loader could not do as the files ask, or found odd; one sentence each.
     pub warnings: Vec<String>,
 }
@@ -66,7 +73,7 @@ impl Scene {
 
     /// Adds a mesh; it is seen only where an [`Instance`] of it stands.
     pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
-        self.meshes.push(mesh);
+        self.meshes.push(Arc::new(mesh));
         MeshId(self.meshes.len() as u32 - 1)
     }
 
@@ -136,7 +143,7 @@ impl Scene {
     /// The box around all that is finite: spheres and instances, not planes.
     pub fn bounds(&self) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let mesh_bounds: Vec<Bounds> = self.meshes.iter().map(Mesh::bounds).collect();
+        let mesh_bounds: Vec<Bounds> = self.meshes.iter().map(|m| m.bounds()).collect();
         let instances =
             self.instances.iter().map(|i| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform));
         spheres.chain(instances).fold(Bounds::EMPTY, Bounds::union)

@@ -98,6 +98,12 @@ impl Instance {
         Self { mesh, transform, material, casts_shadow: true }
     }
 
+    /// Whether its transform leaves no volume, and so no way back into the mesh's space.
+    pub fn is_flat(&self) -> bool {
+        let determinant = self.transform.matrix3.determinant();
+        determinant == 0.0 || !determinant.is_finite()
+    }
+
     /// A vertex of the mesh in world space, rounded in f64 in one fixed order of operations.
     #[inline(always)]
     pub fn bake(&self, p: [f32; 3]) -> DVec3 {

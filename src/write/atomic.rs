@@ -66,6 +66,46 @@ pub fn check(path: &Path) -> Result<()> {
     }
 }
 
+/// A file that is being written: to a temporary file in the same folder, which takes the name once
+/// it is whole.
+pub struct Pending {
+    path: PathBuf,
+    target: PathBuf,
+    file: NamedTempFile,
+}
+
+impl Pending {
+    /// Begins a file that is to stand at `path`. What stands there is untouched until `commit`.
+    pub fn new(path: &Path) -> Result<Self> {
+        let target = resolve(path);
+        let file = temporary(&target)?;
+        Ok(Self { path: path.to_owned(), target, file })
+    }
+
+    /// Where it is to stand.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// A handle to write through.
+    pub fn handle(&self) -> std::io::Result<File> {
+        self.file.as_file().try_clone()
+    }
+
+    /// Flushes it to the disk and gives it its name.
+    pub fn commit(self) -> Result<()> {
+        let failed = |e: std::io::Error| Error::io("write", &self.path, &e);
+        self.file.as_file().sync_all().map_err(failed)?;
+        self.file.persist(&self.target).map_err(|e| failed(e.error))?;
+        // The name itself reaches the disk with its folder; where a folder cannot be opened or
+        // flushed (on some systems and file systems) the file is there all the same.
+        if let Ok(folder) = File::open(folder_of(&self.target)) {
+            let _ = folder.sync_all();
+        }
+        Ok(())
+    }
+}
+
 /// Writes a file through `fill`: to a temporary file in the same folder, which is flushed to the
 /// disk and then takes the name.
 ///
@@ -75,21 +115,13 @@ pub fn atomically(
     path: &Path,
     fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
 ) -> Result<()> {
-    let target = resolve(path);
-    let mut file = temporary(&target)?;
+    let mut pending = Pending::new(path)?;
     let failed = |e: std::io::Error| Error::io("write", path, &e);
-    let mut buffered = BufWriter::new(file.as_file_mut());
+    let mut buffered = BufWriter::new(pending.file.as_file_mut());
     fill(&mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
     drop(buffered);
-    file.as_file().sync_all().map_err(failed)?;
-    file.persist(&target).map_err(|e| failed(e.error))?;
-    // The name itself reaches the disk with its folder; where a folder cannot be opened or
-    // flushed (on some systems and file systems) the file is there all the same.
-    if let Ok(folder) = File::open(folder_of(&target)) {
-        let _ = folder.sync_all();
-    }
-    Ok(())
+    pending.commit()
 }
 
 /// What files are written through.

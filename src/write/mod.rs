@@ -2,6 +2,7 @@
 
 mod atomic;
 mod exr;
+mod movie;
 mod png;
 
 use std::path::Path;
@@ -11,6 +12,7 @@ use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
 pub use atomic::{atomically, check as check_file};
+pub use movie::Movie;
 pub use png::encode as png_bytes;
 
 /// What an output file is, by its extension.
@@ -20,6 +22,10 @@ pub enum Format {
     Png,
     /// Linear floats, unclamped.
     Exr,
+    /// Many frames of 256 colours each.
+    Gif,
+    /// Many frames with the pixels of a PNG each.
+    Apng,
 }
 
 /// How to write a picture. `exposure`, `tone` and `transfer` are how a PNG shows radiance; an EXR
@@ -62,12 +68,19 @@ impl Format {
         match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
             "png" => Ok(Format::Png),
             "exr" => Ok(Format::Exr),
+            "gif" => Ok(Format::Gif),
+            "apng" => Ok(Format::Apng),
             "" => Err(Error::input("the output has no extension that tells its format").at(path)),
             other => {
                 Err(Error::input(format!("pictures that end in .{other} are not written")).at(path))
             }
         }
-        .map_err(|e| e.help("name it .png (8 bits) or .exr (floats)"))
+        .map_err(|e| e.help("name it .png (8 bits), .exr (floats), .gif or .apng (animated)"))
+    }
+
+    /// Whether it holds many frames.
+    pub fn is_animated(self) -> bool {
+        matches!(self, Format::Gif | Format::Apng)
     }
 }
 
@@ -81,7 +94,8 @@ pub fn check(path: &Path) -> Result<()> {
     atomic::check(path)
 }
 
-/// Writes a film, in the format that the extension names.
+/// Writes a film, in the format that the extension names; an animated one then has one frame. A
+/// [`Movie`] writes many.
 ///
 /// # Errors
 /// When the file cannot be written; what stood there before then stands there still.
@@ -89,5 +103,10 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     match Format::of(path)? {
         Format::Png => png::write(film, path, settings),
         Format::Exr => exr::write(film, path, settings),
+        Format::Gif | Format::Apng => {
+            let mut movie = Movie::create(path, film.size, 1, 1.0)?;
+            movie.push(film, settings)?;
+            movie.finish()
+        }
     }
 }

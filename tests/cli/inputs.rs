@@ -66,7 +66,7 @@ fn lookat_is_look_at() {
 
 #[test]
 fn an_unknown_key_is_pointed_at() {
-    points("radius = 0.5", "radius = 0.5\n¦wavelength = 3", "its keys are `center`");
+    points("radius = 0.5", "radius = 0.5\n¦wavelength = 3", "its keys are `name`, `center`");
 }
 
 #[test]

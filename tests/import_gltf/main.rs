@@ -4,6 +4,7 @@
 #[path = "../import_common/mod.rs"]
 mod common;
 
+mod animation;
 mod damaged_data;
 mod damaged_files;
 mod geometry;

@@ -22,7 +22,7 @@ fn an_unknown_key_is_at_the_key() {
     assert_says(
         &error,
         "[[sphere]] has no key `wavelength`",
-        "its keys are `center`, `radius`, `material` and `casts_shadow`",
+        "its keys are `name`, `center`, `radius`, `material` and `casts_shadow`",
     );
     assert_eq!(error.kind(), ErrorKind::Input);
 }

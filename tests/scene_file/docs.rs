@@ -18,15 +18,23 @@ struct Key {
 fn keys() -> BTreeMap<String, BTreeMap<String, Key>> {
     let schema = schema().to_value();
     let tables = schema["properties"].as_object().unwrap();
-    tables
-        .iter()
-        .map(|(name, table)| {
-            let table = [table.get("items"), table.pointer("/anyOf/0"), Some(table)];
-            let mut keys = BTreeMap::new();
-            collect(table.into_iter().flatten().next().unwrap(), "", &mut keys);
-            (name.clone(), keys)
-        })
-        .collect()
+    let mut all = BTreeMap::new();
+    let mut open: Vec<(String, &Value)> = tables.iter().map(|(n, t)| (n.clone(), t)).collect();
+    while let Some((name, table)) = open.pop() {
+        let table = [table.get("items"), table.pointer("/anyOf/0"), Some(table)];
+        let table = table.into_iter().flatten().next().unwrap();
+        let mut keys = BTreeMap::new();
+        collect(table, "", &mut keys);
+        // A list of tables is a table of its own, such as `animation.orbit`.
+        for (key, value) in table["properties"].as_object().unwrap() {
+            if value.pointer("/items/properties").is_some() {
+                keys.remove(key);
+                open.push((format!("{name}.{key}"), value));
+            }
+        }
+        all.insert(name, keys);
+    }
+    all
 }
 
 fn collect(table: &Value, prefix: &str, keys: &mut BTreeMap<String, Key>) {
@@ -47,7 +55,7 @@ fn rows() -> Vec<(String, String, String)> {
     let mut table = String::new();
     let mut rows = Vec::new();
     for line in text.lines() {
-        if let Some(heading) = line.strip_prefix("## ") {
+        if let Some((_, heading)) = line.split_once("## ").filter(|_| line.starts_with("##")) {
             table = heading.trim_matches(|c| "`[]".contains(c)).to_owned();
         } else if let Some(row) = line.strip_prefix("| `")
             && !table.is_empty()
@@ -155,6 +163,13 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
     assert_same(written_out("[[sphere]]", "sphere", needed), camera);
     let needed = "point = [0, 0, 0]\nnormal = [0, 1, 0]\nchecker.colors = [0, 1]";
     assert_same(written_out("[[plane]]", "plane", needed), camera);
+    let ball = format!("{camera}[[sphere]]\nname = \"b\"\ncenter = [1, 0, 0]\nradius = 1\n");
+    assert_same(written_out("[animation]", "animation", "frames = 3"), &ball);
+    let ball = format!("[animation]\nframes = 3\n{ball}");
+    let needed = "object = \"b\"\naround = [0, 0, 0]\nperiod = 1";
+    assert_same(written_out("[[animation.orbit]]", "animation.orbit", needed), &ball);
+    let needed = "object = \"b\"\ntimes = [0, 1]\nradius = [1, 2]";
+    assert_same(written_out("[[animation.track]]", "animation.track", needed), &ball);
     let needed = "kind = \"spot\"\nposition = [0, 0, 0]\ndirection = [0, 1, 0]";
     assert_same(written_out("[[light]]", "light", needed), camera);
 }
@@ -163,9 +178,16 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
 fn the_examples_in_the_documents_load_without_a_warning() {
     let text = std::fs::read_to_string(docs_folder().join("scene.md")).unwrap();
     let examples: Vec<&str> = text.split("```toml\n").skip(1).collect();
-    assert_eq!(examples.len(), 2);
+    assert_eq!(examples.len(), 4);
     for example in examples {
-        let file = super::File::new(example.split("```").next().unwrap());
+        let mut example = example.split("```").next().unwrap().to_owned();
+        if example.starts_with("[[animation.track]]") {
+            // A part of a file: what it is about comes before it.
+            let lamp = "[[light]]\nname = \"lamp\"\nkind = \"ambient\"\n";
+            let frames = "[animation]\nframes = 60\n";
+            example = format!("{}{frames}{lamp}{example}", super::CAMERA);
+        }
+        let file = super::File::new(&example);
         std::fs::write(file.beside("room.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
         let scene = file.load().unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(scene.warnings, Vec::<String>::new());

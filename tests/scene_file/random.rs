@@ -32,10 +32,29 @@ emission = 0.0
 double_sided = true
 
 [[sphere]]
+name = "ball"
 center = [0, 0, 10]
 radius = 1
 material = "blue"
 casts_shadow = false
+
+[animation]
+frames = 12
+fps = 24
+
+[[animation.orbit]]
+object = "ball"
+around = "é"
+period = 2
+axis = [0, 1, 0]
+turn = true
+
+[[animation.track]]
+object = "é"
+times = [0, 1]
+interpolation = "smooth"
+position = [[0, 0, 0], [1, 0, 0]]
+focal_px = [500, 600]
 
 [[plane]]
 point = [0, 1, 0]

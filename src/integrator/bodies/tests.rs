@@ -119,7 +119,8 @@ fn a_mirrored_mesh_is_the_same_body() {
 #[test]
 fn a_mesh_that_winds_inward_is_the_same_body() {
     let mut scene = corner(DAffine3::IDENTITY);
-    scene.meshes[0].triangles.iter_mut().for_each(|triangle| triangle.reverse());
+    let mesh = std::sync::Arc::make_mut(&mut scene.meshes[0]);
+    mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());
     assert_eq!([ior_at(&scene, DVec3::splat(0.5)), ior_at(&scene, DVec3::splat(-1.0))], [1.5, 1.0]);
     assert_eq!(ior_behind(&scene, DVec3::new(0.5, -9.0, 0.5)), 1.5);
 }

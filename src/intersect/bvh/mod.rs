@@ -7,11 +7,14 @@
 mod build;
 mod tree;
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::brute::is_extreme;
+use crate::intersect::builder::{Kept, used};
 use crate::intersect::entry::Entry;
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
@@ -26,20 +29,46 @@ pub struct Bvh<'s> {
     instances: Tree,
     /// For each instance, the way into its mesh's space.
     entries: Vec<Entry>,
-    meshes: Vec<Tree>,
+    meshes: Vec<Arc<MeshTree>>,
 }
+
+/// The tree over the triangles of a mesh, in its own space; empty for one that stands nowhere.
+#[derive(Default)]
+pub struct MeshTree(Tree);
 
 impl<'s> Bvh<'s> {
     /// Builds the trees of a checked scene, on the current rayon pool.
     pub fn build(scene: &'s Scene, precision: Precision) -> Self {
-        let meshes: Vec<Tree> =
-            scene.meshes.par_iter().map(|mesh| build(&triangle_bounds(mesh))).collect();
+        Self::build_sharing(scene, precision, None)
+    }
+
+    /// As [`Bvh::build`], with the trees of meshes that are there already.
+    pub(super) fn build_sharing(
+        scene: &'s Scene,
+        precision: Precision,
+        mut kept: Option<&mut Kept<MeshTree>>,
+    ) -> Self {
+        let there = |index, mesh| kept.as_ref().and_then(|kept| kept.get(index, mesh));
+        let used = used(scene);
+        let meshes: Vec<Arc<MeshTree>> = (scene.meshes.par_iter().enumerate())
+            .map(|(i, mesh)| match used[i] {
+                true => there(i, mesh).unwrap_or_else(|| MeshTree::new(mesh).into()),
+                false => Arc::default(),
+            })
+            .collect();
+        if let Some(kept) = &mut kept {
+            for (i, (mesh, tree)) in scene.meshes.iter().zip(&meshes).enumerate() {
+                if used[i] {
+                    kept.keep(i, mesh, tree);
+                }
+            }
+        }
         let spheres: Vec<Bounds> = scene.spheres.iter().map(Sphere::bounds).collect();
         let placed: Vec<Bounds> = scene
             .instances
             .iter()
             .map(|i| {
-                let bounds = meshes[i.mesh.0 as usize].bounds().transformed(&i.transform);
+                let bounds = meshes[i.mesh.0 as usize].0.bounds().transformed(&i.transform);
                 // A baked vertex may round to just outside the transformed box.
                 bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
             })
@@ -71,7 +100,7 @@ impl<'s> Bvh<'s> {
             let entry = &self.entries[instance as usize];
             let (origin, direction) = entry.line(ray.origin, ray.direction);
             let local = Line::new(origin, direction, entry.error(ray.origin));
-            self.meshes[mesh as usize].walk(&local, limit, |triangle, limit| {
+            self.meshes[mesh as usize].0.walk(&local, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
                 self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))
             })
@@ -79,12 +108,16 @@ impl<'s> Bvh<'s> {
     }
 }
 
-fn triangle_bounds(mesh: &Mesh) -> Vec<Bounds> {
-    let point = |i: u32| {
-        let [x, y, z] = mesh.positions[i as usize];
-        DVec3::new(f64::from(x), f64::from(y), f64::from(z))
-    };
-    mesh.triangles.par_iter().map(|t| Bounds::of(t.map(point))).collect()
+impl MeshTree {
+    fn new(mesh: &Mesh) -> Self {
+        let point = |i: u32| {
+            let [x, y, z] = mesh.positions[i as usize];
+            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
+        };
+        let bounds: Vec<Bounds> =
+            mesh.triangles.par_iter().map(|t| Bounds::of(t.map(point))).collect();
+        Self(build(&bounds))
+    }
 }
 
 impl Intersector for Bvh<'_> {

@@ -8,6 +8,7 @@ use crate::geometry::Bounds;
 pub const MAX_DEPTH: usize = 96;
 
 /// A binary tree of boxes over numbered items, stored depth first.
+#[derive(Default)]
 pub struct Tree {
     pub(super) nodes: Vec<Node>,
     /// The items, those of a leaf side by side.

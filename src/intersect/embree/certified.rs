@@ -114,7 +114,7 @@ impl Shape for Face {
         context: &Context<'_, W>,
     ) -> Self {
         // SAFETY: the user data of a mesh's geometry is its table.
-        let table = unsafe { &*user.cast::<Triangles<'_>>() };
+        let table = unsafe { &*user.cast::<Triangles>() };
         let instance = if table.instance == INVALID { context.instance } else { table.instance };
         let id = PrimitiveId::triangle(table.mesh, index, instance);
         let blocks_light = context.scene.blocks_light(id);

@@ -1,7 +1,10 @@
 //! The meshes of precision `certified`: user geometry, in world space or in spaces of their own.
 
+use std::sync::Arc;
+
 use crate::error::Result;
 use crate::geometry::Bounds;
+use crate::intersect::builder::Kept;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
@@ -13,31 +16,59 @@ use embree4_sys::RTCSceneFlags;
 
 /// What Embree keeps the addresses of.
 #[derive(Default)]
-pub struct Meshes<'s> {
+pub struct Meshes {
     #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
-    tables: Vec<Box<Triangles<'s>>>,
-    inner: Vec<InnerScene>,
+    tables: Vec<Box<Triangles>>,
+    own: Vec<Arc<Own>>,
     placements: Option<Box<Placements>>,
+}
+
+/// A mesh in a space of its own.
+pub struct Own {
+    pub scene: InnerScene,
+    /// Where its f32 copies live.
+    pub frame: Frame,
+    /// Read by the callbacks; dropped after the scene that calls them.
+    _table: Box<Triangles>,
+}
+
+impl Own {
+    fn new(
+        scene: &Scene,
+        mesh: u32,
+        bounds: Bounds,
+        top: &embree4_rs::Scene,
+        device: &DeviceHandle,
+        width: Width,
+    ) -> Result<Self> {
+        let frame = Frame::around(bounds);
+        let table = Triangles::own(scene, mesh, frame);
+        let callbacks = certified::triangles(width);
+        let geometry = user::geometry(&top.device, device, &*table, callbacks)?;
+        let scene = InnerScene::new(device, QUALITY, RTCSceneFlags::NONE, &geometry)?;
+        Ok(Self { scene, frame, _table: table })
+    }
 }
 
 /// A mesh whose triangles are smaller than this share of the scene gets a space of its own: the
 /// scene's padding would make its boxes overlap.
 const SMALL: f64 = 1e-4;
 
-impl<'s> Meshes<'s> {
+impl Meshes {
     /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
-    /// one that is outsized in its own; the others as placements.
+    /// one that is outsized in its own; the others as placements. Where frames share their meshes
+    /// in `kept`, all are placements but the outsized ones.
     pub fn attach(
         &mut self,
-        scene: &'s Scene,
+        scene: &Scene,
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
-        frame: Frame,
-        width: Width,
+        (frame, width): (Frame, Width),
+        mut kept: Option<&mut Kept<Own>>,
     ) -> Result<()> {
         let uses = uses(scene);
-        let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
-        let mut own: Vec<Option<(usize, Frame)>> = vec![None; scene.meshes.len()];
+        let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
+        let mut own: Vec<Option<Arc<Own>>> = vec![None; scene.meshes.len()];
         let mut placed = Box::new(Placements::new(frame));
         for (index, instance) in (0..).zip(&scene.instances) {
             let at = instance.mesh.0 as usize;
@@ -49,28 +80,25 @@ impl<'s> Meshes<'s> {
             let bounds = local.transformed(&instance.transform);
             // A baked vertex may round to just outside the transformed box.
             let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
-            let once = uses[at] == 1 && !is_small(mesh, &bounds, &frame);
+            let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
             if once || is_outsized(&local) {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
                 attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;
                 self.tables.push(table);
+                kept.iter_mut().for_each(|kept| kept.count_one());
                 continue;
             }
-            let (inner, own) = match own[at] {
+            let own = match &own[at] {
                 Some(there) => there,
                 None => {
-                    let frame = Frame::around(local);
-                    let table = Triangles::own(scene, instance.mesh.0, frame);
-                    let callbacks = certified::triangles(width);
-                    let geometry = user::geometry(&top.device, device, &*table, callbacks)?;
-                    let flags = RTCSceneFlags::NONE;
-                    self.inner.push(InnerScene::new(device, QUALITY, flags, &geometry)?);
-                    self.tables.push(table);
-                    *own[at].insert((self.inner.len() - 1, frame))
+                    let make = || Own::new(scene, at as u32, local, top, device, width);
+                    let made = Kept::get_or(&mut kept, at, mesh, make)?;
+                    self.own.push(made.clone());
+                    own[at].insert(made)
                 }
             };
-            placed.add(scene, index, bounds, &self.inner[inner], own);
+            placed.add(scene, index, bounds, own);
         }
         if !placed.is_empty() {
             let callbacks = placements::callbacks(width);

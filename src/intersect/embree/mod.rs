@@ -45,6 +45,7 @@ use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Ray};
+use crate::intersect::builder::Kept;
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
@@ -69,7 +70,7 @@ pub struct Embree<'s> {
     version: String,
     /// Read by the callbacks; dropped after the scene that calls them.
     _spheres: Option<Box<SphereTable>>,
-    _meshes: Meshes<'s>,
+    _meshes: Meshes,
 }
 
 // SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
@@ -85,7 +86,17 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::with_width(scene, precision, threads, None)
+        Self::build_sharing(scene, precision, threads, None)
+    }
+
+    /// As [`Embree::build`], with the meshes that are there already, on their device.
+    pub(super) fn build_sharing(
+        scene: &'s Scene,
+        precision: Precision,
+        threads: usize,
+        shared: Option<&mut Shared>,
+    ) -> Result<Self> {
+        Self::with_width(scene, precision, threads, None, shared)
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -94,7 +105,7 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::with_width(scene, precision, threads, Some(Width::One))
+        Self::with_width(scene, precision, threads, Some(Width::One), None)
     }
 
     fn with_width(
@@ -102,6 +113,7 @@ impl<'s> Embree<'s> {
         precision: Precision,
         threads: usize,
         width: Option<Width>,
+        mut shared: Option<&mut Shared>,
     ) -> Result<Self> {
         static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
         CHECKED
@@ -109,10 +121,16 @@ impl<'s> Embree<'s> {
             .clone()
             .map_err(Error::failed)?;
 
-        let device = Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?;
+        let device = match shared.as_ref().and_then(|shared| shared.device.as_ref()) {
+            Some(there) => there.device(),
+            None => Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?,
+        };
         let options = SceneOptions { build_quality: QUALITY, flags: flags() };
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
+        if let Some(shared) = &mut shared {
+            shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
+        }
         let bounds = scene.bounds();
         let frame = Frame::around(bounds);
         let width = width.unwrap_or_else(|| Width::native(&device));
@@ -120,8 +138,14 @@ impl<'s> Embree<'s> {
         let mut instance_of = Vec::new();
         let mut _meshes = Meshes::default();
         match precision {
-            Precision::Fast => instance_of = native::attach_meshes(scene, &top, &device, &frame)?,
-            Precision::Certified => _meshes.attach(scene, &top, &device, frame, width)?,
+            Precision::Fast => {
+                let kept = shared.map(|shared| &mut shared.fast);
+                instance_of = native::attach_meshes(scene, &top, &device, &frame, kept)?;
+            }
+            Precision::Certified => {
+                let kept = shared.map(|shared| &mut shared.certified);
+                _meshes.attach(scene, &top, &device, (frame, width), kept)?;
+            }
         }
         let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
         if let Some(table) = &_spheres {
@@ -167,6 +191,22 @@ impl<'s> Embree<'s> {
             careful: false,
             reach: self.reach,
         }
+    }
+}
+
+/// What frames share: a device, and the meshes that were built on it.
+#[derive(Default)]
+pub(super) struct Shared {
+    fast: Kept<native::Own>,
+    certified: Kept<meshes::Own>,
+    /// Dropped after what stands on it.
+    device: Option<DeviceHandle>,
+}
+
+impl Shared {
+    /// How many meshes were built.
+    pub(super) fn built(&self) -> u64 {
+        self.fast.built() + self.certified.built()
     }
 }
 

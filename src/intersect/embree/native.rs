@@ -1,28 +1,48 @@
 //! The meshes of precision `fast`: Embree's own triangles and instances.
 
+use std::sync::Arc;
+
 use embree4_rs::Device;
 use embree4_rs::geometry::TriangleMeshGeometry;
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
+use crate::intersect::builder::Kept;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
 use crate::intersect::embree::{QUALITY, attach, flags, is_outsized, uses};
 use crate::scene::{Instance, Mesh, Scene};
 
+/// A mesh in a space of its own, recentred: a model may stand far from its own origin.
+pub struct Own {
+    scene: InnerScene,
+    center: DVec3,
+}
+
+impl Own {
+    fn new(mesh: &Mesh, bounds: &Bounds, device: &Device, handle: &DeviceHandle) -> Result<Self> {
+        let center = bounds.center();
+        let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
+        let geometry = upload(device, mesh, |p| local(p).to_array())?;
+        Ok(Self { scene: InnerScene::new(handle, QUALITY, flags(), &geometry)?, center })
+    }
+}
+
 /// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
-/// stands several times through Embree's instances, unless it is outsized in its own space. Says which instance each geometry is.
+/// stands several times through Embree's instances, unless it is outsized in its own space. Where
+/// frames share their meshes in `kept`, all stand through instances but the outsized ones. Says
+/// which instance each geometry is.
 pub fn attach_meshes(
     scene: &Scene,
     top: &embree4_rs::Scene,
     device: &DeviceHandle,
     frame: &Frame,
+    mut kept: Option<&mut Kept<Own>>,
 ) -> Result<Vec<u32>> {
     let uses = uses(scene);
-    let bounds: Vec<Bounds> = scene.meshes.iter().map(Mesh::bounds).collect();
-    // An instanced mesh is recentred too: a model may stand far from its own origin.
-    let mut inner: Vec<Option<(InnerScene, DVec3)>> = scene.meshes.iter().map(|_| None).collect();
+    let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
+    let mut own: Vec<Option<Arc<Own>>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();
     for (index, instance) in scene.instances.iter().enumerate() {
         let at = instance.mesh.0 as usize;
@@ -30,20 +50,21 @@ pub fn attach_meshes(
         if mesh.triangles.is_empty() {
             continue;
         }
-        if uses[at] == 1 || is_outsized(&bounds[at]) {
+        if (uses[at] == 1 && kept.is_none()) || is_outsized(&bounds[at]) {
             let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
             attach(top, &geometry)?;
+            kept.iter_mut().for_each(|kept| kept.count_one());
         } else {
-            if inner[at].is_none() {
-                let center = bounds[at].center();
-                let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
-                let geometry = upload(&top.device, mesh, |p| local(p).to_array())?;
-                inner[at] = Some((InnerScene::new(device, QUALITY, flags(), &geometry)?, center));
-            }
-            if let Some((built, center)) = &inner[at] {
-                let columns = columns(instance, *center, frame);
-                attach(top, &InstanceGeometry::new(device, built, &columns)?)?;
-            }
+            let own = match &own[at] {
+                Some(there) => there,
+                None => {
+                    let make = || Own::new(mesh, &bounds[at], &top.device, device);
+                    let made = Kept::get_or(&mut kept, at, mesh, make)?;
+                    own[at].insert(made)
+                }
+            };
+            let columns = columns(instance, own.center, frame);
+            attach(top, &InstanceGeometry::new(device, &own.scene, &columns)?)?;
         }
         instance_of.push(index as u32);
     }

@@ -35,6 +35,18 @@ impl DeviceHandle {
         Self(unsafe { sys::rtcGetSceneDevice(scene_handle(scene)) })
     }
 
+    /// The same device, as embree4-rs owns one.
+    pub fn device(&self) -> embree4_rs::Device {
+        const _: () = assert!(size_of::<embree4_rs::Device>() == size_of::<sys::RTCDevice>());
+        // SAFETY: the crate's struct is its handle and nothing else, by the assertion here and in
+        // `scene_handle`; the crate's version is pinned. The reference that the first call adds is
+        // the one that the struct releases when it is dropped.
+        unsafe {
+            sys::rtcRetainDevice(self.0);
+            std::mem::transmute::<sys::RTCDevice, embree4_rs::Device>(self.0)
+        }
+    }
+
     /// A property such as the version or a supported packet width.
     pub fn property(&self, property: sys::RTCDeviceProperty) -> isize {
         // SAFETY: the device is live.
@@ -60,6 +72,13 @@ impl Drop for DeviceHandle {
         unsafe { sys::rtcReleaseDevice(self.0) }
     }
 }
+
+// SAFETY: Embree lets any thread use and release a device, and trace and release a committed scene,
+// which is what an `InnerScene` is from `new` on.
+unsafe impl Send for DeviceHandle {}
+unsafe impl Sync for DeviceHandle {}
+unsafe impl Send for InnerScene {}
+unsafe impl Sync for InnerScene {}
 
 /// A scene to be instanced, on a device that already has one.
 pub struct InnerScene(pub sys::RTCScene);

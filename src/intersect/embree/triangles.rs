@@ -1,50 +1,55 @@
 //! The triangles of a mesh as user geometry.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
-use crate::geometry::{Bounds, PrimitiveId};
+use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::INVALID;
 use crate::intersect::embree::user::Table;
-use crate::scene::Scene;
+use crate::scene::{Instance, Mesh, Scene};
 
 /// What the callbacks need of a mesh. The corners themselves are baked from the scene when a
 /// triangle is tested.
-pub struct Triangles<'s> {
-    scene: &'s Scene,
+pub struct Triangles {
+    triangles: Arc<Mesh>,
     pub mesh: u32,
     /// The instance that stands in world space, or `INVALID` for a mesh in its own space, of
     /// which the context tells the instance.
     pub instance: u32,
+    /// The same instance itself.
+    placed: Option<Instance>,
     frame: Frame,
 }
 
-impl<'s> Triangles<'s> {
+impl Triangles {
     /// The triangles of `instance`, in world space. On the heap, since Embree keeps its address.
-    pub fn placed(scene: &'s Scene, instance: u32, frame: Frame) -> Box<Self> {
-        let mesh = scene.instances[instance as usize].mesh.0;
-        Box::new(Self { scene, mesh, instance, frame })
+    pub fn placed(scene: &Scene, instance: u32, frame: Frame) -> Box<Self> {
+        let placed = scene.instances[instance as usize].clone();
+        let mesh = placed.mesh.0;
+        let triangles = scene.meshes[mesh as usize].clone();
+        Box::new(Self { triangles, mesh, instance, placed: Some(placed), frame })
     }
 
     /// The triangles of a mesh, in its own space.
-    pub fn own(scene: &'s Scene, mesh: u32, frame: Frame) -> Box<Self> {
-        Box::new(Self { scene, mesh, instance: INVALID, frame })
+    pub fn own(scene: &Scene, mesh: u32, frame: Frame) -> Box<Self> {
+        let triangles = scene.meshes[mesh as usize].clone();
+        Box::new(Self { triangles, mesh, instance: INVALID, placed: None, frame })
     }
 }
 
-impl Table for Triangles<'_> {
+impl Table for Triangles {
     fn len(&self) -> usize {
-        self.scene.meshes[self.mesh as usize].triangles.len()
+        self.triangles.triangles.len()
     }
 
     fn bounds(&self, index: u32) -> (Bounds, &Frame) {
-        let bounds = if self.instance == INVALID {
-            let corners = self.scene.meshes[self.mesh as usize].corners(index);
-            Bounds::of(corners.map(|p| DVec3::from(p.map(f64::from))))
-        } else {
-            let id = PrimitiveId::triangle(self.mesh, index, self.instance);
-            Bounds::of(self.scene.triangle(id))
+        let corners = self.triangles.corners(index);
+        let corners = match &self.placed {
+            Some(instance) => corners.map(|p| instance.bake(p)),
+            None => corners.map(|p| DVec3::from(p.map(f64::from))),
         };
-        (bounds, &self.frame)
+        (Bounds::of(corners), &self.frame)
     }
 }

@@ -56,16 +56,36 @@ fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
             scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
         }
     }
-    // That there are animations is all that is asked of them.
     for one in value.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
-        for list in ["channels", "samplers"] {
-            if let Some(Value::Array(list)) = one.get_mut(list) {
-                list.clear();
-            }
-        }
+        spare_animation(one);
     }
     soften(&mut value);
     json::deserialize::from_value(value).map_err(|_| refused())
+}
+
+/// Leaves of an animation the channels that move nodes: some of an extension's move something
+/// else, and do without what the crate demands.
+fn spare_animation(animation: &mut Value) {
+    let Some(animation) = animation.as_object_mut() else { return };
+    let is_number = |value: Option<&Value>| value.is_some_and(Value::is_number);
+    let is_sampler = |s: &Value| is_number(s.get("input")) && is_number(s.get("output"));
+    for list in ["channels", "samplers"] {
+        animation.entry(list).or_insert_with(|| Value::Array(Vec::new()));
+    }
+    let samplers = animation.get("samplers").and_then(Value::as_array);
+    let all_whole = samplers.is_some_and(|samplers| samplers.iter().all(is_sampler));
+    if !all_whole {
+        animation.insert("samplers".to_owned(), Value::Array(Vec::new()));
+    }
+    if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+        channels.retain(|channel| {
+            let target = channel.get("target");
+            let of_target = |key: &str| target.and_then(|target| target.get(key));
+            is_number(channel.get("sampler"))
+                && is_number(of_target("node"))
+                && of_target("path").is_some_and(Value::is_string)
+        });
+    }
 }
 
 /// Drops `extras`, which may be anything, and writes 1.0 as 1, which may stand where an integer

@@ -5,6 +5,7 @@
 //! to a scene, stands in docs/formats.md.
 
 mod accessor;
+mod animation;
 mod buffers;
 mod compact;
 mod container;
@@ -24,39 +25,45 @@ use std::path::Path;
 use gltf::json;
 
 use self::accessor::Accessors;
+use self::animation::Clip;
 use self::buffers::{Buffers, get};
 use self::material::Materials;
 use self::nodes::Placed;
 use self::texture::Textures;
 use crate::error::Result;
 use crate::load::tally::Tally;
+use crate::scene::animation::Mover;
 use crate::scene::{Instance, MaterialId, MeshId, Scene};
 
-/// Loads a `.gltf` or `.glb` file.
+/// Loads a `.gltf` or `.glb` file, with the animation of that name or the first.
 ///
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
-/// the place in the JSON.
-pub fn load(path: &Path) -> Result<Scene> {
+/// the place in the JSON. When there is no such animation.
+pub fn load(path: &Path, animation: Option<&str>) -> Result<Scene> {
     let bytes = super::read(path)?;
-    import(path, &bytes).map_err(|e| e.at(path))
+    import(path, &bytes, animation).map_err(|e| e.at(path))
 }
 
-fn import(path: &Path, bytes: &[u8]) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], animation: Option<&str>) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
     let root = document::parse(json)?;
     let mut tally = Tally::default();
     extensions::check(&root, &mut tally)?;
     let buffers = Buffers::new(&root, path, bin);
+    let accessors = Accessors::new(&root, &buffers);
+    let mut clip = Clip::read(&root, &accessors, animation, &mut tally)?;
+    let nodes = nodes::walk(&root, &mut clip, &mut tally)?;
     let mut importer = Importer {
         root: &root,
-        accessors: Accessors::new(&root, &buffers),
+        accessors,
         materials: Materials::new(&root, Textures::new(&root, &buffers)),
         meshes: HashMap::new(),
         scene: Scene::default(),
+        clip,
         tally,
     };
-    for placed in nodes::walk(&root, &mut importer.tally)? {
+    for placed in nodes {
         importer.node(&placed)?;
     }
     Ok(importer.finish(path))
@@ -69,15 +76,18 @@ struct Importer<'a> {
     /// What the primitives of a mesh became, so that nodes share it.
     meshes: HashMap<usize, Vec<(MeshId, MaterialId)>>,
     scene: Scene,
+    clip: Clip,
     tally: Tally,
 }
 
 impl Importer<'_> {
     fn node(&mut self, placed: &Placed) -> Result<()> {
         if let Some(camera) = lights::camera(self.root, placed, &mut self.tally)? {
+            self.move_camera(placed)?;
             self.scene.cameras.push(camera);
         }
         if let Some(light) = lights::light(self.root, placed, &mut self.tally)? {
+            self.move_light(placed)?;
             self.scene.lights.push(light);
         }
         let Some(mesh) = placed.node.mesh else { return Ok(()) };
@@ -87,15 +97,50 @@ impl Importer<'_> {
             let reason = "{} skinned meshes stand as they were modelled, not as posed";
             self.tally.add(reason, 1, || by.clone());
         }
-        let determinant = placed.world.matrix3.determinant();
-        if determinant == 0.0 || !determinant.is_finite() {
+        let made: Vec<Instance> = parts
+            .into_iter()
+            .map(|(mesh, material)| Instance::new(mesh, placed.world, material))
+            .collect();
+        // What moves may be flat at one time and not at another.
+        if placed.mover.is_none() && made.iter().any(Instance::is_flat) {
             let reason = "{} meshes are not drawn: their scale is 0 along some direction";
             self.tally.add(reason, 1, || by);
             return Ok(());
         }
-        let instances =
-            parts.into_iter().map(|(mesh, material)| Instance::new(mesh, placed.world, material));
-        self.scene.instances.extend(instances);
+        for instance in made {
+            if let Some(node) = placed.mover {
+                let (instance, transform) = (self.scene.instances.len(), placed.rest);
+                self.clip.movers.push(Mover::Instance { instance, node, transform });
+            }
+            self.scene.instances.push(instance);
+        }
+        Ok(())
+    }
+
+    /// Makes the next camera of the scene move with its node.
+    fn move_camera(&mut self, placed: &Placed) -> Result<()> {
+        // What there is to say of it was said of it as the file places it.
+        let mut quiet = Tally::default();
+        if placed.mover.is_some()
+            && let Some(rest) = lights::camera(self.root, &placed.at_rest(), &mut quiet)?
+        {
+            let (camera, node) = (self.scene.cameras.len(), placed.mover);
+            let (aim, lens) = (None, None);
+            self.clip.movers.push(Mover::Camera { camera, node, rest, aim, lens });
+        }
+        Ok(())
+    }
+
+    /// Makes the next light of the scene move with its node.
+    fn move_light(&mut self, placed: &Placed) -> Result<()> {
+        let mut quiet = Tally::default();
+        if placed.mover.is_some()
+            && let Some(rest) = lights::light(self.root, &placed.at_rest(), &mut quiet)?
+        {
+            let (light, node) = (self.scene.lights.len(), placed.mover);
+            let (direction, intensity) = (None, None);
+            self.clip.movers.push(Mover::Light { light, node, rest, direction, intensity });
+        }
         Ok(())
     }
 
@@ -132,9 +177,7 @@ impl Importer<'_> {
     }
 
     fn finish(mut self, path: &Path) -> Scene {
-        if !self.root.animations.is_empty() {
-            self.tally.say("animations are not played: the nodes stand as the file places them");
-        }
+        self.scene.animation = self.clip.finish();
         if self.scene.instances.is_empty() {
             self.tally.say("there is no triangle in the scene that the file shows");
         }

@@ -5,9 +5,11 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json;
 use gltf::json::Node;
 
+use super::animation::Clip;
 use super::buffers::get;
 use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
+use crate::scene::animation::NodeId;
 
 /// A node of the scene that is shown, with its place in the world.
 pub struct Placed<'a> {
@@ -15,25 +17,42 @@ pub struct Placed<'a> {
     pub node: &'a Node,
     /// Its number in the file.
     pub index: usize,
-    /// From its space to the world's.
+    /// From its space to the world's, as the file places it.
     pub world: DAffine3,
+    /// The nearest node of the animation that it moves with, itself or one above it.
+    pub mover: Option<NodeId>,
+    /// From its space to that of `mover`, or to the world's.
+    pub rest: DAffine3,
 }
 
-/// The nodes of the scene that is shown: the default one, else the first, else all nodes.
+impl Placed<'_> {
+    /// The same as it stands in the space of its mover.
+    pub fn at_rest(&self) -> Self {
+        Self { world: self.rest, ..*self }
+    }
+}
+
+/// The nodes of the scene that is shown: the default one, else the first, else all nodes. Those
+/// that move get nodes of the animation.
 ///
 /// # Errors
 /// When a node names one that isn't there, is its own ancestor, or has numbers that are not
 /// finite.
-pub fn walk<'a>(root: &'a json::Root, tally: &mut Tally) -> Result<Vec<Placed<'a>>> {
+pub fn walk<'a>(
+    root: &'a json::Root,
+    clip: &mut Clip,
+    tally: &mut Tally,
+) -> Result<Vec<Placed<'a>>> {
     let parents = parents(root)?;
     let mut roots = roots(root, &parents)?;
     // So that a child that stands among the roots as well is placed by its parent.
     roots.sort_by_key(|&(i, _)| parents.get(i).is_some_and(Option::is_some));
     let mut placed = Vec::new();
     let mut seen = vec![false; root.nodes.len()];
-    let mut open: Vec<(usize, String, DAffine3)> =
-        roots.into_iter().rev().map(|(i, by)| (i, by, DAffine3::IDENTITY)).collect();
-    while let Some((index, by, parent)) = open.pop() {
+    let world = Above { world: DAffine3::IDENTITY, mover: None, rest: DAffine3::IDENTITY };
+    let mut open: Vec<(usize, String, Above)> =
+        roots.into_iter().rev().map(|(i, by)| (i, by, world)).collect();
+    while let Some((index, by, above)) = open.pop() {
         let node = get(&root.nodes, index, "node", &by)?;
         match seen.get_mut(index) {
             Some(seen) if !*seen => *seen = true,
@@ -42,23 +61,38 @@ pub fn walk<'a>(root: &'a json::Root, tally: &mut Tally) -> Result<Vec<Placed<'a
                 continue;
             }
         }
-        let world = parent * local(node, index, tally)?;
+        let local = local(node, index, tally)?;
+        let world = above.world * local;
         if !world.is_finite() {
             return Err(Error::input("the transforms of the node and those above it overflow")
                 .place(Place::Json(format!("nodes[{index}]"))));
         }
+        let own = clip.node(index, node, above.mover, above.rest);
+        let (mover, rest) = match own {
+            Some(_) => (own, DAffine3::IDENTITY),
+            None => (above.mover, above.rest * local),
+        };
+        let here = Above { world, mover, rest };
         let children = node.children.iter().flatten().enumerate();
         let children = children
-            .map(|(i, child)| (child.value(), format!("nodes[{index}].children[{i}]"), world));
+            .map(|(i, child)| (child.value(), format!("nodes[{index}].children[{i}]"), here));
         let first = open.len();
         open.extend(children);
         if let Some(new) = open.get_mut(first..) {
             // So that nodes come out in the file's order.
             new.reverse();
         }
-        placed.push(Placed { node, index, world });
+        placed.push(Placed { node, index, world, mover, rest });
     }
     Ok(placed)
+}
+
+/// Where the children of a node stand; as in [`Placed`].
+#[derive(Clone, Copy)]
+struct Above {
+    world: DAffine3,
+    mover: Option<NodeId>,
+    rest: DAffine3,
 }
 
 /// The parent of each node; an error where a node is its own ancestor.

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
+use super::names::Names;
 use super::source::{Source, Span};
-use super::spanned::{At, Table};
 use super::tables::CameraTable;
 use super::values::unit;
 use crate::error::Result;
@@ -12,31 +12,19 @@ use crate::scene::{Camera, Lens};
 /// The vertical field of view, in degrees, of a camera that says nothing of it.
 const DEFAULT_FOV_Y: f64 = 45.0;
 
-/// The cameras of a file; `width` is the film's, which `focal_px` refers to.
-pub fn cameras(
+/// The camera that a table describes; `width` is the film's, which `focal_px` refers to.
+pub fn camera(
     source: &Source<'_>,
-    tables: &[At<Table<CameraTable>>],
+    table: &CameraTable,
+    span: &Span,
+    names: &Names,
     width: u32,
-) -> Result<Vec<Camera>> {
-    let mut cameras: Vec<Camera> = Vec::with_capacity(tables.len());
-    for table in tables {
-        let camera = camera(source, &table.value.0, &table.span, width)?;
-        if let Some(At { span, value: name }) = &table.value.0.name
-            && cameras.iter().any(|other| other.name == *name)
-        {
-            let message = format!("there is a camera `{name}` already");
-            return Err(source.error(span, message).help("give each a name of its own"));
-        }
-        cameras.push(camera);
-    }
-    Ok(cameras)
-}
-
-fn camera(source: &Source<'_>, table: &CameraTable, span: &Span, width: u32) -> Result<Camera> {
+) -> Result<Camera> {
     let position = table.position.0;
     let (forward, toward) = match (&table.look_at, &table.direction) {
         (Some(target), None) => {
-            let forward = unit(target.value.0 - position).ok_or_else(|| {
+            let (_, point) = names.spot(source, target)?;
+            let forward = unit(point - position).ok_or_else(|| {
                 source
                     .error(&target.span, "the camera looks at the point where it stands")
                     .help("`look_at` must differ from `position`")

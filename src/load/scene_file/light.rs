@@ -59,7 +59,8 @@ pub fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Res
         LightKind::Ambient => Shadow::None,
         _ => table.shadow.as_ref().map(|shadow| shadow.value.0).unwrap_or_default(),
     };
-    Ok(Light { name: String::new(), kind, intensity, shadow })
+    let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
+    Ok(Light { name, kind, intensity, shadow })
 }
 
 fn kind(source: &Source<'_>, table: &LightTable) -> Result<LightKind> {

@@ -5,10 +5,14 @@
 //! into words; `resolve` and its neighbours turn the tables into a scene, with an eye on what only
 //! several keys together can get wrong.
 
+mod animation;
+mod animation_tables;
 mod camera;
 mod color;
 mod light;
 mod model;
+mod mover;
+mod names;
 mod report;
 mod resolve;
 mod schema;
@@ -16,6 +20,7 @@ mod source;
 mod spanned;
 mod suggest;
 mod tables;
+mod track;
 mod values;
 
 use std::path::Path;

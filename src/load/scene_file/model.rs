@@ -14,9 +14,9 @@ use crate::load;
 use crate::load::place::{Part, Placement};
 use crate::scene::check::MAX_COORDINATE;
 
-/// The model files loaded so far, by their canonical paths.
+/// The model files loaded so far, by their canonical paths and the animations that they play.
 #[derive(Default)]
-pub struct Models(HashMap<PathBuf, Part>);
+pub struct Models(HashMap<(PathBuf, Option<String>), Part>);
 
 impl Models {
     /// Places a model in the scene; a file named twice is loaded once.
@@ -24,28 +24,39 @@ impl Models {
         let material = table.material.as_ref().map(|name| resolver.named(name)).transpose()?;
         let path = resolver.source.file(&table.file.value);
         let same = readable(resolver.source, &table.file, &path)?;
-        let part = match self.0.entry(same) {
+        let animation = table.animation.as_ref().map(|name| name.value.clone());
+        let part = match self.0.entry((same, animation.clone())) {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
-                let mut model = load::model(&path)?;
+                let mut model = load::model(&path, animation.as_deref())?;
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
+                let is_still = resolver.scene.animation.is_none();
+                if is_still && model.animation.take().is_some() {
+                    resolver.scene.warnings.push(format!(
+                        "{}: its animation is not played: the scene has no [animation]",
+                        path.display()
+                    ));
+                }
                 unknown.insert(Part::add(&mut resolver.scene, model))
             }
         };
-        let placement = Placement {
-            transform: transform(table),
-            material,
-            casts_shadow: table.casts_shadow.unwrap_or(true),
-            lights: table.lights.unwrap_or(true),
-        };
-        if part.reach(&placement.transform) > MAX_COORDINATE {
+        let still = transform(table);
+        if part.reach(&still) > MAX_COORDINATE {
             let span = &table.file.span;
             return Err(resolver
                 .source
                 .error(span, "the model reaches beyond 1e15 from 0 as it is placed")
                 .help("make its `scale` or `translate` smaller"));
         }
+        let rig = resolver.rig(&table.name);
+        let placement = Placement {
+            transform: if rig.is_some_and(|rig| rig.is_own) { DAffine3::IDENTITY } else { still },
+            node: rig.and_then(|rig| rig.node),
+            material,
+            casts_shadow: table.casts_shadow.unwrap_or(true),
+            lights: table.lights.unwrap_or(true),
+        };
         part.place(&mut resolver.scene, &placement);
         Ok(())
     }
@@ -112,6 +123,7 @@ mod tests {
 
     fn table(rotate: [f64; 3], scale: DVec3, translate: DVec3) -> ModelTable {
         ModelTable {
+            name: None,
             file: At { span: 0..0, value: String::new() },
             translate: Some(Point(translate)),
             rotate: Some(Rotation(rotate)),
@@ -119,6 +131,7 @@ mod tests {
             material: None,
             casts_shadow: None,
             lights: None,
+            animation: None,
         }
     }
 

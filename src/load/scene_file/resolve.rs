@@ -7,16 +7,22 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::animation::{self, Rig, Rigs};
 use super::camera;
 use super::color::Color;
 use super::light;
 use super::model::Models;
+use super::mover;
+use super::names::Names;
 use super::source::{Source, Span};
 use super::spanned::{At, Table};
 use super::suggest;
-use super::tables::{FilmTable, MaterialTable, PlaneTable, SceneTable, SphereTable};
+use super::tables::{
+    CameraTable, FilmTable, LightTable, MaterialTable, PlaneTable, SceneTable, SphereTable,
+};
 use crate::error::Result;
 use crate::load::picture;
+use crate::scene::animation::Mover;
 use crate::scene::check::{self, MAX_COORDINATE};
 use crate::scene::{
     Checker, FilmSettings, Filter, Material, MaterialId, Plane, Scene, Sphere, Texture, TextureId,
@@ -32,22 +38,22 @@ pub fn scene(source: &Source<'_>, tables: SceneTable) -> Result<Scene> {
             .help("a scene needs one of them: nothing says what to look at"));
     }
     let film = film(source, &tables.film.0)?;
+    let names = Names::of(source, &tables)?;
+    let (animation, rigs) = animation::animation(source, &tables, &names)?;
     let mut resolver = Resolver {
         source,
-        scene: Scene { film, ..Scene::default() },
+        names: &names,
+        rigs: &rigs,
+        scene: Scene { film, animation, ..Scene::default() },
         materials: HashMap::new(),
         plain: None,
         pictures: HashMap::new(),
     };
-    resolver.scene.cameras =
-        camera::cameras(source, &tables.camera.0, resolver.scene.film.size[0])?;
+    tables.camera.0.iter().try_for_each(|c| resolver.camera(c))?;
     tables.material.0.iter().try_for_each(|m| resolver.material(m))?;
     tables.sphere.0.iter().try_for_each(|s| resolver.sphere(&s.value.0))?;
     tables.plane.0.iter().try_for_each(|p| resolver.plane(&p.value.0))?;
-    for table in &tables.light.0 {
-        let light = light::light(source, &table.value.0, resolver.scene.film.transfer)?;
-        resolver.scene.lights.push(light);
-    }
+    tables.light.0.iter().try_for_each(|l| resolver.light(&l.value.0))?;
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
     let scene = resolver.scene;
@@ -80,6 +86,10 @@ fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
 pub struct Resolver<'a> {
     /// The file.
     pub source: &'a Source<'a>,
+    /// Its objects with names.
+    pub names: &'a Names,
+    /// How they move.
+    pub rigs: &'a Rigs,
     /// The scene so far.
     pub scene: Scene,
     /// The file's own materials by name, each with the place of its name.
@@ -91,6 +101,36 @@ pub struct Resolver<'a> {
 }
 
 impl Resolver<'_> {
+    /// How the object with a name moves.
+    pub fn rig(&self, name: &Option<At<String>>) -> Option<&Rig> {
+        let At { span, value } = name.as_ref()?;
+        self.rigs.get(self.names.find(self.source, value, span).ok())
+    }
+
+    fn moves(&mut self, mover: Option<Mover>) {
+        if let (Some(animation), Some(mover)) = (&mut self.scene.animation, mover) {
+            animation.movers.push(mover);
+        }
+    }
+
+    fn camera(&mut self, table: &At<Table<CameraTable>>) -> Result<()> {
+        let At { span, value: Table(table) } = table;
+        let width = self.scene.film.size[0];
+        let camera = camera::camera(self.source, table, span, self.names, width)?;
+        let mover = mover::camera(self, table, &camera)?;
+        self.moves(mover);
+        self.scene.cameras.push(camera);
+        Ok(())
+    }
+
+    fn light(&mut self, table: &LightTable) -> Result<()> {
+        let light = light::light(self.source, table, self.scene.film.transfer)?;
+        let mover = mover::light(self, table, &light)?;
+        self.moves(mover);
+        self.scene.lights.push(light);
+        Ok(())
+    }
+
     fn color(&self, color: Option<Color>, default: Vec3) -> Vec3 {
         color.map_or(default, |c| c.linear(self.scene.film.transfer))
     }
@@ -213,6 +253,8 @@ impl Resolver<'_> {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             ..Sphere::new(center, radius.0, material)
         };
+        let mover = mover::sphere(self, table, &sphere);
+        self.moves(mover);
         self.scene.spheres.push(sphere);
         Ok(())
     }

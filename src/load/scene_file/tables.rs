@@ -6,11 +6,12 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
     Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, Priority,
-    Rotation, Scale, ShadowKind, Share, Shininess, Size, Triple, Whole,
+    Rotation, Scale, ShadowKind, Share, Shininess, Size, Spot, Triple, Whole,
 };
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
@@ -34,6 +35,8 @@ pub struct SceneTable {
     pub model: Tables<ModelTable>,
     /// Lights.
     pub light: Tables<LightTable>,
+    /// What moves, and for how long.
+    pub animation: Option<At<Table<AnimationTable>>>,
 }
 
 /// What the picture is to be.
@@ -75,12 +78,12 @@ pub struct FilmTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
-    /// A name to choose it by; unique among the cameras.
+    /// A name to choose it by, and to move it by; unique among all objects.
     pub name: Option<At<String>>,
     /// Where it stands.
     pub position: Point,
-    /// The point that it looks at.
-    pub look_at: Option<At<Point>>,
+    /// The point that it looks at, or the name of the object.
+    pub look_at: Option<At<Spot>>,
     /// The direction that it looks in, in place of `look_at`.
     pub direction: Option<At<Direction>>,
     /// What is upward in the picture.
@@ -148,6 +151,8 @@ pub struct MaterialTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereTable {
+    /// A name to move it by, or to look at it; unique among all objects.
+    pub name: Option<At<String>>,
     /// Its centre.
     pub center: Point,
     /// Its radius, above 0.
@@ -194,6 +199,8 @@ pub struct CheckerTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelTable {
+    /// A name to move it by, or to look at it; unique among all objects.
+    pub name: Option<At<String>>,
     /// The file, `.gltf`, `.glb` or `.obj`, relative to the scene file.
     pub file: At<String>,
     /// Where its origin goes.
@@ -213,12 +220,16 @@ pub struct ModelTable {
     /// Whether the lights in the model's file shine.
     #[schemars(extend("default" = true))]
     pub lights: Option<bool>,
+    /// Which of the animations in a glTF file it plays, by name; without one, the first.
+    pub animation: Option<At<String>>,
 }
 
 /// A light.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
+    /// A name to move it by, or to look at it; unique among all objects.
+    pub name: Option<At<String>>,
     /// From a point to all sides, from far away, from a point within a cone, or from everywhere.
     pub kind: At<Kind>,
     /// Where it stands (point, spot).
@@ -249,7 +260,7 @@ pub struct LightTable {
 }
 
 /// What kind of light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// From a point to all sides.

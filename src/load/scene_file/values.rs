@@ -10,6 +10,7 @@ use serde::de::{Error, Expected, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::scene::Shadow;
+use crate::scene::animation::MAX_FPS;
 use crate::scene::check::{MAX_COORDINATE, MAX_DEPTH};
 
 /// Gives a type of value its part of the JSON Schema.
@@ -89,6 +90,15 @@ number!(
     /// A share.
     Share, "a number from 0 to 1", |x| (0.0..=1.0).contains(&x),
     { "type": "number", "minimum": 0, "maximum": 1 });
+
+number!(
+    /// Frames in a second.
+    Rate, "a number above 0 (and at most 1000)", |x| (1e-6..=MAX_FPS).contains(&x),
+    { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 });
+number!(
+    /// A span of time, in seconds.
+    Seconds, "a number of seconds above 0 (and at most 1e15)", |x| (1e-6..=1e15).contains(&x),
+    { "type": "number", "exclusiveMinimum": 0, "maximum": 1e15 });
 
 struct NumberVisitor {
     expected: &'static str,
@@ -365,6 +375,45 @@ value_schema!(Triple, {
             "type": "array", "minItems": 3, "maxItems": 3,
             "items": { "type": "number", "minimum": 0 },
         },
+    ],
+});
+
+/// A point, or the name of an object that stands for where it is.
+#[derive(Clone, Debug)]
+pub enum Spot {
+    /// The point itself.
+    Point(DVec3),
+    /// An object's name.
+    Name(String),
+}
+
+impl<'de> Deserialize<'de> for Spot {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct SpotVisitor;
+        impl<'de> Visitor<'de> for SpotVisitor {
+            type Value = Spot;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("three numbers, or an object's name")
+            }
+            fn visit_str<E: Error>(self, name: &str) -> Result<Spot, E> {
+                Ok(Spot::Name(name.to_owned()))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Spot, A::Error> {
+                let xyz: [Coordinate; 3] = elements(seq, &self)?;
+                Ok(Spot::Point(DVec3::from_array(xyz.map(|x| x.0))))
+            }
+        }
+        deserializer.deserialize_any(SpotVisitor)
+    }
+}
+
+value_schema!(Spot, {
+    "anyOf": [
+        {
+            "type": "array", "minItems": 3, "maxItems": 3,
+            "items": { "type": "number", "minimum": -1e15, "maximum": 1e15 },
+        },
+        { "type": "string" },
     ],
 });
 

@@ -1,0 +1,232 @@
+//! A file's own animation: what its channels say of the translation, rotation and scale of nodes.
+//!
+//! Faults are warnings: a model that cannot move as it should can still be shown.
+
+use std::collections::HashMap;
+
+use glam::{DAffine3, DQuat, DVec3};
+use gltf::json;
+use gltf::json::Node as JsonNode;
+use gltf::json::animation::{Channel, Interpolation as Kind, Property, Sampler};
+use gltf::json::validation::Checked;
+
+use super::accessor::Accessors;
+use super::buffers::get;
+use crate::error::{Error, Result};
+use crate::load::tally::Tally;
+use crate::scene::animation::{
+    Animation, Curve, Interpolation, Keys, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Value,
+};
+
+/// Frames in a second of a model's own animation, which is made of times alone.
+pub const FPS: f64 = 24.0;
+/// The most keys of all channels together: a small file can name the same ones any number of times.
+const MAX_KEYS: u64 = 1 << 22;
+
+/// An animation while a file is imported.
+pub struct Clip {
+    /// What moves, by the number of the node in the file.
+    moves: HashMap<usize, Moves>,
+    /// The time of the last key.
+    seconds: f64,
+    /// The nodes of the scene that is shown and move.
+    nodes: Vec<Node>,
+    /// What moves with them.
+    pub movers: Vec<Mover>,
+}
+
+#[derive(Default)]
+struct Moves {
+    translation: Option<Curve<DVec3>>,
+    rotation: Option<Curve<DQuat>>,
+    scale: Option<Curve<DVec3>>,
+}
+
+impl Clip {
+    /// The animation of a file with a name, or the first; an empty one where there is none.
+    ///
+    /// # Errors
+    /// When there is none of that name.
+    pub fn read(
+        root: &json::Root,
+        accessors: &Accessors,
+        name: Option<&str>,
+        tally: &mut Tally,
+    ) -> Result<Self> {
+        let mut clip =
+            Self { moves: HashMap::new(), seconds: 0.0, nodes: Vec::new(), movers: Vec::new() };
+        let index = match name {
+            Some(name) => named(root, name)?,
+            None => 0,
+        };
+        let Some(animation) = root.animations.get(index) else { return Ok(clip) };
+        let mut keys = 0;
+        for (i, channel) in animation.channels.iter().enumerate() {
+            let at = format!("animations[{index}].channels[{i}]");
+            let place = format!("animations[{index}]");
+            let sampler = get(&animation.samplers, channel.sampler.value(), "sampler", &at);
+            let read = sampler.and_then(|sampler| {
+                let count = accessors.count(sampler.input.value());
+                keys += count;
+                if keys > MAX_KEYS {
+                    return Err(Error::input(format!("more than {MAX_KEYS} keys in all")));
+                }
+                clip.channel(root, accessors, channel, sampler, &place)
+            });
+            if let Err(error) = read {
+                let reason = "{} animation channels are left out: they are damaged";
+                tally.add(reason, 1, || format!("{at} ({})", error.message()));
+            }
+        }
+        Ok(clip)
+    }
+
+    fn channel(
+        &mut self,
+        root: &json::Root,
+        accessors: &Accessors,
+        channel: &Channel,
+        sampler: &Sampler,
+        place: &str,
+    ) -> Result<()> {
+        let Checked::Valid(property) = channel.target.path else {
+            return Err(Error::input("it moves something unknown"));
+        };
+        let node = get(&root.nodes, channel.target.node.value(), "node", place)?;
+        if node.matrix.is_some() {
+            return Err(Error::input("it moves a node with a matrix, which cannot be"));
+        }
+        let node = channel.target.node.value();
+        let reader = Reader { accessors, sampler, place };
+        let (is_there, last) = match property {
+            // Morph targets keep their shape, which is said where they are.
+            Property::MorphTargetWeights => return Ok(()),
+            Property::Translation => {
+                let curve = reader.curve(vector)?;
+                put(&mut self.moves.entry(node).or_default().translation, curve)
+            }
+            Property::Rotation => {
+                let curve = reader.curve(rotation)?;
+                put(&mut self.moves.entry(node).or_default().rotation, curve)
+            }
+            Property::Scale => {
+                let curve = reader.curve(vector)?;
+                put(&mut self.moves.entry(node).or_default().scale, curve)
+            }
+        };
+        if is_there {
+            return Err(Error::input("another one moves the same"));
+        }
+        self.seconds = self.seconds.max(last);
+        Ok(())
+    }
+
+    /// The node of the animation for a node of the file, if that moves. `place` is where its parent
+    /// stands in the space of the animation's node `parent`.
+    pub fn node(
+        &mut self,
+        index: usize,
+        node: &JsonNode,
+        parent: Option<NodeId>,
+        place: DAffine3,
+    ) -> Option<NodeId> {
+        let moves = self.moves.get(&index)?;
+        let vector = |v: [f32; 3]| DVec3::from(v.map(f64::from));
+        let still = node.rotation.unwrap_or_default().0.map(f64::from);
+        let still = DQuat::from_array(still);
+        let still = if still.length() > 0.0 { still.normalize() } else { DQuat::IDENTITY };
+        let translation = vector(node.translation.unwrap_or_default());
+        let scale = vector(node.scale.unwrap_or([1.0; 3]));
+        let keys = Keys {
+            translation: moves.translation.clone().unwrap_or(Curve::constant(translation)),
+            rotation: Rotation::Quaternions(
+                moves.rotation.clone().unwrap_or(Curve::constant(still)),
+            ),
+            scale: moves.scale.clone().unwrap_or(Curve::constant(scale)),
+            repeats: (self.seconds > 0.0).then_some(self.seconds),
+        };
+        self.nodes.push(Node { parent, place, motion: Motion::Keys(keys) });
+        Some(NodeId(self.nodes.len() as u32 - 1))
+    }
+
+    /// The animation, as long as the file's; none where nothing moves.
+    pub fn finish(self) -> Option<Animation> {
+        if self.movers.is_empty() {
+            return None;
+        }
+        // Rounding in f32 makes no frame of its own.
+        let frames = (self.seconds * FPS - 1e-3).ceil().clamp(1.0, f64::from(MAX_FRAMES));
+        let (nodes, movers) = (self.nodes, self.movers);
+        Some(Animation { frames: frames as u32, fps: FPS, nodes, movers })
+    }
+}
+
+/// Puts a curve in its place; says whether there was one, and when it ends.
+fn put<T: Value>(to: &mut Option<Curve<T>>, curve: Curve<T>) -> (bool, f64) {
+    let last = curve.times.last().copied().unwrap_or(0.0);
+    (to.replace(curve).is_some(), last)
+}
+
+/// The number of the animation with a name.
+fn named(root: &json::Root, name: &str) -> Result<usize> {
+    let of = |animation: &json::Animation| animation.name.as_deref() == Some(name);
+    root.animations.iter().position(of).ok_or_else(|| {
+        let names: Vec<String> =
+            root.animations.iter().flat_map(|a| &a.name).map(|n| format!("`{n}`")).collect();
+        Error::input(format!("there is no animation `{name}`")).help(match &names[..] {
+            [] => "no animation of the file has a name; without one the first is played".to_owned(),
+            names => format!("the file has {}", names.join(", ")),
+        })
+    })
+}
+
+struct Reader<'a> {
+    accessors: &'a Accessors<'a>,
+    sampler: &'a Sampler,
+    place: &'a str,
+}
+
+impl Reader<'_> {
+    /// The curve of a sampler; `value` makes a value of its numbers, or a slope where the flag is
+    /// not set.
+    fn curve<T: Value, const N: usize>(
+        &self,
+        value: impl Fn([f32; N], bool) -> T,
+    ) -> Result<Curve<T>> {
+        let by = |what: &str| format!("{}.samplers.{what}", self.place);
+        let times = self.accessors.floats::<1>(self.sampler.input.value(), &by("input"))?;
+        let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();
+        let read = self.accessors.floats::<N>(self.sampler.output.value(), &by("output"))?;
+        let Checked::Valid(kind) = self.sampler.interpolation else {
+            return Err(Error::input("the interpolation is of no known kind"));
+        };
+        let (values, interpolation) = match kind {
+            Kind::Linear => (read.iter().map(|&v| value(v, true)).collect(), Interpolation::Linear),
+            Kind::Step => (read.iter().map(|&v| value(v, true)).collect(), Interpolation::Step),
+            Kind::CubicSpline => {
+                let (triples, rest) = read.as_chunks::<3>();
+                if !rest.is_empty() {
+                    return Err(Error::input("a spline's values do not come in threes"));
+                }
+                let slopes = triples.iter().map(|[a, _, b]| [value(*a, false), value(*b, false)]);
+                let slopes = slopes.collect();
+                let values = triples.iter().map(|[_, v, _]| value(*v, true)).collect();
+                (values, Interpolation::Cubic(slopes))
+            }
+        };
+        let curve = Curve { times, values, interpolation };
+        curve.check()?;
+        Ok(curve)
+    }
+}
+
+fn vector(v: [f32; 3], _: bool) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
+/// A rotation, which f32 leaves a little off length 1, or a slope, which has any.
+fn rotation(v: [f32; 4], is_value: bool) -> DQuat {
+    let quaternion = DQuat::from_array(v.map(f64::from));
+    // One of length 0 is no rotation, which `Curve::check` finds.
+    if is_value && quaternion.length() > 0.0 { quaternion.normalize() } else { quaternion }
+}

@@ -1,0 +1,140 @@
+//! What may be written about motion: `[animation]` and its tables.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::spanned::{At, Tables};
+use super::values::{
+    Amount, Coordinate, Direction, FieldOfView, Length, Point, Rate, Rotation, Scale, Seconds,
+    Spot, Whole,
+};
+
+/// What moves, and for how long.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnimationTable {
+    /// How many frames there are, from 1 to 1000000.
+    pub frames: At<Whole>,
+    /// Frames in a second.
+    #[schemars(extend("default" = 24))]
+    pub fps: Option<Rate>,
+    /// Objects that go round others, or along with them.
+    #[serde(default)]
+    pub orbit: Tables<OrbitTable>,
+    /// Objects whose keys change with time.
+    #[serde(default)]
+    pub track: Tables<TrackTable>,
+}
+
+/// An object that goes round a centre, from where its own table places it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrbitTable {
+    /// The name of the object that goes round.
+    pub object: At<String>,
+    /// The centre: a point, or the name of an object, which may move itself.
+    pub around: At<Spot>,
+    /// Seconds for one turn; without it the object only keeps beside its centre.
+    pub period: Option<Seconds>,
+    /// The axis, of any length but zero: counterclockwise seen against it.
+    #[schemars(extend("default" = [0, 1, 0]))]
+    pub axis: Option<Direction>,
+    /// Whether it turns as it goes round, so that the same side always faces the centre.
+    #[schemars(extend("default" = false))]
+    pub turn: Option<bool>,
+}
+
+/// Values at certain times of keys of an object's own table, in place of the one value there.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackTable {
+    /// The name of the object.
+    pub object: At<String>,
+    /// Times in seconds, increasing: one for each value.
+    pub times: At<List<At<Coordinate>>>,
+    /// What is between the values: a straight line, nothing, or a curve without corners.
+    #[schemars(extend("default" = "linear"))]
+    pub interpolation: Option<Interpolation>,
+    /// Centres (sphere).
+    pub center: Option<At<List<Point>>>,
+    /// Radii (sphere).
+    pub radius: Option<At<List<Length>>>,
+    /// Where its origin goes (model).
+    pub translate: Option<At<List<Point>>>,
+    /// Angles in degrees, each of the three changing by itself (model).
+    pub rotate: Option<At<List<Rotation>>>,
+    /// Factors, one or three (model).
+    pub scale: Option<At<List<Scale>>>,
+    /// Where it stands (light, camera).
+    pub position: Option<At<List<Point>>>,
+    /// Where it travels or looks (light, camera).
+    pub direction: Option<At<List<Direction>>>,
+    /// Points that it looks at (camera).
+    pub look_at: Option<At<List<Point>>>,
+    /// Factors of its colour (light).
+    pub intensity: Option<At<List<Amount>>>,
+    /// Fields of view from the lower to the upper edge, in degrees (camera).
+    pub fov_y: Option<At<List<FieldOfView>>>,
+    /// Fields of view from the left to the right edge, in degrees (camera).
+    pub fov_x: Option<At<List<FieldOfView>>>,
+    /// Distances from the eye to the picture, in pixels of the film's `size` (camera).
+    pub focal_px: Option<At<List<Length>>>,
+    /// Heights of what is seen, for a camera without perspective (camera).
+    pub ortho_height: Option<At<List<Length>>>,
+}
+
+/// What is between two values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Interpolation {
+    /// A straight line.
+    #[default]
+    Linear,
+    /// The value stays, and then jumps.
+    Step,
+    /// A curve without corners that starts and ends at rest and does not go beyond the values.
+    Smooth,
+}
+
+/// A list of any length.
+#[derive(Clone, Debug)]
+pub struct List<T>(pub Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListVisitor<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for ListVisitor<T> {
+            type Value = List<T>;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list with a value for each time")
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<List<T>, A::Error> {
+                let mut values = Vec::new();
+                while let Some(value) = seq.next_element()? {
+                    values.push(value);
+                }
+                Ok(List(values))
+            }
+        }
+        deserializer.deserialize_seq(ListVisitor(PhantomData))
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for List<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}_list", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "array", "minItems": 1, "items": generator.subschema_for::<T>(),
+        })
+    }
+}

@@ -1,0 +1,274 @@
+//! Moving spaces.
+
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use super::curve::Curve;
+
+/// The index of a node in `Animation::nodes`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct NodeId(pub u32);
+
+/// A space that moves within another one, or within the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// The space that it moves in, which stands before it; none for the world.
+    pub parent: Option<NodeId>,
+    /// Where its motion takes place, in the space of its parent.
+    pub place: DAffine3,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// How a space moves.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// From key to key: scaled, then rotated, then translated.
+    Keys(Keys),
+    /// About an axis, or along with something else. The space is that of the world as it is at
+    /// time 0, and the node has neither parent nor place.
+    Orbit(Orbit),
+}
+
+/// Motion from key to key.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keys {
+    /// Where its origin is.
+    pub translation: Curve<DVec3>,
+    /// How it is turned.
+    pub rotation: Rotation,
+    /// By what it is scaled along its own axes.
+    pub scale: Curve<DVec3>,
+    /// After how many seconds it begins again, above 0; none for never.
+    pub repeats: Option<f64>,
+}
+
+/// A rotation that changes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rotation {
+    /// Angles in radians about the fixed x axis, then y, then z, each changing by itself: 0 to 4π
+    /// is two turns.
+    Angles(Curve<DVec3>),
+    /// Quaternions: from one to the next by the shorter way.
+    Quaternions(Curve<DQuat>),
+}
+
+/// A point that may move: one of a node's space, or of the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// The space; none for the world.
+    pub node: Option<NodeId>,
+    /// The point, in that space.
+    pub point: DVec3,
+}
+
+/// Motion about an axis through a centre that may move itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orbit {
+    /// The centre.
+    pub around: Anchor,
+    /// Where the centre is at time 0, in world space.
+    pub center: DVec3,
+    /// Where at time 0 the point is that goes round, in world space.
+    pub start: DVec3,
+    /// The axis, of length 1; it turns by the right-hand rule, counterclockwise seen against it.
+    pub axis: DVec3,
+    /// Seconds for one turn, not 0; infinite for what only keeps beside its centre.
+    pub period: f64,
+    /// Whether the space turns with it, so that the same side always faces the centre.
+    pub turn: bool,
+}
+
+impl Keys {
+    /// What moves nowhere; a start for what has some keys only.
+    pub fn still() -> Self {
+        Self {
+            translation: Curve::constant(DVec3::ZERO),
+            rotation: Rotation::Quaternions(Curve::constant(DQuat::IDENTITY)),
+            scale: Curve::constant(DVec3::ONE),
+            repeats: None,
+        }
+    }
+
+    fn at(&self, time: f64) -> DAffine3 {
+        let time = match self.repeats {
+            Some(period) => time.rem_euclid(period),
+            None => time,
+        };
+        let rotation = match &self.rotation {
+            Rotation::Angles(curve) => about_fixed_axes(curve.at(time)),
+            Rotation::Quaternions(curve) => DMat3::from_quat(curve.at(time)),
+        };
+        let scale = DMat3::from_diagonal(self.scale.at(time));
+        DAffine3 { matrix3: rotation * scale, translation: self.translation.at(time) }
+    }
+}
+
+impl Anchor {
+    /// A point of the world, which stands still.
+    pub fn fixed(point: DVec3) -> Self {
+        Self { node: None, point }
+    }
+
+    /// Where it is, given where the nodes are.
+    pub(super) fn at(&self, worlds: &[DAffine3]) -> DVec3 {
+        match self.node {
+            Some(NodeId(node)) => worlds[node as usize].transform_point3(self.point),
+            None => self.point,
+        }
+    }
+}
+
+impl Orbit {
+    fn at(&self, time: f64, center: DVec3) -> DAffine3 {
+        // Whole turns are left out first: the angle is as exact after a million of them.
+        let turn = DMat3::from_axis_angle(self.axis, TAU * (time / self.period).fract());
+        if self.turn {
+            let translation = center - turn * self.center;
+            DAffine3 { matrix3: turn, translation }
+        } else {
+            let there = center + turn * (self.start - self.center);
+            DAffine3::from_translation(there - self.start)
+        }
+    }
+}
+
+/// Where the nodes are at a time in seconds: for each, the way from its space to the world.
+pub(super) fn worlds(nodes: &[Node], time: f64) -> Vec<DAffine3> {
+    let mut worlds = Vec::with_capacity(nodes.len());
+    for node in nodes {
+        let own = match &node.motion {
+            Motion::Keys(keys) => node.place * keys.at(time),
+            Motion::Orbit(orbit) => orbit.at(time, orbit.around.at(&worlds)),
+        };
+        let world = match node.parent {
+            Some(NodeId(parent)) => worlds[parent as usize] * own,
+            None => own,
+        };
+        worlds.push(world);
+    }
+    worlds
+}
+
+/// The rotation by angles in radians about the fixed x axis, then y, then z.
+fn about_fixed_axes(angles: DVec3) -> DMat3 {
+    DMat3::from_rotation_z(angles.z)
+        * DMat3::from_rotation_y(angles.y)
+        * DMat3::from_rotation_x(angles.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn orbit(turn: bool) -> Orbit {
+        Orbit {
+            around: Anchor::fixed(DVec3::X),
+            center: DVec3::X,
+            start: DVec3::X * 3.0,
+            axis: DVec3::Y,
+            period: 4.0,
+            turn,
+        }
+    }
+
+    fn free(motion: Motion) -> Node {
+        Node { parent: None, place: DAffine3::IDENTITY, motion }
+    }
+
+    #[test]
+    fn a_quarter_of_the_period_is_a_quarter_turn_by_the_right_hand_rule() {
+        for turn in [false, true] {
+            let world = worlds(&[free(Motion::Orbit(orbit(turn)))], 1.0)[0];
+            let there = world.transform_point3(DVec3::X * 3.0);
+            assert!((there - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-15, "{there}");
+        }
+    }
+
+    #[test]
+    fn what_does_not_turn_keeps_its_directions() {
+        let facing = |turn| orbit(turn).at(1.0, DVec3::X).matrix3 * DVec3::X;
+        assert_eq!(facing(false), DVec3::X);
+        assert!((facing(true) - DVec3::NEG_Z).length() < 1e-15);
+    }
+
+    #[test]
+    fn time_zero_and_whole_periods_leave_everything_where_it_was() {
+        for time in [0.0, 4.0, 4e6] {
+            assert_eq!(orbit(true).at(time, DVec3::X), DAffine3::IDENTITY);
+        }
+    }
+
+    #[test]
+    fn without_a_period_it_keeps_beside_its_centre() {
+        let follows = Orbit { period: f64::INFINITY, ..orbit(false) };
+        let moved = follows.at(7.0, DVec3::new(1.0, 5.0, 0.0));
+        assert_eq!(moved, DAffine3::from_translation(DVec3::Y * 5.0));
+    }
+
+    #[test]
+    fn a_moon_goes_round_a_planet_that_goes_round_a_sun() {
+        let planet = Orbit {
+            around: Anchor::fixed(DVec3::ZERO),
+            center: DVec3::ZERO,
+            start: DVec3::X * 10.0,
+            axis: DVec3::Y,
+            period: 8.0,
+            turn: false,
+        };
+        let moon = Orbit {
+            around: Anchor { node: Some(NodeId(0)), point: DVec3::X * 10.0 },
+            center: DVec3::X * 10.0,
+            start: DVec3::X * 11.0,
+            period: 4.0,
+            ..planet.clone()
+        };
+        let nodes = [free(Motion::Orbit(planet)), free(Motion::Orbit(moon))];
+        let there = worlds(&nodes, 2.0)[1].transform_point3(DVec3::X * 11.0);
+        // The planet after a quarter turn, the moon beside it after half a one.
+        assert!((there - DVec3::new(-1.0, 0.0, -10.0)).length() < 1e-14, "{there}");
+    }
+
+    #[test]
+    fn a_child_moves_within_its_parent() {
+        let mut parent = Keys::still();
+        parent.translation = Curve::constant(DVec3::X);
+        parent.scale = Curve::constant(DVec3::splat(2.0));
+        let mut child = Keys::still();
+        child.translation = Curve::constant(DVec3::Y);
+        let nodes = [
+            free(Motion::Keys(parent)),
+            Node {
+                parent: Some(NodeId(0)),
+                place: DAffine3::from_translation(DVec3::Z),
+                motion: Motion::Keys(child),
+            },
+        ];
+        assert_eq!(worlds(&nodes, 0.0)[1].transform_point3(DVec3::ZERO), DVec3::new(1., 2., 2.));
+    }
+
+    #[test]
+    fn angles_turn_as_often_as_they_say() {
+        let angles = Curve {
+            times: vec![0.0, 8.0],
+            values: vec![DVec3::ZERO, DVec3::Y * (2.0 * TAU)],
+            interpolation: super::super::Interpolation::Linear,
+        };
+        let keys = Keys { rotation: Rotation::Angles(angles), ..Keys::still() };
+        // After an eighth of two turns, a quarter turn.
+        let turned = keys.at(1.0).matrix3 * DVec3::Z;
+        assert!((turned - DVec3::X).length() < 1e-15, "{turned}");
+    }
+
+    #[test]
+    fn what_repeats_begins_again() {
+        let translation = Curve {
+            times: vec![0.0, 2.0],
+            values: vec![DVec3::ZERO, DVec3::X],
+            interpolation: super::super::Interpolation::Linear,
+        };
+        let keys = Keys { translation, repeats: Some(2.0), ..Keys::still() };
+        assert_eq!(keys.at(5.0).translation, DVec3::X * 0.5);
+    }
+}

@@ -1,0 +1,282 @@
+//! Animated pictures: GIF and animated PNG, written frame by frame.
+//!
+//! Of each frame only the rectangle that differs from the one before is stored, so that what stands
+//! still keeps its colours and costs nothing.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use gif::{DisposalMethod, Repeat};
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::write::atomic::Pending;
+use crate::write::{Format, Settings, png_bytes};
+
+/// How much NeuQuant looks at when it chooses a GIF's colours, from 1 (all pixels) to 30.
+const GIF_SAMPLING: i32 = 10;
+/// The shortest frame of a GIF in hundredths of a second: browsers show shorter ones for a tenth.
+const GIF_SHORTEST: u16 = 2;
+/// The longest side of a GIF, in pixels.
+const GIF_SIDE: u32 = u16::MAX as u32;
+
+/// An animated picture that is being written; it takes its name when it is finished.
+pub struct Movie {
+    file: Pending,
+    encoder: Encoder,
+    size: [u32; 2],
+    /// Frames in a second.
+    fps: f64,
+    frames: u32,
+    /// The pixels of the frame before; none before the first.
+    shown: Option<Vec<u8>>,
+}
+
+enum Encoder {
+    Gif(Box<gif::Encoder<BufWriter<File>>>),
+    /// Without a buffer, whose failure at the end would be lost; PNG is written in large pieces.
+    Apng(Box<png::Writer<File>>),
+}
+
+/// A part of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rectangle {
+    left: u32,
+    top: u32,
+    width: u32,
+    height: u32,
+}
+
+impl Movie {
+    /// Begins a picture of so many `frames`, `fps` of which are shown in a second, in a loop; of
+    /// the format that the extension names.
+    ///
+    /// # Errors
+    /// When that is no animated one or cannot have such a size, or the file cannot be written.
+    pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
+        let format = Format::of(path)?;
+        let file = Pending::new(path)?;
+        let failed = |e: io::Error| Error::io("write", path, &e);
+        let handle = file.handle().map_err(failed)?;
+        let [width, height] = size;
+        let encoder = match format {
+            Format::Gif => {
+                if width.max(height) > GIF_SIDE {
+                    return Err(Error::input(format!("a GIF cannot have {width}x{height} pixels"))
+                        .at(path)
+                        .help(format!("at most {GIF_SIDE} on a side; an .apng can have more")));
+                }
+                let encoder =
+                    gif::Encoder::new(BufWriter::new(handle), width as u16, height as u16, &[]);
+                let repeating = encoder.and_then(|mut encoder| {
+                    encoder.set_repeat(Repeat::Infinite)?;
+                    Ok(encoder)
+                });
+                Encoder::Gif(Box::new(repeating.map_err(|e| failed(gif_error(e)))?))
+            }
+            Format::Apng => {
+                let header = apng(handle, size, frames, fps);
+                Encoder::Apng(Box::new(header.map_err(|e| failed(io::Error::other(e)))?))
+            }
+            Format::Png | Format::Exr => {
+                return Err(Error::input("this format holds one frame").at(path));
+            }
+        };
+        Ok(Self { file, encoder, size, fps, frames: 0, shown: None })
+    }
+
+    /// Adds a frame of the size that was announced, with the bytes that a PNG of it would have.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    ///
+    /// # Panics
+    /// When it is of another size.
+    pub fn push(&mut self, film: &Film, settings: &Settings) -> Result<()> {
+        assert_eq!(film.size, self.size, "all frames of a picture are of one size");
+        let bytes = png_bytes(film, settings);
+        let part = match &self.shown {
+            Some(shown) => changed(shown, &bytes, self.size[0] as usize),
+            None => Rectangle { left: 0, top: 0, width: film.size[0], height: film.size[1] },
+        };
+        let pixels = cut(&bytes, self.size[0] as usize, part);
+        let delay = gif_delay(self.frames, self.fps);
+        match &mut self.encoder {
+            Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
+            Encoder::Apng(writer) => write_apng(writer, &pixels, part).map_err(io::Error::other),
+        }
+        .map_err(|e| Error::io("write", self.file.path(), &e))?;
+        self.frames += 1;
+        self.shown = Some(bytes);
+        Ok(())
+    }
+
+    /// Ends the picture, which then takes its name.
+    ///
+    /// # Errors
+    /// When it cannot be written; what stood there before then stands there still.
+    pub fn finish(self) -> Result<()> {
+        let path = self.file.path().to_owned();
+        match self.encoder {
+            Encoder::Gif(encoder) => {
+                let writer = encoder.into_inner().map_err(gif_error);
+                writer.and_then(|mut writer| writer.flush())
+            }
+            Encoder::Apng(writer) => writer.finish().map_err(io::Error::other),
+        }
+        .map_err(|e| Error::io("write", &path, &e))?;
+        self.file.commit()
+    }
+}
+
+fn gif_error(error: gif::EncodingError) -> io::Error {
+    match error {
+        gif::EncodingError::Io(error) => error,
+        other => io::Error::other(other),
+    }
+}
+
+/// How long frame `index`, from 0, is shown, in hundredths of a second: until the next one is due,
+/// so that rounding does not add up.
+fn gif_delay(index: u32, fps: f64) -> u16 {
+    let due = |index: f64| (100.0 * index / fps).round();
+    let delay = due(f64::from(index) + 1.0) - due(f64::from(index));
+    (delay as u16).max(GIF_SHORTEST)
+}
+
+/// How long a frame is shown, as a fraction of a second.
+fn apng_delay(fps: f64) -> (u16, u16) {
+    let seconds = 1.0 / fps;
+    // Rates are whole numbers, or such divided by the step between frames: exact where it can be.
+    let exact = (1..=1000u16).find_map(|denominator| {
+        let numerator = seconds * f64::from(denominator);
+        let whole = numerator.round();
+        let is_whole = (numerator - whole).abs() < 1e-9 * numerator && whole <= 65535.0;
+        (is_whole && whole >= 1.0).then_some((whole as u16, denominator))
+    });
+    exact.unwrap_or_else(|| {
+        let denominator = (65535.0 / seconds).clamp(1.0, 65535.0).floor();
+        ((seconds * denominator).round() as u16, denominator as u16)
+    })
+}
+
+fn apng(
+    file: File,
+    [width, height]: [u32; 2],
+    frames: u32,
+    fps: f64,
+) -> std::result::Result<png::Writer<File>, png::EncodingError> {
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.set_animated(frames, 0)?;
+    let (numerator, denominator) = apng_delay(fps);
+    encoder.set_frame_delay(numerator, denominator)?;
+    encoder.write_header()
+}
+
+fn write_apng(
+    writer: &mut png::Writer<File>,
+    pixels: &[u8],
+    part: Rectangle,
+) -> std::result::Result<(), png::EncodingError> {
+    // From the corner, where any dimension fits.
+    writer.reset_frame_position()?;
+    writer.set_frame_dimension(part.width, part.height)?;
+    writer.set_frame_position(part.left, part.top)?;
+    writer.write_image_data(pixels)
+}
+
+fn write_gif(
+    encoder: &mut gif::Encoder<BufWriter<File>>,
+    pixels: &[u8],
+    part: Rectangle,
+    delay: u16,
+) -> io::Result<()> {
+    let [width, height, left, top] =
+        [part.width, part.height, part.left, part.top].map(|x| x as u16);
+    let mut frame = gif::Frame::from_rgb_speed(width, height, pixels, GIF_SAMPLING);
+    (frame.left, frame.top, frame.delay) = (left, top, delay);
+    frame.dispose = DisposalMethod::Keep;
+    encoder.write_frame(&frame).map_err(gif_error)
+}
+
+/// The smallest rectangle outside of which two pictures of `width` are the same; one pixel for
+/// equal ones, since no frame can be empty.
+fn changed(before: &[u8], after: &[u8], width: usize) -> Rectangle {
+    let mut columns = width..0;
+    let mut rows: Option<std::ops::RangeInclusive<usize>> = None;
+    let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
+    for (y, (a, b)) in lines.enumerate().filter(|(_, (a, b))| a != b) {
+        rows = Some(rows.map_or(y, |rows| *rows.start())..=y);
+        let differs = |x: &usize| a[3 * x..3 * x + 3] != b[3 * x..3 * x + 3];
+        let first = (0..width).find(differs).unwrap_or(0);
+        let last = (0..width).rfind(differs).unwrap_or(0);
+        columns = columns.start.min(first)..columns.end.max(last + 1);
+    }
+    match rows {
+        None => Rectangle { left: 0, top: 0, width: 1, height: 1 },
+        Some(rows) => Rectangle {
+            left: columns.start as u32,
+            top: *rows.start() as u32,
+            width: columns.len() as u32,
+            height: (rows.end() - rows.start() + 1) as u32,
+        },
+    }
+}
+
+/// The pixels of a part of a picture of `width`.
+fn cut(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
+    let [left, top, columns, rows] =
+        [part.left, part.top, part.width, part.height].map(|x| x as usize);
+    let lines = bytes.chunks_exact(3 * width).skip(top).take(rows);
+    lines.flat_map(|line| &line[3 * left..3 * (left + columns)]).copied().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn delays_of_a_gif_add_up_to_the_right_time() {
+        let delays: Vec<u16> = (0..24).map(|i| gif_delay(i, 24.0)).collect();
+        assert_eq!(delays[..6], [4, 4, 5, 4, 4, 4]);
+        assert_eq!(delays.iter().sum::<u16>(), 100);
+    }
+
+    #[test]
+    fn a_gif_is_not_faster_than_browsers_show_it() {
+        assert_eq!(gif_delay(0, 1000.0), 2);
+    }
+
+    #[test]
+    fn delays_of_a_png_are_exact_where_they_can_be() {
+        assert_eq!(
+            [24.0, 12.0, 1000.0, 24.0 / 7.0].map(apng_delay)[..3],
+            [(1, 24), (1, 12), (1, 1000)]
+        );
+        assert_eq!(apng_delay(24.0 / 7.0), (7, 24));
+        let (n, d) = apng_delay(23.976);
+        assert!((f64::from(n) / f64::from(d) * 23.976 - 1.0).abs() < 1e-4, "{n}/{d}");
+        assert_eq!(apng_delay(1e-6), (65535, 1));
+    }
+
+    #[test]
+    fn only_what_changed_is_cut_out() {
+        let mut after = vec![0; 3 * 4 * 3];
+        after[3 * (4 + 1)] = 9;
+        after[3 * (8 + 2) + 2] = 7;
+        let part = changed(&[0; 3 * 4 * 3], &after, 4);
+        assert_eq!(part, Rectangle { left: 1, top: 1, width: 2, height: 2 });
+        assert_eq!(cut(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
+    }
+
+    #[test]
+    fn equal_frames_differ_in_one_pixel() {
+        let part = changed(&[5; 12], &[5; 12], 2);
+        assert_eq!(part, Rectangle { left: 0, top: 0, width: 1, height: 1 });
+    }
+}

@@ -1,0 +1,250 @@
+//! `envers render` of many frames.
+
+use image::AnimationDecoder;
+
+use super::*;
+
+/// A sphere that goes round, in ten frames of a fifth of a second.
+fn moving() -> String {
+    let scene = SPHERE.replacen("[[sphere]]", "[[sphere]]\nname = \"ball\"", 1);
+    let orbit = "object = \"ball\"\naround = [1, 0.5, 0]\nperiod = 2\n";
+    format!("{scene}\n[animation]\nframes = 10\nfps = 5\n[[animation.orbit]]\n{orbit}")
+}
+
+/// The delays in milliseconds and the pictures of a GIF.
+fn gif(bytes: Vec<u8>) -> Vec<(u32, Vec<u8>)> {
+    let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).unwrap();
+    let frames = decoder.into_frames().collect_frames().unwrap();
+    let read = |frame: image::Frame| {
+        let (numerator, denominator) = frame.delay().numer_denom_ms();
+        assert_eq!(numerator % denominator, 0);
+        (numerator / denominator, frame.into_buffer().into_raw())
+    };
+    frames.into_iter().map(read).collect()
+}
+
+#[test]
+fn a_plain_render_is_the_first_frame() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml -o plain.png").good();
+    folder.run("render scene.toml --frames 1 -o first.png").good();
+    folder.run("render scene.toml --frames 2 -o second.png").good();
+    assert_eq!(folder.read("plain.png"), folder.read("first.png"));
+    assert_ne!(folder.read("plain.png"), folder.read("second.png"));
+}
+
+#[test]
+fn frames_are_files_with_their_numbers() {
+    let folder = Folder::with(&moving());
+    let run = folder.run("render scene.toml --frames 1-9x4 -o f-###.png").good();
+    assert_eq!(folder.names(), ["f-001.png", "f-005.png", "f-009.png", "scene.toml"]);
+    assert!(run.stdout.starts_with("f-###.png: 3 frames ("), "{}", run.stdout);
+}
+
+#[test]
+fn a_name_with_a_number_has_all_frames() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml -o f#.png -o f#.exr").good();
+    assert!(folder.has("f1.png") && folder.has("f10.png") && folder.has("f10.exr"));
+    assert_eq!(folder.names().len(), 21);
+}
+
+#[test]
+fn many_frames_without_an_output_are_numbered() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml --frames 9-10").good();
+    assert_eq!(folder.names(), ["scene-0009.png", "scene-0010.png", "scene.toml"]);
+}
+
+#[test]
+fn a_number_in_the_name_of_a_still_picture_is_a_sign_like_any_other() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o C#.png").good();
+    assert!(folder.has("C#.png"));
+}
+
+#[test]
+fn a_gif_has_all_frames_at_their_speed() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml -o a.gif").good();
+    let frames = gif(folder.read("a.gif"));
+    assert_eq!(frames.iter().map(|(delay, _)| *delay).collect::<Vec<_>>(), [200; 10]);
+    assert_ne!(frames[0].1, frames[5].1);
+}
+
+#[test]
+fn a_gif_of_every_second_frame_is_as_long() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml --frames 1-10x2 -o a.gif").good();
+    let delays: Vec<u32> = gif(folder.read("a.gif")).iter().map(|(delay, _)| *delay).collect();
+    assert_eq!(delays, [400; 5]);
+}
+
+#[test]
+fn an_animated_png_has_the_pixels_of_its_frames() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml -o a.apng -o f##.png").good();
+    let decoder = image::codecs::png::PngDecoder::new(std::io::Cursor::new(folder.read("a.apng")));
+    let frames = decoder.unwrap().apng().unwrap().into_frames().collect_frames().unwrap();
+    assert_eq!(frames.len(), 10);
+    for (i, frame) in (1..).zip(frames) {
+        assert_eq!(frame.delay().numer_denom_ms(), (200, 1));
+        let rgb = image::DynamicImage::ImageRgba8(frame.into_buffer()).into_rgb8().into_raw();
+        assert_eq!(rgb, pixels(&folder.read(format!("f{i:02}.png"))).1, "frame {i}");
+    }
+}
+
+#[test]
+fn what_is_there_is_skipped() {
+    let folder = Folder::with(&moving());
+    folder.write("f2.png", "old");
+    let run = folder.run("render scene.toml --frames 1-3 -o f#.png --skip-existing").good();
+    assert_eq!(folder.read("f2.png"), b"old");
+    assert!(folder.has("f1.png") && folder.has("f3.png"));
+    assert!(run.stdout.ends_with("1 frame was there already\n"), "{}", run.stdout);
+    let run = folder.run("render scene.toml --frames 1-3 -o f#.png --skip-existing").good();
+    assert_eq!(run.stdout, "3 frames were there already\n");
+}
+
+#[test]
+fn what_is_there_of_a_frame_is_left_alone_when_the_rest_is_made() {
+    let folder = Folder::with(&moving());
+    folder.write("f1.png", "old");
+    folder.run("render scene.toml --frames 1 -o f#.png -o f#.exr --skip-existing").good();
+    assert!(folder.has("f1.exr"));
+    assert_eq!(folder.read("f1.png"), b"old");
+}
+
+#[test]
+fn a_moment_between_frames_can_be_asked_for() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml --time 0.2 -o time.png").good();
+    folder.run("render scene.toml --frames 2 -o frame.png").good();
+    assert_eq!(folder.read("time.png"), folder.read("frame.png"));
+}
+
+#[test]
+fn the_time_of_a_frame_stands_in_its_exr() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml --frames 2 -o f.exr").good();
+    let text = folder.read("f.exr");
+    assert!(text.windows(12).any(|bytes| bytes == b"\ntime: 0.2 s"));
+}
+
+#[test]
+fn stats_are_those_of_all_frames() {
+    let folder = Folder::with(&moving());
+    let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
+    assert_eq!((&stats["frames"], &stats["rays"]["primary"]), (&10.into(), &30720.into()));
+}
+
+#[test]
+fn stats_say_that_a_mesh_was_built_once() {
+    let folder = Folder::with(&moving());
+    let scene = moving() + "[[model]]\nfile = \"tetrahedron.obj\"\n";
+    folder.write("scene.toml", scene);
+    folder.write("tetrahedron.obj", TETRAHEDRON);
+    let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
+    assert_eq!(stats["build"], serde_json::json!({"meshes": 1, "reused": 9}));
+}
+
+#[test]
+fn info_says_how_long_it_is_and_what_moves() {
+    let folder = Folder::with(&moving());
+    let said = folder.run("info scene.toml").good().stdout;
+    let line = "animation  10 frames at 5 a second (2.000 s), moving: 1 sphere\n";
+    assert!(said.contains(line), "{said}");
+    let json = folder.run("info scene.toml --json -").good().json();
+    assert_eq!(json["animation"]["frames"], 10);
+}
+
+#[test]
+fn validate_takes_one_moment() {
+    let folder = Folder::with(&moving());
+    folder.run("validate scene.toml").good();
+    folder.run("validate scene.toml --time 0.7").good();
+}
+
+#[test]
+fn several_frames_in_one_file_are_refused() {
+    let folder = Folder::with(&moving());
+    let said = folder.run("render scene.toml --frames 1-3 -o a.png").refused();
+    assert!(said.contains("3 frames cannot all have this name") && said.contains("####"), "{said}");
+    let said = folder.run("render scene.toml -o f#.png -o f##.png").refused();
+    assert!(said.contains("would have the same name"), "{said}");
+}
+
+#[test]
+fn frames_beyond_the_animation_are_refused() {
+    let folder = Folder::with(&moving());
+    let said = folder.run("render scene.toml --frames 5-11 -o f#.png").refused();
+    assert!(said.contains("there is no frame 11") && said.contains("has 10"), "{said}");
+}
+
+#[test]
+fn what_is_no_range_of_frames_is_refused() {
+    let folder = Folder::with(&moving());
+    for bad in ["0", "3-1", "1-5x0", "a", "1-"] {
+        folder.run(&format!("render scene.toml --frames {bad} -o f#.png")).refused();
+    }
+}
+
+#[test]
+fn a_scene_in_which_nothing_moves_has_no_frames() {
+    let folder = Folder::with(SPHERE);
+    for arguments in ["--frames 1 -o a.png", "-o a.gif", "-o a.apng", "--time 1 -o a.png"] {
+        let said = folder.run(&format!("render scene.toml {arguments}")).refused();
+        assert!(said.contains("no animation"), "{said}");
+    }
+    assert_eq!(folder.names(), ["scene.toml"]);
+}
+
+#[test]
+fn one_moment_is_no_animation() {
+    let folder = Folder::with(&moving());
+    folder.run("render scene.toml --time 1 --frames 2 -o a.png").refused();
+    let said = folder.run("render scene.toml --time 1 -o a.gif").refused();
+    assert!(said.contains("--time asks for one moment"), "{said}");
+}
+
+#[test]
+fn an_animated_picture_skips_no_frame() {
+    let folder = Folder::with(&moving());
+    let said = folder.run("render scene.toml -o a.gif --skip-existing").refused();
+    assert!(said.contains("needs every frame"), "{said}");
+}
+
+#[test]
+fn a_failure_leaves_the_old_picture_and_no_other_file() {
+    let folder = Folder::with(&moving());
+    folder.write("a.gif", "old");
+    // The camera comes to stand where it looks, in the last frame.
+    let track = "object = \"front\"\ntimes = [0, 1.8]\nposition = [[0, 1, 5], [0, 0.5, 0]]\n";
+    folder.write("scene.toml", moving() + "[[animation.track]]\n" + track);
+    let said = folder.run("render scene.toml -o a.gif").refused();
+    assert!(said.contains("scene.toml") && said.contains("at 1.800 s"), "{said}");
+    assert_eq!(folder.read("a.gif"), b"old");
+    assert_eq!(folder.names(), ["a.gif", "scene.toml"]);
+}
+
+#[test]
+fn a_gif_too_large_for_its_format_is_refused() {
+    let folder = Folder::with(&moving());
+    let said = folder.run("render scene.toml --size 70000x1 -o a.gif").refused();
+    assert!(said.contains("65535"), "{said}");
+}
+
+#[test]
+fn a_bare_models_animation_has_frames() {
+    let mut model = import_common::Model::triangle();
+    let input = model.floats("SCALAR", &[0.0, 0.25]);
+    let output = model.floats("VEC3", &[0., 0., 0., 1., 0., 0.]);
+    model.json["animations"] = serde_json::json!([{
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        "samplers": [{"input": input, "output": output}],
+    }]);
+    let folder = Folder::new();
+    folder.write("a.glb", model.glb());
+    folder.run("render a.glb --size 32x24 --spp 1 -o a.gif").good();
+    assert_eq!(gif(folder.read("a.gif")).len(), 6);
+}
