@@ -9,11 +9,12 @@ CARGO ?= cargo
 ENVERS = $${CARGO_TARGET_DIR:-target}/release/envers
 TUTORIAL = $(sort $(wildcard assets/scenes/tutorial/*.toml))
 SCENES = $(sort $(wildcard assets/scenes/*.toml))
+GALLERY = $(sort $(wildcard assets/scenes/gallery/*.toml))
 
 # The other build that must always work: no Embree, no libclang.
 PURE_RUST = --no-default-features --features cli
 
-.PHONY: help setup demo test check install uninstall clean
+.PHONY: help setup demo gallery test check install uninstall clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
@@ -39,6 +40,13 @@ demo: setup ## build, and render and validate the demo scenes into out/
 	        echo "$$scene: $${verdict%%?worst ray*}"; \
 	    done; \
 	done; exit $$status
+
+gallery: setup ## build, and render the scenes of docs/gallery.md into out/gallery/
+	$(CARGO) build --release --locked
+	@mkdir -p out/gallery
+	@set -e; for scene in $(GALLERY); do \
+	    $(ENVERS) render $$scene -o out/gallery/$$(basename $$scene .toml).png; \
+	done
 
 # One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree

@@ -1,4 +1,4 @@
-//! Makes the models of the demo scenes and the drawings of the tutorial:
+//! Makes the models of the demo scenes and the gallery, and the drawings of the tutorial:
 //! `cargo run --example make_assets` writes `assets/models/` and `docs/tutorial/images/*.svg`.
 //!
 //! What it makes is committed, so that nobody has to run it; `tests/assets.rs` holds the committed
@@ -16,6 +16,8 @@ mod drawings_3;
 mod drawings_4;
 #[path = "make_assets/drawings_5_6.rs"]
 mod drawings_5_6;
+#[path = "make_assets/gallery.rs"]
+mod gallery;
 #[path = "make_assets/glb.rs"]
 mod glb;
 #[path = "make_assets/paint.rs"]
@@ -37,7 +39,8 @@ pub const DRAWINGS: &str = "docs/tutorial/images";
 /// The files: their paths from the top of the checkout, and their bytes.
 pub fn files() -> Vec<(String, Vec<u8>)> {
     let mut files = vec![(format!("{MODELS}/room.glb"), room::glb())];
-    files.extend(vase::files().into_iter().map(|(name, file)| (format!("{MODELS}/{name}"), file)));
+    let models = vase::files().into_iter().chain(gallery::files());
+    files.extend(models.map(|(name, file)| (format!("{MODELS}/{name}"), file)));
     let drawings = [drawings_1_2::all(), drawings_3::all(), drawings_4::all(), drawings_5_6::all()];
     for (name, drawing) in drawings.into_iter().flatten() {
         files.push((format!("{DRAWINGS}/{name}.svg"), drawing.finish()));

@@ -53,7 +53,7 @@ fn main() -> Result<()> {
     let rendering = render(&scene, &Options::default(), &|_| {})?;
     std::fs::create_dir_all("out").ok();
     for file in ["out/spheres.png", "out/spheres.exr"] {
-        write(&rendering.film, Path::new(file), &Settings::default())?;
+        write(&rendering.film, Path::new(file), &Settings::of(&scene.film))?;
         println!("{file}");
     }
     Ok(())

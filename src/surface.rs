@@ -124,7 +124,10 @@ fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
         let from = position - plane.point;
         let (x, y) = (from.dot(a), from.dot(b));
         // The whole part is taken off in f64, so that the pattern stays sharp far out.
-        surface.uv = [(x - x.floor()) as f32, (y - y.floor()) as f32];
+        surface.uv = [x, y].map(|x| {
+            let repeats = x / plane.texture_size;
+            (repeats - repeats.floor()) as f32
+        });
         surface.checker = plane.checker.map(|checker| {
             let odd = |x: f64| {
                 let half = (x / checker.size).floor() * 0.5;
@@ -255,6 +258,19 @@ mod tests {
         };
         assert_eq!([color(0.1, 0.1), color(0.6, 0.1), color(-0.1, 0.1)], [0.0, 1.0, 1.0]);
         assert_eq!([color(-0.1, -0.1), color(1.1, 0.1)], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
+        let uv = |x: f64, z: f64| {
+            let mut scene = scene();
+            (scene.planes[0].point, scene.planes[0].texture_size) =
+                (DVec3::new(1.0, 0.0, 2.0), 4.0);
+            let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
+            Surface::new(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
+        };
+        assert_eq!([uv(1.0, 2.0), uv(2.0, 5.0)], [[0.0, 0.0], [0.25, 0.75]]);
+        assert_eq!([uv(6.0, 1.0), uv(-3.0, -2.0)], [[0.25, 0.75], [0.0, 0.0]]);
     }
 
     #[test]

@@ -14,6 +14,8 @@ mod render;
 mod reports;
 #[path = "cli/stress.rs"]
 mod stress;
+#[path = "cli/tone.rs"]
+mod tone;
 #[path = "cli/warnings.rs"]
 mod warnings;
 

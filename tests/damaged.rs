@@ -26,6 +26,8 @@ const SCENE: &str = r##"
 [film]
 size = [64, 48]
 background = "#203040"
+exposure = 0.5
+tone = "aces"
 
 [camera]
 position = [0, 1, 5]
@@ -37,6 +39,10 @@ name = "red"
 diffuse = "#c03020"
 diffuse_map = "picture.png"
 shininess = 50
+reflect = 0.25
+transmit = [0.5, 0.25, 0.5]
+ior = 1.33
+absorption = 0.5
 
 [[sphere]]
 center = [0, 0.5, 0]
@@ -47,6 +53,7 @@ material = "red"
 point = [0, 0, 0]
 normal = [0, 1, 0]
 checker = { colors = ["#fff", 0.25], size = 1.5 }
+texture_size = 2
 
 [[model]]
 file = "model.obj"
@@ -69,7 +76,7 @@ vt 0 0\nvt 1 0\nvt 0 1\nvn 0 1 0\nvn 0 0 -1\n\
 f 1/1/1 2/2/1 4/3/1\nf 2//2 3//2 4//2\nf -5 -4 -3\nf 1 2 3 4 5\nusemtl blue\nf 1/1 2/2 3/3\nl 1 2\n";
 
 const MTL: &str = "\
-newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 50\nillum 2\nd 1\n\
+newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 50\nillum 7\nd 0.75\nNi 1.5\nTf 1 0.5 1\n\
 map_Kd -clamp on -s 1 1 1 picture.png\nnewmtl blue\nKa 0 0 0\nKe 0.1 0 0\nTr 0.5\n";
 
 /// A model that uses most of what is read: indices, normals, texture coordinates, colours, a
@@ -94,7 +101,13 @@ fn model() -> Model {
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 1, 1], "roughnessFactor": 0.4,
             "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
                 "offset": [0.5, 0.25], "rotation": 1.5, "scale": [2, 2]}}}},
-        "emissiveFactor": [0.1, 0, 0], "emissiveTexture": {"index": 1}, "alphaMode": "OPAQUE"}));
+        "emissiveFactor": [0.1, 0, 0], "emissiveTexture": {"index": 1},
+        "alphaMode": "BLEND", "alphaCutoff": 0.5, "extensions": {
+            "KHR_materials_transmission": {
+                "transmissionFactor": 0.5, "transmissionTexture": {"index": 1}},
+            "KHR_materials_ior": {"ior": 1.25},
+            "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 0.5,
+                "attenuationColor": [0.5, 0.25, 1]}}}));
     let primitive = model.primitive();
     primitive["indices"] = indices.into();
     primitive["mode"] = 4.into();

@@ -258,12 +258,89 @@ fn shininess_of_zero_is_brought_into_range() {
     assert_eq!(with_mtl(&Folder::new(), "newmtl m\nNs 0").1.shininess, 1.0);
 }
 
+/// What light does at the material `m` of an MTL file, of which there is nothing to say.
+fn optics(mtl: &str) -> Material {
+    let (scene, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{mtl}"));
+    assert_eq!(scene.warnings, [""; 0], "{mtl}");
+    m
+}
+
 #[test]
-fn transparency_is_drawn_opaque_with_a_warning() {
-    for line in ["d 0.5", "Tr 0.5", "d -halo 0.5"] {
-        let (scene, _) = with_mtl(&Folder::new(), &format!("newmtl m\n{line}"));
-        assert_warns(&scene, "drawn opaque");
+fn opacity_below_1_is_a_thin_sheet_seen_straight_through() {
+    for line in ["d 0.75", "Tr 0.25", "d -halo 0.75", "d 0.75\nTr 0.5", "d 0.75\nillum 9"] {
+        let m = optics(&format!("{line}\nNi 1.5\nTf 0.1 0.1 0.1"));
+        assert_eq!((m.transmit, m.thin, m.ior), (Vec3::splat(0.25), true, 1.0), "{line}");
+        assert_eq!(m.reflect, Vec3::ZERO, "{line}");
     }
+}
+
+#[test]
+fn opacity_of_1_is_opaque_whatever_index_and_filter_say() {
+    for illum in [2, 3, 8, 9] {
+        let m = optics(&format!("d 1\nNi 1.5\nTf 1 1 1\nillum {illum}"));
+        assert_eq!(m.transmit, Vec3::ZERO, "{illum}");
+    }
+}
+
+#[test]
+fn opacity_of_0_is_a_warning() {
+    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1");
+    assert_eq!(m.transmit, Vec3::ONE);
+    assert_warns(&scene, "an opacity of 0");
+}
+
+#[test]
+fn illumination_models_3_and_5_mirror_by_their_specular_colour() {
+    for illum in [3, 5] {
+        let m = optics(&format!("Ks 0.5 0.25 2\nillum {illum}"));
+        assert_eq!(m.reflect, Vec3::new(0.5, 0.25, 1.0), "{illum}");
+        let m = optics(&format!("Ks 0.5 0.5 1\nd 0.5\nillum {illum}"));
+        assert_eq!(m.reflect, Vec3::new(0.25, 0.25, 0.5), "{illum}");
+        assert_eq!(m.transmit, Vec3::splat(0.5), "{illum}");
+    }
+}
+
+#[test]
+fn other_illumination_models_have_no_mirror() {
+    for illum in [0, 1, 2, 4, 6, 7, 8, 9, 10] {
+        assert_eq!(optics(&format!("Ks 1 1 1\nillum {illum}")).reflect, Vec3::ZERO, "{illum}");
+    }
+}
+
+#[test]
+fn illumination_models_6_and_7_refract() {
+    for illum in [6, 7] {
+        let (_, m) =
+            with_mtl(&Folder::new(), &format!("newmtl m\nTf 1 0.5 0\nNi 1.25\nillum {illum}"));
+        assert_eq!((m.transmit, m.thin, m.ior), (Vec3::new(1.0, 0.5, 0.0), false, 1.25));
+        let (_, m) = with_mtl(&Folder::new(), &format!("newmtl m\nd 0.25\nillum {illum}"));
+        assert_eq!((m.transmit, m.thin, m.ior), (Vec3::splat(0.75), false, 1.5));
+    }
+}
+
+#[test]
+fn illumination_model_4_is_a_pane() {
+    let m = optics("Tf 1 1 1\nNi 1.25\nillum 4");
+    assert_eq!((m.transmit, m.thin, m.ior), (Vec3::ONE, true, 1.25));
+}
+
+#[test]
+fn glass_that_lets_nothing_through_is_none() {
+    for illum in [4, 6, 7] {
+        assert_eq!(optics(&format!("Kd 1 1 1\nillum {illum}")).transmit, Vec3::ZERO, "{illum}");
+    }
+}
+
+#[test]
+fn a_picture_of_opacity_is_a_warning() {
+    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nmap_d a.png");
+    assert_warns(&scene, "textures of opacity");
+}
+
+#[test]
+fn glass_of_a_mesh_that_is_not_closed_is_a_warning() {
+    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nTf 1 1 1\nillum 7");
+    assert_warns(&scene, "not closed at 3 edges");
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use envers::integrator::Counts;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Plane,
-    Scene, Shadow, Sphere,
+    Camera, Checker, Falloff, Filter, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh,
+    Plane, Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -170,11 +170,33 @@ fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
 #[test]
 fn checker_stands_in_place_of_the_diffuse_colour() {
     let mut scene = scene(matt(0.5));
-    let mut plane = Plane::new(DVec3::new(-0.5, -0.5, 0.0), DVec3::Z, MaterialId(0));
+    let mut plane = Plane::new(DVec3::new(-0.5, 0.5, 0.0), DVec3::Z, MaterialId(0));
     plane.checker = Some(Checker { colors: [Vec3::splat(0.75), Vec3::ZERO], size: 1.0 });
     scene.planes.push(plane);
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
     assert_near(radiance(&scene), 0.75);
+}
+
+#[test]
+fn a_picture_on_a_wall_has_its_upper_left_corner_at_the_planes_point() {
+    use envers::scene::{Image, Texture, Transfer};
+    // The eye looks at (0, 0), 3 units right of the point and 3 below it, on a picture of 8 units
+    // and 4 by 4 texels: in the middle of its second column and second row.
+    let mut scene = scene(matt(1.0));
+    let mut plane = Plane::new(DVec3::new(-3.0, 3.0, 0.0), DVec3::Z, MaterialId(0));
+    plane.texture_size = 8.0;
+    scene.planes.push(plane);
+    let texels = (0..16).map(|i| [i * 16; 4]).collect();
+    let image = Image { name: String::new(), width: 4, height: 4, texels };
+    let texture = scene.add_texture(Texture {
+        image: image.into(),
+        transfer: Transfer::None,
+        wrap: Default::default(),
+        filter: Filter::Nearest,
+    });
+    scene.materials[0].diffuse_map = Some(texture);
+    scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
+    assert_near(radiance(&scene), 80.0 / 255.0);
 }
 
 #[test]

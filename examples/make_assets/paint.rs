@@ -167,3 +167,78 @@ pub fn vase() -> Vec<u8> {
         if is_dark { dark } else { clay }
     })
 }
+
+/// The colour at `x` between stops, each a place and a colour.
+fn gradient(x: f64, stops: &[(f64, u32)]) -> DVec3 {
+    let mut color = hex(stops[0].1);
+    for pair in stops.windows(2) {
+        let [(a, _), (b, to)] = [pair[0], pair[1]];
+        color = color.lerp(hex(to), ((x - a) / (b - a)).clamp(0.0, 1.0));
+    }
+    color
+}
+
+/// A clear sky for a sphere around everything: v runs from the zenith to the nadir.
+pub fn sky() -> Vec<u8> {
+    png(4, 256, |p| {
+        gradient(
+            p.y,
+            &[
+                (0.0, 0x2f6cb5),
+                (0.25, 0x5b96d3),
+                (0.42, 0x9cc6ea),
+                (0.49, 0xe2eff5),
+                (0.52, 0xb9b6ad),
+            ],
+        )
+    })
+}
+
+/// The sky after sunset, brightest at the horizon.
+pub fn dusk() -> Vec<u8> {
+    png(4, 512, |p| {
+        gradient(
+            p.y,
+            &[
+                (0.0, 0x0b1030),
+                (0.25, 0x1d2552),
+                (0.38, 0x51407a),
+                (0.44, 0xa8557a),
+                (0.47, 0xe8785a),
+                (0.492, 0xfbb04f),
+                (0.5, 0xffe08a),
+                (0.51, 0x3a2b3f),
+            ],
+        )
+    })
+}
+
+/// The clouds of a giant planet, in bands that the wind frays: u runs around it.
+pub fn planet() -> Vec<u8> {
+    png(256, 128, |p| {
+        let fray = noise(p * DVec2::new(16.0, 24.0), [16, 24]) - 0.5;
+        let swirl = noise(p * DVec2::new(40.0, 80.0), [40, 80]) - 0.5;
+        let y = p.y + 0.022 * fray + 0.008 * swirl;
+        gradient(
+            y,
+            &[
+                (0.0, 0x8d7d74),
+                (0.14, 0xa08a78),
+                (0.2, 0xd9c4a5),
+                (0.26, 0xc79b72),
+                (0.31, 0xe9dcc3),
+                (0.37, 0xb06f4a),
+                (0.43, 0xc98f63),
+                (0.46, 0xf0e6d2),
+                (0.55, 0xefe0c4),
+                (0.58, 0xa8633f),
+                (0.65, 0xc58a60),
+                (0.68, 0xe6d3b3),
+                (0.75, 0xb98d6a),
+                (0.82, 0xd3bd9f),
+                (0.9, 0x9a8677),
+                (1.0, 0x80736d),
+            ],
+        )
+    })
+}

@@ -12,8 +12,8 @@ use crate::geometry::Ray;
 use crate::intersect::{Backend, Precision};
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
-use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
+use crate::scene::{Scene, Tone};
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
 #[derive(Parser)]
@@ -110,9 +110,13 @@ pub struct Render {
     /// What the picture shows; normal, depth and id are raw values in EXR, colours in PNG
     #[arg(long, value_enum, default_value = "beauty")]
     pub view: ViewName,
-    /// Brighten the PNG by 2 to the power of EV; an EXR is never changed
-    #[arg(long, value_name = "EV", default_value_t = 0.0, value_parser = finite, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// Brighten the PNG by 2 to the power of EV; an EXR is never changed [default: the scene's]
+    #[arg(long, value_name = "EV", value_parser = finite, allow_negative_numbers = true)]
+    pub exposure: Option<f64>,
+    /// Tone curve of the PNG: how it shows what is bright; an EXR is never changed [default: the
+    /// scene's]
+    #[arg(long, value_enum, value_name = "CURVE")]
+    pub tone: Option<ToneName>,
     /// Store 16-bit floats in the EXR rather than 32-bit ones; what is beyond 65504 becomes that
     #[arg(long)]
     pub half: bool,
@@ -269,6 +273,23 @@ impl From<ViewName> for View {
     }
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum ToneName {
+    None,
+    Reinhard,
+    Aces,
+}
+
+impl From<ToneName> for Tone {
+    fn from(name: ToneName) -> Tone {
+        match name {
+            ToneName::None => Tone::None,
+            ToneName::Reinhard => Tone::Reinhard,
+            ToneName::Aces => Tone::Aces,
+        }
+    }
+}
+
 fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let parse = || {
         let (width, height) = text.split_once(['x', 'X', '×'])?;
@@ -290,8 +311,8 @@ fn seconds(text: &str) -> std::result::Result<f64, String> {
     text.parse().ok().filter(in_range).ok_or("expected seconds, 0 or above".to_owned())
 }
 
-fn finite(text: &str) -> std::result::Result<f32, String> {
-    text.parse().ok().filter(|x: &f32| x.is_finite()).ok_or("expected a finite number".to_owned())
+fn finite(text: &str) -> std::result::Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or("expected a finite number".to_owned())
 }
 
 fn not_negative(text: &str) -> std::result::Result<f32, String> {

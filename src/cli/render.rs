@@ -12,7 +12,7 @@ use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering, Statistics};
-use crate::scene::{Scene, Transfer, detail};
+use crate::scene::{Scene, Tone, detail};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -27,6 +27,8 @@ pub fn run(arguments: &Render) -> Outcome {
     if arguments.view != ViewName::Beauty {
         scene.film.spp = 1;
     }
+    scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
+    scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
     let plan = Plan::new(arguments, &scene, outputs)?;
     let first = first(&scene, &plan).map_err(|e| e.at(&arguments.tracing.scene))?;
     let loaded = start.elapsed();
@@ -37,10 +39,9 @@ pub fn run(arguments: &Render) -> Outcome {
     let options = Options { backend, precision, threads, camera, view, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
-        transfer: scene.film.transfer,
-        exposure: arguments.exposure,
         half: arguments.half,
         metadata: metadata(&scene, camera, view, precision),
+        ..Settings::of(&scene.film)
     };
     let mut sink = Sink::new(&plan, settings, &options, scene.film.size)?;
     let times: Vec<f64> = plan.frames.iter().map(|(_, time)| *time).collect();
@@ -123,7 +124,8 @@ impl<'a> Sink<'a> {
         for movie in &mut self.movies {
             movie.push(&rendering.film, &settings)?;
         }
-        let is_dark = |pixel: &[f32; 3]| pixel.iter().all(|&x| x <= 0.5 / 255.0);
+        let dark = 0.5 / 255.0 / self.settings.exposure.exp2();
+        let is_dark = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= dark);
         self.done.is_black &= rendering.film.pixels.iter().all(is_dark);
         self.done.statistics.add(&rendering.statistics);
         self.done.write += start.elapsed();
@@ -158,13 +160,19 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
         return Err(Error::input("--half is about EXR, and no .exr is asked for")
             .help("add `-o NAME.exr`, or leave --half out"));
     }
-    if arguments.exposure != 0.0 && formats.iter().all(|&format| format == Format::Exr) {
-        return Err(Error::input("--exposure is about PNG, and no .png is asked for")
+    let shown =
+        [("--exposure", arguments.exposure.is_some()), ("--tone", arguments.tone.is_some())];
+    if let Some((flag, _)) = shown.iter().find(|(_, given)| *given)
+        && formats.iter().all(|&format| format == Format::Exr)
+    {
+        return Err(Error::input(format!("{flag} is about PNG, and no .png is asked for"))
             .help("an EXR always holds the radiance itself"));
     }
     if arguments.view != ViewName::Beauty {
+        let [exposure, tone] = shown;
         let flags = [
-            ("--exposure", arguments.exposure != 0.0),
+            exposure,
+            tone,
             ("--half", arguments.half),
             ("--spp", arguments.tracing.spp.is_some()),
             ("--max-depth", arguments.tracing.max_depth.is_some()),
@@ -247,10 +255,6 @@ fn metadata(
     precision: Precision,
 ) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
-    let transfer = match scene.film.transfer {
-        Transfer::Srgb => "srgb",
-        Transfer::None => "none",
-    };
     [
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("size", format!("{width}x{height}")),
@@ -260,7 +264,9 @@ fn metadata(
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
         ("view", format!("{view:?}").to_lowercase()),
         ("precision", precision.name().to_owned()),
-        ("png_transfer", transfer.to_owned()),
+        ("png_exposure", scene.film.exposure.to_string()),
+        ("png_tone", format!("{:?}", scene.film.tone).to_lowercase()),
+        ("png_transfer", format!("{:?}", scene.film.transfer).to_lowercase()),
     ]
     .map(|(name, value)| (name.to_owned(), value))
     .into()

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{MaterialId, Scene};
+use crate::scene::{Instance, MaterialId, Scene};
 use crate::surface::Surface;
 
 /// What fills a place.
@@ -60,6 +60,8 @@ pub struct Bodies {
     spheres: Vec<Rank>,
     planes: Vec<Rank>,
     instances: Vec<Rank>,
+    /// Whether the fronts of a body's triangles are inside: it is mirrored, or was made so.
+    turned: Vec<bool>,
 }
 
 impl Bodies {
@@ -84,8 +86,8 @@ impl Bodies {
             priority.then(size_of_a.total_cmp(&size_of_b))
         });
         if order.is_empty() {
-            let (media, spheres, planes, instances) = Default::default();
-            return Self { media, spheres, planes, instances };
+            let (media, spheres, planes, instances, turned) = Default::default();
+            return Self { media, spheres, planes, instances, turned };
         }
         let mut ranks = vec![NONE; all.len()];
         let mut media = Vec::with_capacity(order.len());
@@ -96,7 +98,15 @@ impl Bodies {
         }
         let instances = ranks.split_off(scene.spheres.len() + scene.planes.len());
         let planes = ranks.split_off(scene.spheres.len());
-        Self { media, spheres: ranks, planes, instances }
+        let is_turned = |(&rank, instance): (&Rank, &Instance)| {
+            if rank == NONE {
+                return false;
+            }
+            let inward = scene.meshes[instance.mesh.0 as usize].volume() < 0.0;
+            inward != (instance.transform.matrix3.determinant() < 0.0)
+        };
+        let turned = instances.iter().zip(&scene.instances).map(is_turned).collect();
+        Self { media, spheres: ranks, planes, instances, turned }
     }
 
     /// Whether there are none.
@@ -119,6 +129,12 @@ impl Bodies {
         ranks.copied().filter(|&rank| rank != NONE)
     }
 
+    /// The side of its body from which a surface is seen whose geometric normal says `side`.
+    fn outer(&self, id: PrimitiveId, side: Side) -> Side {
+        let is_mesh = matches!(id.geometry, Geometry::Mesh(_));
+        if is_mesh && self.turned[id.instance as usize] { side.opposite() } else { side }
+    }
+
     /// What lies before and behind a surface that is seen from its `side` by a ray in `inside`.
     ///
     /// A ray that comes out of a body that it never went into, through a hole in its mesh or from
@@ -127,7 +143,7 @@ impl Bodies {
         let Some(rank) = self.rank(id) else {
             return Around { before: inside.clone(), behind: inside.clone(), is_hidden: false };
         };
-        let (before, behind) = match side {
+        let (before, behind) = match self.outer(id, side) {
             Side::Front => (inside.clone(), inside.with(rank)),
             Side::Back if inside.0.contains(&rank) => (inside.clone(), inside.without(rank)),
             Side::Back => (inside.with(rank), inside.clone()),
@@ -166,7 +182,7 @@ impl Bodies {
             let Some(hit) = &hit[0] else { break };
             let surface = Surface::new(scene, &ray, hit);
             if let Geometry::Mesh(_) = hit.id.geometry {
-                depth[hit.id.instance as usize] += match surface.side {
+                depth[hit.id.instance as usize] += match self.outer(hit.id, surface.side) {
                     Side::Front => -1,
                     Side::Back => 1,
                 };
@@ -197,94 +213,4 @@ pub struct Around {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::intersect::{BruteForce, Precision};
-    use crate::scene::{Instance, Material, Mesh, Plane, Sphere};
-    use glam::DAffine3;
-
-    fn glass(ior: f64, priority: i32) -> Material {
-        Material { transmit: Vec3::ONE, ior, priority, ..Material::default() }
-    }
-
-    /// Water below y = 0, a glass ball across its surface, a bubble in the ball, an opaque ball.
-    fn pond(priority_of_water: i32) -> Scene {
-        let mut scene = Scene::default();
-        let water = scene.add_material(glass(1.33, priority_of_water));
-        let ball = scene.add_material(glass(1.5, 0));
-        let air = scene.add_material(glass(1.0, 0));
-        let matt = scene.add_material(Material::default());
-        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, water));
-        scene.spheres.push(Sphere::new(DVec3::ZERO, 2.0, ball));
-        scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, air));
-        scene.spheres.push(Sphere::new(DVec3::X * 9.0, 1.0, matt));
-        scene
-    }
-
-    fn ior_at(scene: &Scene, point: DVec3) -> f64 {
-        let bodies = Bodies::of(scene);
-        let intersector = BruteForce::new(scene, Precision::Fast);
-        bodies.medium(&bodies.holding(point, scene, &intersector)).ior
-    }
-
-    #[test]
-    fn the_smaller_of_two_bodies_fills_where_both_are() {
-        let scene = pond(0);
-        let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
-        assert_eq!([at(0.0, 9.0), at(0.0, -9.0)], [1.0, 1.33]);
-        assert_eq!([at(0.0, 1.5), at(0.0, -1.5), at(0.0, -0.5)], [1.5, 1.5, 1.0]);
-    }
-
-    #[test]
-    fn a_greater_priority_goes_before_size() {
-        let scene = pond(1);
-        let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
-        assert_eq!([at(0.0, -1.5), at(0.0, -0.5), at(0.0, 1.5)], [1.33, 1.33, 1.5]);
-    }
-
-    #[test]
-    fn a_surface_within_a_body_that_goes_before_it_is_hidden() {
-        let scene = pond(0);
-        let bodies = Bodies::of(&scene);
-        let ball = bodies.around(PrimitiveId::sphere(0), Side::Front, &Interiors::default());
-        assert!(!ball.is_hidden);
-        let water = bodies.around(PrimitiveId::plane(0), Side::Front, &ball.behind);
-        assert!(water.is_hidden);
-        let out = bodies.around(PrimitiveId::sphere(0), Side::Back, &water.behind);
-        assert!(!out.is_hidden);
-        assert_eq!([&out.before, &out.behind].map(|i| bodies.medium(i).ior), [1.5, 1.33]);
-    }
-
-    #[test]
-    fn what_is_no_body_changes_nothing() {
-        let scene = pond(0);
-        let bodies = Bodies::of(&scene);
-        let inside = Interiors::default().with(1);
-        let around = bodies.around(PrimitiveId::sphere(2), Side::Front, &inside);
-        assert_eq!((&around.before, &around.behind), (&inside, &inside));
-        assert!(!around.is_hidden);
-    }
-
-    #[test]
-    fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
-        let scene = pond(0);
-        let bodies = Bodies::of(&scene);
-        let around = bodies.around(PrimitiveId::sphere(0), Side::Back, &Interiors::default());
-        assert_eq!([&around.before, &around.behind].map(|i| bodies.medium(i).ior), [1.5, 1.0]);
-    }
-
-    #[test]
-    fn eye_within_a_closed_mesh_is_in_it_and_eye_beside_it_is_not() {
-        let mut scene = Scene::default();
-        let material = scene.add_material(glass(1.5, 0));
-        let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [0., 0., 4.]],
-            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
-            ..Mesh::default()
-        });
-        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
-        assert_eq!(ior_at(&scene, DVec3::splat(0.5)), 1.5);
-        assert_eq!(ior_at(&scene, DVec3::splat(-0.5)), 1.0);
-        assert_eq!(ior_at(&scene, DVec3::splat(3.0)), 1.0);
-    }
-}
+mod tests;

@@ -2,8 +2,8 @@
 //!
 //! Rays go through the intersector in batches. A strip of the picture is worked off tile by tile,
 //! in each tile sample by sample: all primary rays of a sample form a wave; of what they hit, for
-//! each light, all shadow rays go out with the radiance that waits on them ([`shade`]); and what
-//! mirrors and glass send on forms the next wave ([`follow`]). A pixel's sum therefore has one
+//! each light, all shadow rays go out with the radiance that waits on them (`shade`); and what
+//! mirrors and glass send on forms the next wave (`follow`). A pixel's sum therefore has one
 //! order, whatever the tiles and threads.
 
 mod bodies;

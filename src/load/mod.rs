@@ -16,7 +16,7 @@ mod tally;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Scene, closed};
 
 pub use scene_file::schema;
 
@@ -51,6 +51,8 @@ pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
         framing::light(&mut scene);
     }
     scene.check().map_err(|e| e.at(path))?;
+    let open = closed::open_bodies(&scene);
+    scene.warnings.extend(open);
     Ok(scene)
 }
 

@@ -34,6 +34,9 @@ impl Scene {
         require((0.0..=1.0).contains(&self.film.cutoff), || {
             format!("the cutoff must be from 0 to 1, found {}", self.film.cutoff)
         })?;
+        require(self.film.exposure.is_finite(), || {
+            format!("the exposure must be finite, found {}", self.film.exposure)
+        })?;
         for (i, material) in self.materials.iter().enumerate() {
             let what = format!("material {i} (`{}`)", material.name);
             color(&format!("{what}: diffuse"), material.diffuse)?;
@@ -74,6 +77,9 @@ impl Scene {
             position(&format!("{what}: point"), plane.point)?;
             unit(&format!("{what}: normal"), plane.normal)?;
             index(&what, "material", plane.material.0, self.materials.len())?;
+            require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
+                format!("{what}: texture_size must be above 0, found {}", plane.texture_size)
+            })?;
             if let Some(checker) = plane.checker {
                 checker.colors.iter().try_for_each(|&c| color(&format!("{what}: checker"), c))?;
                 require(checker.size > 0.0 && checker.size.is_finite(), || {

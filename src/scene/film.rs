@@ -4,6 +4,8 @@ use glam::Vec3;
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use crate::scene::Tone;
+
 /// How linear radiance becomes the bytes of a PNG.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
@@ -17,7 +19,7 @@ pub enum Transfer {
 
 impl Transfer {
     /// The encoded value, in \[0, 1\], of a linear one; what lies outside is clamped.
-    pub fn encode(self, linear: f32) -> f32 {
+    pub fn encode(self, linear: f64) -> f64 {
         // A NaN fails the comparison and becomes 0.
         let x = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
         match self {
@@ -65,8 +67,12 @@ pub struct FilmSettings {
     pub size: [u32; 2],
     /// Samples per pixel, at least 1.
     pub spp: u32,
-    /// How the PNG encodes radiance.
+    /// How the PNG encodes what the tone curve leaves.
     pub transfer: Transfer,
+    /// The PNG's radiance is multiplied with 2 to the power of this.
+    pub exposure: f64,
+    /// How the PNG shows what is bright.
+    pub tone: Tone,
     /// Radiance where a ray meets nothing, linear Rec. 709.
     pub background: Vec3,
     /// Where in the pixel the samples are centred.
@@ -84,6 +90,8 @@ impl Default for FilmSettings {
             size: [1280, 720],
             spp: 1,
             transfer: Transfer::Srgb,
+            exposure: 0.0,
+            tone: Tone::None,
             background: Vec3::ZERO,
             sample_position: SamplePosition::Center,
             max_depth: 8,
@@ -100,7 +108,7 @@ mod tests {
     fn srgb_decodes_every_byte_it_encodes() {
         for byte in 0..=255u8 {
             let value = byte as f32 / 255.0;
-            let back = Transfer::Srgb.encode(Transfer::Srgb.decode(value));
+            let back = Transfer::Srgb.encode(Transfer::Srgb.decode(value).into());
             assert_eq!((back * 255.0).round() as u8, byte);
         }
     }
@@ -112,6 +120,6 @@ mod tests {
 
     #[test]
     fn encoding_clamps_and_turns_nan_black() {
-        assert_eq!([-1.0, 7.0, f32::NAN].map(|x| Transfer::None.encode(x)), [0.0, 1.0, 0.0]);
+        assert_eq!([-1.0, 7.0, f64::NAN].map(|x| Transfer::None.encode(x)), [0.0, 1.0, 0.0]);
     }
 }

@@ -3,6 +3,7 @@
 pub mod animation;
 mod camera;
 pub mod check;
+pub mod closed;
 pub mod detail;
 mod film;
 mod light;
@@ -10,6 +11,7 @@ mod material;
 mod mesh;
 mod object;
 mod texture;
+mod tone;
 
 pub use camera::{Camera, Lens, RayMaker};
 pub use film::{FilmSettings, SamplePosition, Transfer};
@@ -18,6 +20,7 @@ pub use material::{Material, MaterialId};
 pub use mesh::{Mesh, MeshId};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
+pub use tone::Tone;
 
 use std::sync::Arc;
 

@@ -41,6 +41,9 @@ pub struct Plane {
     pub material: MaterialId,
     /// A checker in place of the material's diffuse colour.
     pub checker: Option<Checker>,
+    /// The side of the square that its material's pictures take before they repeat, above 0, in
+    /// world units.
+    pub texture_size: f64,
     /// Whether it keeps light from what lies behind it.
     pub casts_shadow: bool,
 }
@@ -49,14 +52,20 @@ impl Plane {
     /// A plane without checker that casts a shadow; `normal` may have any length but zero.
     pub fn new(point: DVec3, normal: DVec3, material: MaterialId) -> Self {
         let normal = normal.normalize();
-        Self { point, normal, material, checker: None, casts_shadow: true }
+        Self { point, normal, material, checker: None, texture_size: 1.0, casts_shadow: true }
     }
 
-    /// Two unit vectors that span the plane with its normal: the axes of its checker and of its
-    /// texture coordinates. For a level ground (normal ±Y) they run along X and Z.
+    /// Two unit vectors that span the plane: the axes of its checker, and along which texture
+    /// coordinates u and v run. Whom the normal points to sees u run to the right where v runs
+    /// down. On a wall u is level and v points down, along −Y; on the ground, and on anything less
+    /// than 26° off it, u follows X (for normal ±Y, v is then ±Z).
     pub fn axes(&self) -> (DVec3, DVec3) {
-        let helper = if self.normal.y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
-        let across = (helper - self.normal * helper.dot(self.normal)).normalize();
+        let across = if self.normal.y.abs() > 0.9 {
+            DVec3::X - self.normal * self.normal.x
+        } else {
+            DVec3::Y.cross(self.normal)
+        };
+        let across = across.normalize();
         (across, across.cross(self.normal))
     }
 }
@@ -110,6 +119,13 @@ mod tests {
     fn level_ground_has_axes_along_x_and_z() {
         let ground = Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0));
         assert_eq!(ground.axes(), (DVec3::X, DVec3::Z));
+    }
+
+    #[test]
+    fn pictures_on_a_wall_stand_upright_for_whom_it_faces() {
+        let wall = |normal| Plane::new(DVec3::ZERO, normal, MaterialId(0)).axes();
+        assert_eq!(wall(DVec3::Z), (DVec3::X, DVec3::NEG_Y));
+        assert_eq!(wall(DVec3::NEG_X), (DVec3::Z, DVec3::NEG_Y));
     }
 
     #[test]

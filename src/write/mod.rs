@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::scene::Transfer;
+use crate::scene::{FilmSettings, Tone, Transfer};
 
 pub use atomic::{atomically, check as check_file};
 pub use movie::Movie;
@@ -28,17 +28,35 @@ pub enum Format {
     Apng,
 }
 
-/// How to write a picture.
+/// How to write a picture. `exposure`, `tone` and `transfer` are how a PNG shows radiance; an EXR
+/// always holds the radiance itself.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// How a PNG encodes radiance.
+    /// Radiance is multiplied with 2 to the power of this.
+    pub exposure: f64,
+    /// What then brings it into \[0, 1\].
+    pub tone: Tone,
+    /// What that is encoded by.
     pub transfer: Transfer,
-    /// A PNG's radiance is multiplied with 2 to the power of this; an EXR's never.
-    pub exposure: f32,
     /// Whether an EXR stores 16-bit floats rather than 32-bit ones.
     pub half: bool,
     /// What an EXR says of itself: names and values of what determines the picture.
     pub metadata: Vec<(String, String)>,
+}
+
+impl Settings {
+    /// How a scene's film is shown; 32 bits, no metadata.
+    pub fn of(film: &FilmSettings) -> Self {
+        let &FilmSettings { exposure, tone, transfer, .. } = film;
+        Self { exposure, tone, transfer, half: false, metadata: Vec::new() }
+    }
+
+    /// The byte of a PNG for the radiance of one channel, in f64:
+    /// round(255 · transfer(tone(2^exposure · radiance))).
+    pub fn byte(&self, radiance: f32) -> u8 {
+        let toned = self.tone.apply(f64::from(radiance) * self.exposure.exp2());
+        (self.transfer.encode(toned) * 255.0).round() as u8
+    }
 }
 
 impl Format {

@@ -23,20 +23,19 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
 
 /// The bytes of the picture: red, green, blue of each pixel, row by row.
 ///
-/// Beauty: `round(255 · encode(radiance · 2^exposure))`, clamped, with the transfer's curve.
-/// Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
+/// Beauty: [`Settings::byte`]. Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
 /// at the nearest hit to a dark grey at the farthest, black where nothing is hit. Id: a colour for
 /// each object, drawn from its numbers; black where nothing is hit.
 pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     let byte = |x: f32| (x * 255.0).round() as u8;
-    let gain = settings.exposure.exp2();
     let depths = || film.pixels.iter().map(|p| p[0]).filter(|z| z.is_finite());
     let (near, far) = match film.view {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
+    let steps = if film.view == View::Beauty { steps(settings) } else { Vec::new() };
     let color = |pixel: &[f32; 3]| match film.view {
-        View::Beauty => pixel.map(|x| byte(settings.transfer.encode(x * gain))),
+        View::Beauty => pixel.map(|x| steps.partition_point(|&step| step <= x) as u8),
         View::Normal if *pixel == [0.0; 3] => [0; 3],
         View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
         View::Depth if !pixel[0].is_finite() => [0; 3],
@@ -45,6 +44,24 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Id => id_color(pixel.map(|x| x as u32)),
     };
     film.pixels.par_iter().flat_map_iter(color).collect()
+}
+
+/// The least radiance that gives each byte from 1 on, by [`Settings::byte`], which never falls; no
+/// number where none does. To look a byte up here is several times faster than to work it out.
+fn steps(settings: &Settings) -> Vec<f32> {
+    (1..=255)
+        .map(|byte| {
+            // Positive floats are in the order of their bits.
+            let (mut below, mut from) = (0, f32::INFINITY.to_bits());
+            while from - below > 1 {
+                let middle = below + (from - below) / 2;
+                let reaches = settings.byte(f32::from_bits(middle)) >= byte;
+                *(if reaches { &mut from } else { &mut below }) = middle;
+            }
+            let least = f32::from_bits(from);
+            if least.is_finite() { least } else { f32::NAN }
+        })
+        .collect()
 }
 
 /// A colour that is bright enough to see, spread by a multiplicative hash. Triangles of one
@@ -61,7 +78,7 @@ fn id_color([geometry, primitive, instance]: [u32; 3]) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Transfer;
+    use crate::scene::{Tone, Transfer};
 
     fn bytes(pixel: [f32; 3], view: View, settings: &Settings) -> Vec<u8> {
         encode(&Film { size: [1, 1], view, pixels: vec![pixel] }, settings)
@@ -78,6 +95,28 @@ mod tests {
     fn exposure_is_a_factor_of_two_to_its_power() {
         let settings = Settings { transfer: Transfer::None, exposure: -1.0, ..Settings::default() };
         assert_eq!(bytes([1.0, 2.0, 4.0], View::Beauty, &settings), [128, 255, 255]);
+    }
+
+    #[test]
+    fn every_radiance_gives_the_byte_of_the_formula() {
+        for tone in [Tone::None, Tone::Reinhard, Tone::Aces] {
+            for (transfer, exposure) in
+                [(Transfer::Srgb, 0.0), (Transfer::None, 1.5), (Transfer::Srgb, -140.0)]
+            {
+                let settings = Settings { exposure, tone, transfer, ..Settings::default() };
+                let mut values: Vec<f32> = steps(&settings)
+                    .iter()
+                    .flat_map(|x| [x.next_down(), *x, x.next_up()])
+                    .collect();
+                values.extend((0..0x7f80).map(|bits| f32::from_bits(bits << 16)));
+                values.extend([-1.0, -0.0, f32::NAN, f32::MAX]);
+                let pixels: Vec<_> = values.iter().map(|&x| [x; 3]).collect();
+                let film = Film { size: [values.len() as u32, 1], view: View::Beauty, pixels };
+                let expected: Vec<u8> =
+                    values.iter().flat_map(|&x| [settings.byte(x); 3]).collect();
+                assert!(encode(&film, &settings) == expected, "{settings:?}");
+            }
+        }
     }
 
     #[test]

@@ -154,11 +154,13 @@ fn a_heat_map_that_is_no_png_is_refused() {
 fn flags_without_an_output_that_they_are_about_are_refused() {
     assert!(refused("render scene.toml -o a.png --half").contains("--half"));
     assert!(refused("render scene.toml -o a.exr --exposure 1").contains("--exposure"));
+    assert!(refused("render scene.toml -o a.exr --tone aces").contains("--tone"));
 }
 
 #[test]
 fn flags_that_say_nothing_to_a_view_are_refused() {
     assert!(refused("render scene.toml -o a.png --view id --exposure 1").contains("--exposure"));
+    assert!(refused("render scene.toml -o a.png --view id --tone none").contains("--tone"));
     assert!(refused("render scene.toml -o a.exr --view depth --half").contains("--half"));
     assert!(refused("render scene.toml -o a.exr --view depth --spp 4").contains("--spp"));
 }
@@ -168,6 +170,12 @@ fn an_exposure_that_is_no_number_is_refused() {
     for bad in ["nan", "inf", "much"] {
         assert!(refused(&format!("render scene.toml -o a.png --exposure {bad}")).contains(bad));
     }
+}
+
+#[test]
+fn a_tone_curve_that_is_none_is_refused_with_those_that_there_are() {
+    let message = refused("render scene.toml -o a.png --tone filmic");
+    assert!(message.contains("filmic") && message.contains("none, reinhard, aces"), "{message}");
 }
 
 #[test]

@@ -205,32 +205,6 @@ fn view_id_tells_objects_apart() {
 }
 
 #[test]
-fn exposure_doubles_the_light_of_a_png() {
-    let folder = Folder::with(&SPHERE.replace("[film]", "[film]\ntransfer = \"none\""));
-    let (_, plain) = pixels(&made(&folder, "", "a.png"));
-    let (_, bright) = pixels(&made(&folder, "--exposure 1", "b.png"));
-    assert!(bright.iter().any(|&x| x > 0));
-    for (a, b) in plain.iter().zip(&bright) {
-        let expected = (u16::from(*a) * 2).min(255);
-        assert!(u16::from(*b).abs_diff(expected) <= 1, "{a} became {b}");
-    }
-}
-
-#[test]
-fn exposure_can_be_negative() {
-    let folder = Folder::with(SPHERE);
-    assert_ne!(made(&folder, "", "a.png"), made(&folder, "--exposure -2.5", "b.png"));
-}
-
-#[test]
-fn exposure_never_changes_an_exr() {
-    let folder = Folder::with(SPHERE);
-    let plain = made(&folder, "", "plain.exr");
-    folder.run("render scene.toml --exposure 3 -o a.png -o bright.exr").good();
-    assert!(plain == folder.read("bright.exr"));
-}
-
-#[test]
 fn half_stores_the_same_radiance_in_16_bits() {
     let folder = Folder::with(SPHERE);
     let (full, half) = (made(&folder, "", "full.exr"), made(&folder, "--half", "half.exr"));

@@ -11,6 +11,7 @@ mod geometry;
 mod lights;
 mod materials;
 mod nodes;
+mod optics;
 mod textures;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};

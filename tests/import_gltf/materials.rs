@@ -73,15 +73,6 @@ fn specular_glossiness() {
 }
 
 #[test]
-fn alpha_is_drawn_opaque_with_a_warning() {
-    for (mode, word) in [("MASK", "drawn whole"), ("BLEND", "drawn opaque")] {
-        let mut model = Model::triangle();
-        model.material(json!({"alphaMode": mode}));
-        assert_warns(&model.load().unwrap(), word);
-    }
-}
-
-#[test]
 fn extension_used_but_not_required_is_a_warning() {
     let mut model = Model::triangle();
     model.json["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);

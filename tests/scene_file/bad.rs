@@ -215,6 +215,8 @@ fn a_word_that_is_no_choice_is_at_the_word() {
         ("film.transfer = ¦\"sRGB\"", "did you mean `srgb`?"),
         ("film.transfer = ¦\"linear\"", "did you mean `none`?"),
         ("film.transfer = ¦\"rec2020\"", "it is one of `srgb` and `none`"),
+        ("film.tone = ¦\"filmic\"", "did you mean `aces`?"),
+        ("film.tone = ¦\"log\"", "it is one of `none`, `reinhard` and `aces`"),
         ("film.sample_position = ¦\"centre\"", "did you mean `center`?"),
         ("[[light]]\nkind = ¦\"sun\"", "did you mean `directional`?"),
         ("[[light]]\nkind = \"point\"\nfalloff = ¦\"square\"", "it is one of"),

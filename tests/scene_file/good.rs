@@ -2,7 +2,7 @@
 
 use envers::scene::{
     Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition, Shadow,
-    Sphere, Transfer,
+    Sphere, Tone, Transfer,
 };
 use glam::{DVec3, Vec3};
 
@@ -23,13 +23,15 @@ fn a_film_left_out_has_the_librarys_defaults() {
 fn every_key_of_the_film_is_read() {
     let film = seen(
         "[film]\nsize = [1000, 500]\nspp = 4\ntransfer = \"none\"\nbackground = \"#323232\"\n\
-         sample_position = \"corner\"\nmax_depth = 16\ncutoff = 0.25\n",
+         sample_position = \"corner\"\nexposure = -1.5\ntone = \"aces\"\nmax_depth = 16\ncutoff = 0.25\n",
     )
     .film;
     let expected = FilmSettings {
         size: [1000, 500],
         spp: 4,
         transfer: Transfer::None,
+        exposure: -1.5,
+        tone: Tone::Aces,
         background: Vec3::splat(50.0 / 255.0),
         sample_position: SamplePosition::Corner,
         max_depth: 16,
@@ -182,10 +184,12 @@ fn things_without_material_share_a_plain_grey() {
 fn every_key_of_a_plane_is_read() {
     let scene = seen(
         "[[material]]\nname = \"a\"\n[[plane]]\npoint = [0, -1, 0]\nnormal = [0, 5, 0]\n\
-         material = \"a\"\nchecker = { colors = [[1, 0, 0], 0.5], size = 2 }\ncasts_shadow = false",
+         material = \"a\"\nchecker = { colors = [[1, 0, 0], 0.5], size = 2 }\n\
+         texture_size = 3\ncasts_shadow = false",
     );
     let plane = scene.planes[0];
     assert_eq!((plane.point, plane.normal, plane.casts_shadow), (-DVec3::Y, DVec3::Y, false));
+    assert_eq!(plane.texture_size, 3.0);
     let checker = plane.checker.unwrap();
     assert_eq!((checker.colors, checker.size), ([Vec3::X, Vec3::splat(0.5)], 2.0));
 }

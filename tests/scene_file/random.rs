@@ -13,6 +13,8 @@ spp = 1
 transfer = "none"
 background = "#323232"
 sample_position = "corner"
+exposure = -0.5
+tone = "reinhard"
 
 [[camera]]
 name = "é"
@@ -58,6 +60,7 @@ focal_px = [500, 600]
 point = [0, 1, 0]
 normal = [0, -1, 0]
 checker = { colors = ["#fff", 0.25], size = 1.5 }
+texture_size = 2
 
 [[light]]
 kind = "spot"

@@ -4,11 +4,10 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 use gltf::json;
-use gltf::json::material::AlphaMode;
 use gltf::json::texture::Info;
-use gltf::json::validation::Checked;
 
 use super::buffers::get;
+use super::optics::{self, Transmission};
 use super::texture::{Textures, UvMap};
 use crate::error::Result;
 use crate::load::tally::Tally;
@@ -16,8 +15,9 @@ use crate::scene::{Material, MaterialId, Scene, TextureId, Transfer};
 
 /// The range of shininess: roughness 1 would give 0, and roughness 0 infinity.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
-/// What a surface that is no metal reflects head-on, by glTF's model.
-const DIELECTRIC: f32 = 0.04;
+/// What is said of the means of textures.
+pub const NOT_SAMPLED: &str = "{} textures of roughness, metalness, gloss or transmission are not \
+                           sampled yet: their mean holds for all of the surface";
 
 /// The materials of a file, made when a primitive first uses them.
 pub struct Materials<'a> {
@@ -67,12 +67,13 @@ impl<'a> Materials<'a> {
     }
 }
 
-struct Maker<'m, 'a> {
-    source: &'a json::Material,
-    at: String,
+/// A material being made.
+pub struct Maker<'m, 'a> {
+    pub source: &'a json::Material,
+    pub at: String,
     all: &'m mut Materials<'a>,
-    scene: &'m mut Scene,
-    tally: &'m mut Tally,
+    pub scene: &'m mut Scene,
+    pub tally: &'m mut Tally,
 }
 
 impl<'a> Maker<'_, 'a> {
@@ -81,20 +82,24 @@ impl<'a> Maker<'_, 'a> {
         let mut material =
             Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
         let extensions = source.extensions.as_ref();
-        let uv = if let Some(old) = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref()) {
-            self.specular_glossiness(old, &mut material)?
-        } else {
-            self.metallic_roughness(&mut material)?
+        let old = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
+        let uv = match old {
+            Some(old) => self.specular_glossiness(old, &mut material)?,
+            None => self.metallic_roughness(&mut material)?,
         };
+        let picture = material.diffuse_map;
         let uv = if extensions.is_some_and(|e| e.unlit.is_some()) {
             material.emission = self.base_color();
             material.emission_map = material.diffuse_map.take();
             (material.diffuse, material.specular) = (Vec3::ZERO, Vec3::ZERO);
+            (material.reflect, material.transmit) = (Vec3::ZERO, Vec3::ZERO);
             uv
         } else {
             self.emission(&mut material, uv)?
         };
-        self.alpha();
+        let base = self.source.pbr_metallic_roughness.base_color_factor.0;
+        let [.., alpha] = old.map_or(base, |old| old.diffuse_factor.0);
+        self.alpha(unit(alpha), picture, &mut material);
         Ok(Made { id: self.scene.add_material(material), uv })
     }
 
@@ -113,9 +118,25 @@ impl<'a> Maker<'_, 'a> {
             metallic *= m;
         }
         let metallic = unit(metallic);
-        material.diffuse = base * (1.0 - metallic);
-        material.specular = Vec3::splat(DIELECTRIC).lerp(base, metallic);
+        let transmission = self.transmission()?;
+        material.specular = Vec3::splat(optics::head_on(transmission.ior)).lerp(base, metallic);
         material.shininess = shininess(roughness);
+        let mirror = metallic * optics::sharpness(roughness);
+        let through = (1.0 - metallic) * transmission.share;
+        if mirror > 0.0 || through > 0.0 {
+            let tint = self.tint(base)?;
+            material.reflect = tint * mirror;
+            Transmission { share: through, ..transmission }.apply(tint, material);
+        }
+        if through > 0.0 && optics::sharpness(roughness) == 0.0 {
+            let at = &self.at;
+            self.tally.add("{} frosted materials are drawn clear", 1, || at.clone());
+        }
+        // What is left of the whole is scattered; the share that glTF means is within it.
+        let rest = Vec3::ONE - material.reflect - material.transmit;
+        let scattered = (1.0 - metallic) * (1.0 - transmission.share);
+        material.diffuse =
+            base * rest.map(|x| if x > 0.0 { (scattered / x).min(1.0) } else { 0.0 });
         let Some(info) = &pbr.base_color_texture else { return Ok(None) };
         material.diffuse_map = Some(self.texture(info, "pbrMetallicRoughness.baseColorTexture")?);
         Ok(Some(UvMap::of(info)))
@@ -135,7 +156,7 @@ impl<'a> Maker<'_, 'a> {
         material.shininess = shininess(1.0 - old.glossiness_factor.0);
         if let Some(info) = &old.specular_glossiness_texture {
             let place = format!("{}.{extension}.specularGlossinessTexture", self.at);
-            let [r, g, b, a] = self.mean(info, Transfer::Srgb, &place)?;
+            let [r, g, b, a] = self.mean(info, Transfer::Srgb, &place, NOT_SAMPLED)?;
             material.specular *= Vec3::new(r, g, b);
             material.shininess = shininess(1.0 - old.glossiness_factor.0 * a);
         }
@@ -167,16 +188,6 @@ impl<'a> Maker<'_, 'a> {
         Ok(uv.or(Some(own)))
     }
 
-    fn alpha(&mut self) {
-        let reason = match self.source.alpha_mode {
-            Checked::Valid(AlphaMode::Mask) => "{} materials cut out by alpha are drawn whole",
-            Checked::Valid(AlphaMode::Blend) => "{} see-through materials are drawn opaque",
-            Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => return,
-        };
-        let at = &self.at;
-        self.tally.add(reason, 1, || at.clone());
-    }
-
     fn texture(&mut self, info: &Info, place: &str) -> Result<TextureId> {
         let index = info.index.value();
         if let Some(&id) = self.all.texture_ids.get(&index) {
@@ -193,15 +204,20 @@ impl<'a> Maker<'_, 'a> {
     /// is nearer to what the file means than its factors alone, which are usually 1.
     fn mean_roughness_and_metalness(&mut self, info: &Info) -> Result<[f32; 2]> {
         let place = format!("{}.pbrMetallicRoughness.metallicRoughnessTexture", self.at);
-        let [_, green, blue, _] = self.mean(info, Transfer::None, &place)?;
+        let [_, green, blue, _] = self.mean(info, Transfer::None, &place, NOT_SAMPLED)?;
         Ok([green, blue])
     }
 
-    fn mean(&mut self, info: &Info, transfer: Transfer, place: &str) -> Result<[f32; 4]> {
+    /// The mean of a texture's four channels; `reason` is why no more of it is used.
+    pub fn mean(
+        &mut self,
+        info: &Info,
+        transfer: Transfer,
+        place: &str,
+        reason: &str,
+    ) -> Result<[f32; 4]> {
         let by = format!("{place}.index");
         let texture = self.all.textures.get(info.index.value(), transfer, &by, self.tally)?;
-        let reason = "{} textures of roughness, metalness or gloss are not sampled yet: their mean \
-                      holds for all of the surface";
         self.tally.add(reason, 1, || place.to_owned());
         let mut counts = [[0u64; 256]; 4];
         for texel in &texture.image.texels {
@@ -239,7 +255,7 @@ fn shininess(roughness: f32) -> f32 {
 }
 
 /// A factor within [0, 1]; what is no number is 1, the default.
-fn unit(x: f32) -> f32 {
+pub fn unit(x: f32) -> f32 {
     if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) }
 }
 

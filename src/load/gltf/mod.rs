@@ -14,6 +14,7 @@ mod extensions;
 mod lights;
 mod material;
 mod nodes;
+mod optics;
 mod primitive;
 mod texture;
 mod topology;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::illumination::Illumination;
 use super::lines::{decode, statements};
 use super::map::Map;
 use crate::load::picture;
@@ -121,10 +122,10 @@ impl Library {
             }
             material.emission_map = self.texture(map, folder, scene, tally);
         }
-        let opacity = source.dissolve.unwrap_or(1.0);
-        let transparency = other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
-        if opacity < 1.0 || transparency > 0.0 || source.dissolve_texture.is_some() {
-            tally.add("{} see-through materials are drawn opaque", 1, name);
+        let illumination = illumination(source);
+        illumination.apply(&mut material);
+        if illumination.opacity == 0.0 {
+            tally.add("{} materials have an opacity of 0 (d 0, or Tr 1)", 1, name);
         }
         let textures =
             [&source.specular_texture, &source.normal_texture, &source.shininess_texture]
@@ -133,10 +134,8 @@ impl Library {
                 .count();
         let reason = "{} textures of highlights and bumps are not read";
         tally.add(reason, textures as u64, name);
-        if matches!(source.illumination_model, Some(3..=9)) {
-            let reason = "{} materials that mirror or refract are drawn without it";
-            tally.add(reason, 1, name);
-        }
+        let opacities = u64::from(source.dissolve_texture.is_some());
+        tally.add("{} textures of opacity are not read", opacities, name);
         material
     }
 
@@ -169,6 +168,22 @@ impl Library {
         });
         self.textures.insert(key, id);
         Some(id)
+    }
+}
+
+/// What [`clean`] has left of a material's illumination.
+fn illumination(source: &tobj::Material) -> Illumination {
+    let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
+    let transparency = other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
+    let filter = other("Tf").map(|tf| {
+        let mut numbers = tf.split_whitespace().flat_map(str::parse);
+        Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
+    });
+    Illumination {
+        model: source.illumination_model.unwrap_or(2),
+        opacity: source.dissolve.unwrap_or(1.0 - transparency).clamp(0.0, 1.0),
+        filter,
+        ior: source.optical_density,
     }
 }
 
@@ -216,9 +231,9 @@ fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
         let _ = match s.keyword.to_ascii_lowercase().as_str() {
             "newmtl" if rest.is_empty() => writeln!(out, "newmtl {UNNAMED}"),
             "newmtl" => writeln!(out, "newmtl {rest}"),
-            key @ ("ka" | "kd" | "ks" | "ke") => {
+            key @ ("ka" | "kd" | "ks" | "ke" | "tf") => {
                 let numbers: Option<Vec<f32>> = rest.split_whitespace().map(finite).collect();
-                let key = key.replacen('k', "K", 1);
+                let key = key.replacen('k', "K", 1).replacen('t', "T", 1);
                 match numbers.as_deref() {
                     // One number is a grey, as the format says.
                     Some([grey]) => writeln!(out, "{key} {grey} {grey} {grey}"),
@@ -229,14 +244,11 @@ fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
                     }
                 }
             }
-            key @ ("ns" | "d" | "tr") => {
+            key @ ("ns" | "ni" | "d" | "tr") => {
+                let key = key.replacen('n', "N", 1).replacen('t', "T", 1);
                 // `d -halo 0.5` has its number last.
                 match rest.split_whitespace().next_back().and_then(finite) {
-                    Some(number) => match key {
-                        "ns" => writeln!(out, "Ns {number}"),
-                        "d" => writeln!(out, "d {number}"),
-                        _ => writeln!(out, "Tr {number}"),
-                    },
+                    Some(number) => writeln!(out, "{key} {number}"),
                     None => {
                         bad(tally);
                         Ok(())
@@ -278,7 +290,7 @@ mod tests {
     #[test]
     fn broken_lines_do_not_reach_tobj() {
         let mut tally = Tally::default();
-        let text = "newmtl a\nKd 1\nKs 1 2\nNs x\nKe spectral a.rfl\nd -halo 0.5\nillum 99\n";
+        let text = "newmtl a\nKd 1\nKs 1 2\nNs x\nTf spectral a.rfl\nd -halo 0.5\nillum 99\n";
         let clean = clean(text, Path::new("a.mtl"), &mut tally);
         assert_eq!(clean, "newmtl a\nKd 1 1 1\nd 0.5\n");
         assert!(tally.sentences(Path::new("a"))[0].contains("4 lines"));

@@ -4,6 +4,7 @@
 //! separate indices, and this module makes meshes of them. What is read, and how, stands in
 //! docs/formats.md.
 
+mod illumination;
 mod library;
 mod lines;
 mod map;

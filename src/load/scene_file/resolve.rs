@@ -73,6 +73,8 @@ fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
         size: table.size.as_ref().map_or(default.size, |size| size.value.0),
         spp: table.spp.as_ref().map_or(default.spp, |spp| spp.value.0),
         transfer,
+        exposure: table.exposure.map_or(default.exposure, |ev| ev.0),
+        tone: table.tone.unwrap_or(default.tone),
         background: table.background.map_or(default.background, |c| c.linear(transfer)),
         sample_position: table.sample_position.unwrap_or(default.sample_position),
         max_depth: table.max_depth.map_or(default.max_depth, |depth| depth.0),
@@ -266,6 +268,7 @@ impl Resolver<'_> {
         });
         let plane = Plane {
             checker,
+            texture_size: table.texture_size.map_or(1.0, |size| size.0),
             casts_shadow: table.casts_shadow.unwrap_or(true),
             ..Plane::new(table.point.0, table.normal.0, material)
         };

@@ -10,10 +10,10 @@ use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
-    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Point, Priority, Rotation,
-    Scale, ShadowKind, Share, Shininess, Size, Spot, Triple, Whole,
+    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, Priority,
+    Rotation, Scale, ShadowKind, Share, Shininess, Size, Spot, Triple, Whole,
 };
-use crate::scene::{Falloff, SamplePosition, Transfer};
+use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
 /// A scene for envers: what stands in it, what lights it, and who looks at it.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -52,6 +52,12 @@ pub struct FilmTable {
     /// How the PNG encodes light, and what hex colours are decoded by: the sRGB curve, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,
+    /// The PNG's light is multiplied with 2 to the power of this.
+    #[schemars(extend("default" = 0))]
+    pub exposure: Option<Number>,
+    /// How the PNG shows what is brighter than white: as white, or by a tone curve.
+    #[schemars(extend("default" = "none"))]
+    pub tone: Option<Tone>,
     /// The colour where there is nothing.
     #[schemars(extend("default" = "#000000"))]
     pub background: Option<Color>,
@@ -170,6 +176,9 @@ pub struct PlaneTable {
     pub material: Option<At<String>>,
     /// A checker in place of the material's diffuse colour.
     pub checker: Option<Table<CheckerTable>>,
+    /// The side of the square that a picture of its material takes before it repeats.
+    #[schemars(extend("default" = 1))]
+    pub texture_size: Option<Length>,
     /// Whether it keeps light from what lies behind it.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,

@@ -107,7 +107,7 @@ fn side(draw: &Draw) -> u32 {
 /// The PNG's bytes of a picture, and how many rays it took.
 fn picture(scene: &Scene, options: &Options, camera: usize) -> Result<(Vec<u8>, u64)> {
     let rendering = render(scene, &Options { camera, ..options.clone() }, &|_| {})?;
-    let settings = Settings { transfer: scene.film.transfer, ..Settings::default() };
+    let settings = Settings::of(&scene.film);
     Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
 }
 

@@ -192,7 +192,7 @@ impl Comparer<'_> {
     /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
     fn pictures(&self, heatmap: &mut Film) -> (Differing, Tally) {
         let options = Options { camera: self.camera, ..Options::default() };
-        let settings = Settings { transfer: self.scene.film.transfer, ..Settings::default() };
+        let settings = Settings::of(&self.scene.film);
         let film = |intersector: &dyn Intersector| {
             render::with_intersector(self.scene, &options, intersector, &|_| {}).0
         };

@@ -1,0 +1,49 @@
+//! Mirrors and glass of an MTL material: its illumination model, opacity, index and filter.
+
+use glam::Vec3;
+
+use crate::scene::Material;
+
+/// The index of refraction of glass that names none.
+const GLASS: f32 = 1.5;
+
+/// What a material says of light that it does not scatter.
+pub struct Illumination {
+    /// `illum`, from 0 to 10; 2 where missing.
+    pub model: u8,
+    /// `d`, or 1 − `Tr`, in \[0, 1\].
+    pub opacity: f32,
+    /// `Tf`, the colour of what passes through.
+    pub filter: Option<Vec3>,
+    /// `Ni`.
+    pub ior: Option<f32>,
+}
+
+impl Illumination {
+    /// Gives the material, whose `Ks` is its specular colour, its mirror and its glass.
+    pub fn apply(&self, material: &mut Material) {
+        // Programs write 4 to 9 for opaque things too, and a filter of 1 for anything.
+        let is_glass = matches!(self.model, 4 | 6 | 7) && (self.opacity < 1.0 || self.has_filter());
+        if is_glass {
+            let filter = self.filter.unwrap_or(Vec3::ONE).min(Vec3::ONE);
+            let share = if self.opacity < 1.0 { 1.0 - self.opacity } else { 1.0 };
+            material.transmit = filter * share;
+            // Model 4 lets light straight through; 6 and 7 refract it.
+            material.thin = self.model == 4;
+            material.ior = f64::from(self.ior.unwrap_or(GLASS).clamp(0.01, 100.0));
+            return;
+        }
+        if matches!(self.model, 3 | 5) {
+            material.reflect = material.specular.min(Vec3::ONE) * self.opacity;
+        }
+        if self.opacity < 1.0 {
+            material.transmit = Vec3::splat(1.0 - self.opacity);
+            material.thin = true;
+            material.ior = 1.0;
+        }
+    }
+
+    fn has_filter(&self) -> bool {
+        self.filter.is_some_and(|filter| filter != Vec3::ZERO)
+    }
+}
