@@ -135,6 +135,71 @@ fn alpha_100() {
 }
 
 #[test]
+fn two_spheres_without_shadows() {
+    check("tutorial/4-0-two-spheres", [160, 80], 4);
+}
+
+#[test]
+fn shadows() {
+    check("tutorial/4-1-shadows", [160, 80], 4);
+}
+
+#[test]
+fn recursion() {
+    check("tutorial/4-2-recursion", [160, 80], 4);
+}
+
+#[test]
+fn reflections() {
+    check("tutorial/4-2-reflections", [160, 80], 4);
+}
+
+#[test]
+fn two_mirrors() {
+    check("tutorial/4-2-two-mirrors", [160, 80], 4);
+}
+
+#[test]
+fn bodies() {
+    check("tutorial/4-3-bodies", [160, 80], 4);
+}
+
+#[test]
+fn transparency() {
+    check("tutorial/4-3-transparency", [160, 80], 4);
+}
+
+#[test]
+fn plane() {
+    check("tutorial/5-plane", [160, 80], 4);
+}
+
+#[test]
+fn texture_on_planes() {
+    check("tutorial/5-texture", [160, 80], 4);
+}
+
+#[test]
+fn water() {
+    check("tutorial/5-water", [160, 80], 4);
+}
+
+#[test]
+fn broken_stick() {
+    check("tutorial/6-1-broken-stick", [160, 80], 4);
+}
+
+#[test]
+fn classes() {
+    check("tutorial/6-2-classes", [160, 80], 4);
+}
+
+#[test]
+fn terms_of_phong() {
+    check("tutorial/6-3-phong-terms", [160, 80], 4);
+}
+
+#[test]
 fn room() {
     check("room", [160, 90], 4);
 }
