@@ -420,6 +420,7 @@ fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
     let [w, h] = scene.film.size;
     scene.film.size = [width, (width * h / w).max(1)];
     scene.film.spp = 1;
+    scene.film.max_depth = 16;
     let certified = Backend::default().build(&scene, Precision::Certified, 0).unwrap();
     let oracle = Oracle::new(&scene);
     for view in [View::Id, View::Depth, View::Beauty] {
