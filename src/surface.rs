@@ -124,10 +124,12 @@ fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
         let from = position - plane.point;
         let (x, y) = (from.dot(a), from.dot(b));
         // The whole part is taken off in f64, so that the pattern stays sharp far out.
-        surface.uv = [x, y].map(|x| {
-            let repeats = x / plane.texture_size;
-            (repeats - repeats.floor()) as f32
-        });
+        if textured {
+            surface.uv = [x, y].map(|x| {
+                let repeats = x / plane.texture_size;
+                (repeats - repeats.floor()) as f32
+            });
+        }
         surface.checker = plane.checker.map(|checker| {
             let odd = |x: f64| {
                 let half = (x / checker.size).floor() * 0.5;

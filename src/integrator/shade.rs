@@ -179,6 +179,7 @@ impl Shadows {
 }
 
 /// Adds to the radiance along ray `i`, unless it is spoilt already.
+#[inline(always)]
 fn add(i: u32, radiance: &mut [Vec3], with: Vec3, spoilt: &mut Vec<(u32, Cause)>) {
     let to = &mut radiance[i as usize];
     let sum = *to + with;
@@ -193,6 +194,7 @@ fn add(i: u32, radiance: &mut [Vec3], with: Vec3, spoilt: &mut Vec<(u32, Cause)>
 
 /// Makes the radiance along ray `i` NaN, so that it stays out of the picture, and keeps what did
 /// it first.
+#[cold]
 fn spoil(i: u32, radiance: &mut Vec3, cause: Cause, spoilt: &mut Vec<(u32, Cause)>) {
     if !radiance.is_nan() {
         spoilt.push((i, cause));

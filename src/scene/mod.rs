@@ -95,7 +95,7 @@ impl Scene {
     ///
     /// # Panics
     /// When the primitive is not one of this scene.
-    #[inline]
+    #[inline(always)]
     pub fn blocks_light(&self, id: PrimitiveId) -> bool {
         let material = || self.materials.get(self.material_of(id).0 as usize);
         self.casts_shadow(id) && material().is_none_or(|m| m.transmit == glam::Vec3::ZERO)

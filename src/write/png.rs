@@ -33,9 +33,9 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
-    let steps = if film.view == View::Beauty { steps(settings) } else { Vec::new() };
+    let steps = if film.view == View::Beauty { steps(settings) } else { [f32::NAN; 256] };
     let color = |pixel: &[f32; 3]| match film.view {
-        View::Beauty => pixel.map(|x| steps.partition_point(|&step| step <= x) as u8),
+        View::Beauty => pixel.map(|x| look_up(&steps, x)),
         View::Normal if *pixel == [0.0; 3] => [0; 3],
         View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
         View::Depth if !pixel[0].is_finite() => [0; 3],
@@ -46,22 +46,31 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     film.pixels.par_iter().flat_map_iter(color).collect()
 }
 
-/// The least radiance that gives each byte from 1 on, by [`Settings::byte`], which never falls; no
+/// The least radiance that gives more than each byte, by [`Settings::byte`], which never falls; no
 /// number where none does. To look a byte up here is several times faster than to work it out.
-fn steps(settings: &Settings) -> Vec<f32> {
-    (1..=255)
-        .map(|byte| {
-            // Positive floats are in the order of their bits.
-            let (mut below, mut from) = (0, f32::INFINITY.to_bits());
-            while from - below > 1 {
-                let middle = below + (from - below) / 2;
-                let reaches = settings.byte(f32::from_bits(middle)) >= byte;
-                *(if reaches { &mut from } else { &mut below }) = middle;
-            }
-            let least = f32::from_bits(from);
-            if least.is_finite() { least } else { f32::NAN }
-        })
-        .collect()
+fn steps(settings: &Settings) -> [f32; 256] {
+    std::array::from_fn(|byte| {
+        // Positive floats are in the order of their bits.
+        let (mut below, mut from) = (0, f32::INFINITY.to_bits());
+        while from - below > 1 {
+            let middle = below + (from - below) / 2;
+            let exceeds = usize::from(settings.byte(f32::from_bits(middle))) > byte;
+            *(if exceeds { &mut from } else { &mut below }) = middle;
+        }
+        let least = f32::from_bits(from);
+        if least.is_finite() { least } else { f32::NAN }
+    })
+}
+
+/// The number of steps up to `radiance`. The index is a byte, which is never outside.
+#[inline(always)]
+fn look_up(steps: &[f32; 256], radiance: f32) -> u8 {
+    let mut byte = 0u8;
+    for half in [128, 64, 32, 16, 8, 4, 2, 1] {
+        let next = byte + (half - 1);
+        byte += if steps[usize::from(next)] <= radiance { half } else { 0 };
+    }
+    byte
 }
 
 /// A colour that is bright enough to see, spread by a multiplicative hash. Triangles of one

@@ -85,11 +85,15 @@ impl Edges {
 #[inline(always)]
 pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<Crossing> {
     let edges = Edges::new(triangle, origin, direction);
-    edges.crosses().then(|| {
-        let (u, v) = edges.weights();
-        let exact = || certified::round(triangle, origin, direction).t;
-        Crossing { t: if edges.flat { exact() } else { edges.t }, u, v }
-    })
+    if !edges.crosses() {
+        return None;
+    }
+    let (u, v) = edges.weights();
+    let t = match edges.flat {
+        true => certified::round(triangle, origin, direction).t,
+        false => edges.t,
+    };
+    Some(Crossing { t, u, v })
 }
 
 /// The point with weights `u` and `v`.
