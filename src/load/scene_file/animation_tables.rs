@@ -10,8 +10,8 @@ use serde::{Deserialize, Deserializer};
 
 use super::spanned::{At, Tables};
 use super::values::{
-    Amount, Coordinate, Direction, FieldOfView, Length, Point, Rate, Rotation, Scale, Seconds,
-    Spot, Whole,
+    Amount, Coordinate, Direction, FieldOfView, Length, Point, PointOrName, Rate, Rotation, Scale,
+    Seconds, Whole,
 };
 
 /// What moves, and for how long.
@@ -38,7 +38,7 @@ pub struct OrbitTable {
     /// The name of the object that goes round.
     pub object: At<String>,
     /// The centre: a point, or the name of an object, which may move itself.
-    pub around: At<Spot>,
+    pub around: At<PointOrName>,
     /// Seconds for one turn; without it the object only keeps beside its centre.
     pub period: Option<Seconds>,
     /// The axis, of any length but zero: counterclockwise seen against it.

@@ -10,8 +10,8 @@ use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
-    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, Priority,
-    Rotation, Scale, ShadowKind, Share, Shininess, Size, Spot, Triple, Whole,
+    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
+    Priority, Rotation, Scale, ShadowKind, Share, Shininess, Size, Triple, Whole,
 };
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
@@ -83,7 +83,7 @@ pub struct CameraTable {
     /// Where it stands.
     pub position: Point,
     /// The point that it looks at, or the name of the object.
-    pub look_at: Option<At<Spot>>,
+    pub look_at: Option<At<PointOrName>>,
     /// The direction that it looks in, in place of `look_at`.
     pub direction: Option<At<Direction>>,
     /// What is upward in the picture.
