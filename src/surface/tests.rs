@@ -21,6 +21,19 @@ fn scene() -> Scene {
     scene
 }
 
+/// Gives the material a picture, so that texture coordinates are asked for.
+fn add_texture(scene: &mut Scene) {
+    let image =
+        crate::scene::Image { name: String::new(), width: 1, height: 1, texels: vec![[255; 4]] };
+    let texture = scene.add_texture(crate::scene::Texture {
+        image: image.into(),
+        transfer: crate::scene::Transfer::None,
+        wrap: Default::default(),
+        filter: Default::default(),
+    });
+    scene.materials[0].diffuse_map = Some(texture);
+}
+
 fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
     Hit { t, u, v, id }
 }
@@ -71,6 +84,7 @@ fn checker_alternates_across_the_origin() {
 fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
     let uv = |x: f64, z: f64| {
         let mut scene = scene();
+        add_texture(&mut scene);
         (scene.planes[0].point, scene.planes[0].texture_size) = (DVec3::new(1.0, 0.0, 2.0), 4.0);
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
         Surface::new(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
@@ -82,15 +96,7 @@ fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
 #[test]
 fn attributes_are_interpolated_by_the_weights() {
     let mut scene = scene();
-    let image =
-        crate::scene::Image { name: String::new(), width: 1, height: 1, texels: vec![[255; 4]] };
-    let texture = scene.add_texture(crate::scene::Texture {
-        image: image.into(),
-        transfer: crate::scene::Transfer::None,
-        wrap: Default::default(),
-        filter: Default::default(),
-    });
-    scene.materials[0].diffuse_map = Some(texture);
+    add_texture(&mut scene);
     let ray = Ray::new(DVec3::new(0.25, 0.5, 1.0), DVec3::NEG_Z);
     let id = PrimitiveId::triangle(0, 0, 0);
     let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
