@@ -46,7 +46,11 @@ impl Surface {
             Geometry::Planes => on_plane(scene, ray, hit),
             Geometry::Mesh(_) => on_triangle(scene, hit),
         };
-        if surface.geometric_normal.dot(ray.direction) > 0.0 {
+        // A sphere that was gone into is left, though a ray that only touches it does both at one
+        // point, where its direction tells nothing.
+        let is_left = id.geometry == Geometry::Spheres
+            && ray.past.is_some_and(|past| past.through == Departure { id, side: Side::Back });
+        if is_left || surface.geometric_normal.dot(ray.direction) > 0.0 {
             surface.side = Side::Back;
             let outside_only = id.geometry == Geometry::Spheres
                 && !scene.materials[surface.material.0 as usize].double_sided;

@@ -126,6 +126,21 @@ fn surfaces_at_the_same_distance_are_each_met_once() {
 }
 
 #[test]
+fn a_ray_that_touches_a_sphere_goes_in_and_out_once() {
+    let mut scene = empty();
+    let far = DVec3::splat(1e9);
+    scene.spheres.push(Sphere::new(far + DVec3::Y, 1.0, MaterialId(0)));
+    let ray = [Ray::new(far - DVec3::Z * 3.0, DVec3::Z)];
+    for precision in [Precision::Fast, Precision::Certified] {
+        for backend in [Backend::Rust, Backend::default()] {
+            let intersector = backend.build(&scene, precision, 1).unwrap();
+            let found = crossings(&scene, &*intersector, &ray);
+            assert_eq!(found[0].iter().map(|h| h.t).collect::<Vec<_>>(), [3.0, 3.0]);
+        }
+    }
+}
+
+#[test]
 fn a_ray_that_left_a_surface_does_not_meet_it_after_it_went_through_another() {
     let mut scene = empty();
     scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
