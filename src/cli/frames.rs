@@ -185,7 +185,7 @@ impl Plan {
     /// The files to write of one frame.
     pub fn files(&self, frame: Option<u32>) -> impl Iterator<Item = PathBuf> {
         let named = self.stills.iter().map(move |path| numbered(path, frame));
-        named.filter(|path| !self.keeps || !path.exists())
+        named.filter(|path| !self.keeps || !path.is_file())
     }
 }
 

@@ -100,7 +100,7 @@ pub fn goal(text: &str) -> std::result::Result<Goal, String> {
 
 pub fn seconds(text: &str) -> std::result::Result<f64, String> {
     let in_range = |x: &f64| (0.0..=1e15).contains(x);
-    text.parse().ok().filter(in_range).ok_or("expected seconds, 0 or above".to_owned())
+    text.parse().ok().filter(in_range).ok_or("expected seconds, from 0 to 1e15".to_owned())
 }
 
 pub fn finite(text: &str) -> std::result::Result<f64, String> {

@@ -247,6 +247,19 @@ fn orbits_in_a_circle_are_refused() {
 }
 
 #[test]
+fn orbits_in_a_greater_circle_are_told_as_what_they_are() {
+    let link = |name: &str, around: &str| {
+        format!(
+            "[[sphere]]\nname = \"{name}\"\ncenter = [3, 0, 0]\nradius = 0.1\n\
+            [[animation.orbit]]\nobject = \"{name}\"\naround = \"{around}\"\n"
+        )
+    };
+    let rest = link("moon", "speck") + &link("speck", "ball");
+    let error = refused_of_the_ball(&format!("{}{rest}", ORBIT.replace("[0, 0, 0]", "¦\"moon\"")));
+    assert_eq!(error.message(), "`ball` goes round `moon`, which in the end goes round `ball`");
+}
+
+#[test]
 fn a_chain_of_ten_thousand_orbits_is_no_matter() {
     let link = |i: usize| {
         format!(

@@ -172,8 +172,11 @@ impl Builder<'_, '_> {
         let span = orbit.map_or(0..0, |orbit| orbit.orbit.around.span.clone());
         let message = match orbit.and_then(|orbit| orbit.around) {
             Some(around) if around != object => {
+                let next = |object: usize| self.orbits[object].as_ref().and_then(|o| o.around);
+                let direct = next(around) == Some(object);
                 let other = &self.names.objects[around].name;
-                format!("`{name}` goes round `{other}`, which goes round `{name}`")
+                let by = if direct { "goes" } else { "in the end goes" };
+                format!("`{name}` goes round `{other}`, which {by} round `{name}`")
             }
             _ => format!("`{name}` cannot go round itself"),
         };
