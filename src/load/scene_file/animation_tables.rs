@@ -8,18 +8,16 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use super::numbers::{Amount, Coordinate, FieldOfView, FrameCount, Length, Rate, Seconds};
 use super::spanned::{At, Tables};
-use super::values::{
-    Amount, Coordinate, Direction, FieldOfView, Length, Point, Rate, Rotation, Scale, Seconds,
-    Spot, Whole,
-};
+use super::values::{Direction, Point, Rotation, Scale, Spot};
 
 /// What moves, and for how long.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnimationTable {
     /// How many frames there are, from 1 to 1000000.
-    pub frames: At<Whole>,
+    pub frames: FrameCount,
     /// Frames in a second.
     #[schemars(extend("default" = 24))]
     pub fps: Option<Rate>,

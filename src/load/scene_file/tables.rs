@@ -8,11 +8,12 @@ use serde::Deserialize;
 
 use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
-use super::spanned::{At, OneOrMore, Table, Tables};
-use super::values::{
-    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, Priority,
-    Rotation, Scale, ShadowKind, Share, Shininess, Size, Spot, Triple, Whole,
+use super::numbers::{
+    Amount, Depth, FieldOfView, HalfAngle, Index, Length, Number, Priority, Samples, Share,
+    Shininess,
 };
+use super::spanned::{At, OneOrMore, Table, Tables};
+use super::values::{Direction, Point, Rotation, Scale, ShadowKind, Size, Spot, Triple};
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
 /// A scene for envers: what stands in it, what lights it, and who looks at it.
@@ -48,7 +49,7 @@ pub struct FilmTable {
     pub size: Option<At<Size>>,
     /// Samples per pixel, from 1 to 65536.
     #[schemars(extend("default" = 1))]
-    pub spp: Option<At<Whole>>,
+    pub spp: Option<Samples>,
     /// How the PNG encodes light, and what hex colours are decoded by: the sRGB curve, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,
