@@ -1,6 +1,9 @@
 //! What a hit means: position, normals, texture coordinates, material, side; and the rays that
 //! leave it.
 
+#[cfg(test)]
+mod tests;
+
 use glam::{DVec3, Vec3};
 
 use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
@@ -189,135 +192,4 @@ fn on_triangle(scene: &Scene, hit: &Hit) -> Surface {
             .sum();
     }
     surface
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::{Checker, Instance, Material, Mesh, Plane, Sphere};
-    use glam::DAffine3;
-
-    fn scene() -> Scene {
-        let mut scene = Scene::default();
-        let material = scene.add_material(Material::default());
-        scene.spheres.push(Sphere::new(DVec3::Z * 5.0, 1.0, material));
-        let mut plane = Plane::new(DVec3::ZERO, DVec3::Y, material);
-        plane.checker = Some(Checker { colors: [Vec3::ZERO, Vec3::ONE], size: 0.5 });
-        scene.planes.push(plane);
-        let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]],
-            triangles: vec![[0, 1, 2]],
-            normals: vec![[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]],
-            uvs: vec![[0., 0.], [1., 0.], [0., 1.]],
-            colors: vec![[1., 0., 0.], [0., 1., 0.], [0., 0., 1.]],
-            ..Mesh::default()
-        });
-        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
-        scene
-    }
-
-    fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
-        Hit { t, u, v, id }
-    }
-
-    #[test]
-    fn sphere_normal_points_outward() {
-        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-        let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-        assert_eq!((surface.position, surface.normal), (DVec3::Z * 4.0, DVec3::NEG_Z));
-        assert_eq!(surface.side, Side::Front);
-    }
-
-    #[test]
-    fn sphere_seen_from_inside_keeps_its_outward_normal() {
-        let ray = Ray::new(DVec3::Z * 5.0, DVec3::Z);
-        let surface = Surface::new(&scene(), &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-        assert_eq!((surface.normal, surface.side), (DVec3::Z, Side::Back));
-    }
-
-    #[test]
-    fn double_sided_sphere_turns_its_normal_inward() {
-        let mut scene = scene();
-        scene.materials[0].double_sided = true;
-        let ray = Ray::new(DVec3::Z * 5.0, DVec3::Z);
-        let surface = Surface::new(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-        assert_eq!(surface.normal, DVec3::NEG_Z);
-    }
-
-    #[test]
-    fn plane_turns_its_normal_to_the_viewer() {
-        let ray = Ray::new(-DVec3::Y, DVec3::Y);
-        let surface = Surface::new(&scene(), &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0)));
-        assert_eq!((surface.normal, surface.geometric_normal), (DVec3::NEG_Y, DVec3::Y));
-    }
-
-    #[test]
-    fn checker_alternates_across_the_origin() {
-        let color = |x: f64, z: f64| {
-            let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
-            let id = PrimitiveId::plane(0);
-            Surface::new(&scene(), &ray, &hit(1.0, 0.0, 0.0, id)).checker.unwrap().x
-        };
-        assert_eq!([color(0.1, 0.1), color(0.6, 0.1), color(-0.1, 0.1)], [0.0, 1.0, 1.0]);
-        assert_eq!([color(-0.1, -0.1), color(1.1, 0.1)], [0.0, 0.0]);
-    }
-
-    #[test]
-    fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
-        let uv = |x: f64, z: f64| {
-            let mut scene = scene();
-            (scene.planes[0].point, scene.planes[0].texture_size) =
-                (DVec3::new(1.0, 0.0, 2.0), 4.0);
-            let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
-            Surface::new(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
-        };
-        assert_eq!([uv(1.0, 2.0), uv(2.0, 5.0)], [[0.0, 0.0], [0.25, 0.75]]);
-        assert_eq!([uv(6.0, 1.0), uv(-3.0, -2.0)], [[0.25, 0.75], [0.0, 0.0]]);
-    }
-
-    #[test]
-    fn attributes_are_interpolated_by_the_weights() {
-        let mut scene = scene();
-        let image = crate::scene::Image {
-            name: String::new(),
-            width: 1,
-            height: 1,
-            texels: vec![[255; 4]],
-        };
-        let texture = scene.add_texture(crate::scene::Texture {
-            image: image.into(),
-            transfer: crate::scene::Transfer::None,
-            wrap: Default::default(),
-            filter: Default::default(),
-        });
-        scene.materials[0].diffuse_map = Some(texture);
-        let ray = Ray::new(DVec3::new(0.25, 0.5, 1.0), DVec3::NEG_Z);
-        let id = PrimitiveId::triangle(0, 0, 0);
-        let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
-        assert_eq!(surface.uv, [0.25, 0.5]);
-        assert_eq!(surface.tint, Vec3::new(0.25, 0.25, 0.5));
-        let expected = DVec3::new(0.25, 0.5, 1.0).normalize();
-        assert!((surface.normal - expected).length() < 1e-15);
-    }
-
-    #[test]
-    fn normal_of_a_stretched_mesh_stays_across_its_surface() {
-        let mut scene = scene();
-        std::sync::Arc::make_mut(&mut scene.meshes[0]).normals = vec![[1., 0., 1.]; 3];
-        scene.instances[0].transform = DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0));
-        let ray = Ray::new(DVec3::new(0.2, 0.2, 1.0), DVec3::NEG_Z);
-        let id = PrimitiveId::triangle(0, 0, 0);
-        let surface = Surface::new(&scene, &ray, &hit(1.0, 0.1, 0.2, id));
-        let expected = DVec3::new(0.5, 0.0, 1.0).normalize();
-        assert!((surface.normal - expected).length() < 1e-15, "{}", surface.normal);
-    }
-
-    #[test]
-    fn shadow_ray_leaves_on_the_lights_side() {
-        let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-        let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-        let toward = |toward: DVec3| Arrival { toward, bounded: true, intensity: Vec3::ONE };
-        let side = |d: DVec3| surface.shadow_ray(&toward(d)).from.unwrap().side;
-        assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
-    }
 }

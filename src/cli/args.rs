@@ -2,18 +2,19 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 
 use crate::cli::files;
 use crate::cli::frames::Range;
+use crate::cli::values::{
+    BackendName, PrecisionName, ToneName, ViewName, finite, goal, not_negative, seconds, size,
+};
 use crate::error::{Error, Result};
-use crate::film::View;
 use crate::geometry::Ray;
-use crate::intersect::{Backend, Precision};
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
+use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
-use crate::scene::{Scene, Tone};
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
 #[derive(Parser)]
@@ -218,108 +219,6 @@ pub struct Diff {
     pub heatmap: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub enum BackendName {
-    Embree,
-    Rust,
-}
-
-impl BackendName {
-    /// # Errors
-    /// When Embree is asked for and not built in.
-    pub fn backend(self) -> Result<Backend> {
-        match self {
-            BackendName::Rust => Ok(Backend::Rust),
-            #[cfg(feature = "embree")]
-            BackendName::Embree => Ok(Backend::Embree),
-            #[cfg(not(feature = "embree"))]
-            BackendName::Embree => Err(Error::input("this envers was built without Embree")
-                .help("use `--backend rust`, or build with the feature `embree`")),
-        }
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum PrecisionName {
-    Fast,
-    Certified,
-}
-
-impl From<PrecisionName> for Precision {
-    fn from(name: PrecisionName) -> Precision {
-        match name {
-            PrecisionName::Fast => Precision::Fast,
-            PrecisionName::Certified => Precision::Certified,
-        }
-    }
-}
-
-#[derive(Clone, Copy, PartialEq, ValueEnum)]
-pub enum ViewName {
-    Beauty,
-    Normal,
-    Depth,
-    Id,
-}
-
-impl From<ViewName> for View {
-    fn from(name: ViewName) -> View {
-        match name {
-            ViewName::Beauty => View::Beauty,
-            ViewName::Normal => View::Normal,
-            ViewName::Depth => View::Depth,
-            ViewName::Id => View::Id,
-        }
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-pub enum ToneName {
-    None,
-    Reinhard,
-    Aces,
-}
-
-impl From<ToneName> for Tone {
-    fn from(name: ToneName) -> Tone {
-        match name {
-            ToneName::None => Tone::None,
-            ToneName::Reinhard => Tone::Reinhard,
-            ToneName::Aces => Tone::Aces,
-        }
-    }
-}
-
-fn size(text: &str) -> std::result::Result<[u32; 2], String> {
-    let parse = || {
-        let (width, height) = text.split_once(['x', 'X', '×'])?;
-        Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
-    };
-    let size = parse().ok_or("expected WIDTHxHEIGHT in pixels, such as 1920x1080")?;
-    crate::scene::check::check_size(size)
-        .map_err(|e| format!("{} ({})", e.message(), e.advice().unwrap_or_default()))?;
-    Ok(size)
-}
-
-fn goal(text: &str) -> std::result::Result<Goal, String> {
-    let named = |goal: &Goal| goal.name().eq_ignore_ascii_case(text.trim());
-    Goal::ALL.into_iter().find(named).ok_or("expected a goal, G1 to G7".to_owned())
-}
-
-fn seconds(text: &str) -> std::result::Result<f64, String> {
-    let in_range = |x: &f64| (0.0..=1e15).contains(x);
-    text.parse().ok().filter(in_range).ok_or("expected seconds, 0 or above".to_owned())
-}
-
-fn finite(text: &str) -> std::result::Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or("expected a finite number".to_owned())
-}
-
-fn not_negative(text: &str) -> std::result::Result<f32, String> {
-    let in_range = |x: &f32| *x >= 0.0;
-    text.parse().ok().filter(in_range).ok_or("expected a number, 0 or above".to_owned())
-}
-
 impl Tracing {
     /// Loads the scene as it is at one moment, as [`Tracing::load_animated`].
     ///
@@ -391,13 +290,5 @@ mod tests {
     fn command_line_is_consistent() {
         use clap::CommandFactory;
         Arguments::command().debug_assert();
-    }
-
-    #[test]
-    fn size_is_two_numbers_with_an_x() {
-        assert_eq!(size("640x480"), Ok([640, 480]));
-        for bad in ["640", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
-            assert!(size(bad).is_err(), "{bad}");
-        }
     }
 }

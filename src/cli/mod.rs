@@ -11,6 +11,7 @@ mod render;
 mod report;
 mod stress;
 mod validate;
+mod values;
 
 use std::process::ExitCode;
 

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use crate::cli::args::{Render, ViewName};
+use crate::cli::args::Render;
 use crate::cli::frames::Plan;
 use crate::cli::json::Stats;
+use crate::cli::values::ViewName;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;

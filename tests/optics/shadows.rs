@@ -98,15 +98,20 @@ fn a_mesh_of_glass_that_casts_no_shadow_takes_nothing_off_whichever_way_it_winds
     }
 }
 
-#[test]
-fn the_bed_of_a_pond_is_lit_through_the_water() {
-    // Seen from within the water, 2 above the bed and under 4 of it.
+/// A white bed under 4 of water that absorbs, seen from within the water, 2 above it.
+fn pond() -> Scene {
     let mut scene = seen_from(DVec3::NEG_Y * 2.0, DVec3::NEG_Y * 4.0);
     let absorption = Vec3::splat(0.1);
     let water = scene.add_material(Material { absorption, ..glass(1.33) });
     let white = scene.add_material(Material { diffuse: Vec3::ONE, ..Material::default() });
     scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, water));
     scene.planes.push(Plane::new(DVec3::NEG_Y * 4.0, DVec3::Y, white));
+    scene
+}
+
+#[test]
+fn the_bed_of_a_pond_is_lit_through_the_water() {
+    let mut scene = pond();
     scene.lights.push(Light {
         name: String::new(),
         kind: LightKind::Directional { direction: DVec3::NEG_Y },
@@ -119,12 +124,7 @@ fn the_bed_of_a_pond_is_lit_through_the_water() {
 
 #[test]
 fn a_light_in_the_water_is_absorbed_though_nothing_stands_in_its_way() {
-    let mut scene = seen_from(DVec3::NEG_Y * 2.0, DVec3::NEG_Y * 4.0);
-    let absorption = Vec3::splat(0.1);
-    let water = scene.add_material(Material { absorption, ..glass(1.33) });
-    let white = scene.add_material(Material { diffuse: Vec3::ONE, ..Material::default() });
-    scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, water));
-    scene.planes.push(Plane::new(DVec3::NEG_Y * 4.0, DVec3::Y, white));
+    let mut scene = pond();
     let position = DVec3::NEG_Y;
     scene.lights.push(Light {
         name: String::new(),

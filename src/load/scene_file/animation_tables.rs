@@ -8,9 +8,11 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::numbers::{Amount, Coordinate, FieldOfView, FrameCount, Length, Rate, Seconds};
 use super::spanned::{At, Tables};
-use super::values::{Direction, Point, Rotation, Scale, Spot};
+use super::values::{
+    Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
+    Rotation, Scale, Seconds,
+};
 
 /// What moves, and for how long.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -36,7 +38,7 @@ pub struct OrbitTable {
     /// The name of the object that goes round.
     pub object: At<String>,
     /// The centre: a point, or the name of an object, which may move itself.
-    pub around: At<Spot>,
+    pub around: At<PointOrName>,
     /// Seconds for one turn; without it the object only keeps beside its centre.
     pub period: Option<Seconds>,
     /// The axis, of any length but zero: counterclockwise seen against it.

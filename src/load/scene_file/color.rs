@@ -8,8 +8,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::numbers::{Amount, value_schema};
-use super::values::{elements, list};
+use super::values::{Amount, elements, list, value_schema};
 use crate::scene::Transfer;
 
 /// A colour, before the film's transfer is known.

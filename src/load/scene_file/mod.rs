@@ -13,7 +13,6 @@ mod light;
 mod model;
 mod mover;
 mod names;
-mod numbers;
 mod report;
 mod resolve;
 mod schema;

@@ -8,7 +8,7 @@ use super::source::{Source, Span};
 use super::spanned::At;
 use super::suggest;
 use super::tables::{Kind, SceneTable};
-use super::values::Spot;
+use super::values::PointOrName;
 use crate::error::Result;
 
 /// What kind of object a name stands for.
@@ -125,10 +125,14 @@ impl Names {
     ///
     /// # Errors
     /// When there is no such object, or it has no place.
-    pub fn spot(&self, source: &Source<'_>, spot: &At<Spot>) -> Result<(Option<usize>, DVec3)> {
+    pub fn spot(
+        &self,
+        source: &Source<'_>,
+        spot: &At<PointOrName>,
+    ) -> Result<(Option<usize>, DVec3)> {
         let name = match &spot.value {
-            Spot::Point(point) => return Ok((None, *point)),
-            Spot::Name(name) => name,
+            PointOrName::Point(point) => return Ok((None, *point)),
+            PointOrName::Name(name) => name,
         };
         let found = self.find(source, name, &spot.span)?;
         let object = &self.objects[found];

@@ -8,12 +8,11 @@ use serde::Deserialize;
 
 use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
-use super::numbers::{
-    Amount, Depth, FieldOfView, HalfAngle, Index, Length, Number, Priority, Samples, Share,
-    Shininess,
-};
 use super::spanned::{At, OneOrMore, Table, Tables};
-use super::values::{Direction, Point, Rotation, Scale, ShadowKind, Size, Spot, Triple};
+use super::values::{
+    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
+    Priority, Rotation, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
+};
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
 /// A scene for envers: what stands in it, what lights it, and who looks at it.
@@ -84,7 +83,7 @@ pub struct CameraTable {
     /// Where it stands.
     pub position: Point,
     /// The point that it looks at, or the name of the object.
-    pub look_at: Option<At<Spot>>,
+    pub look_at: Option<At<PointOrName>>,
     /// The direction that it looks in, in place of `look_at`.
     pub direction: Option<At<Direction>>,
     /// What is upward in the picture.

@@ -1,25 +1,33 @@
-//! The numbers that keys take, each kind with the range that it has.
+//! The values that keys take: each type refuses, at its own place in the text, what it cannot be.
 
+mod vectors;
+mod words;
+
+use std::borrow::Cow;
 use std::fmt;
+use std::marker::PhantomData;
 
-use serde::de::{Error, Unexpected, Visitor};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, Expected, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use crate::scene::animation::{MAX_FPS, MAX_FRAMES};
-use crate::scene::check::{MAX_COORDINATE, MAX_DEPTH, MAX_SPP};
+use crate::scene::animation::MAX_FPS;
+use crate::scene::check::MAX_COORDINATE;
+pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, unit};
+pub use words::{Depth, FrameCount, Priority, Samples, ShadowKind, Size};
 
 /// Gives a type of value its part of the JSON Schema.
 macro_rules! value_schema {
     ($name:ident, $schema:tt) => {
-        impl schemars::JsonSchema for $name {
+        impl JsonSchema for $name {
             fn inline_schema() -> bool {
                 true
             }
-            fn schema_name() -> std::borrow::Cow<'static, str> {
+            fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
             }
-            fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
-                schemars::json_schema!($schema)
+            fn json_schema(_: &mut SchemaGenerator) -> Schema {
+                json_schema!($schema)
             }
         }
     };
@@ -76,6 +84,7 @@ number!(
     Factor, "a number other than 0 (at least 1e-15 and at most 1e15 in size)",
     |x| (1e-15..=1e15).contains(&x.abs()),
     { "type": "number", "not": { "const": 0 } });
+
 number!(
     /// An index of refraction.
     Index, "an index of refraction from 0.01 to 100", |x| (0.01..=100.0).contains(&x),
@@ -84,6 +93,7 @@ number!(
     /// A share.
     Share, "a number from 0 to 1", |x| (0.0..=1.0).contains(&x),
     { "type": "number", "minimum": 0, "maximum": 1 });
+
 number!(
     /// Frames in a second.
     Rate, "a number above 0 (and at most 1000)", |x| (1e-6..=MAX_FPS).contains(&x),
@@ -122,59 +132,46 @@ impl Visitor<'_> for NumberVisitor {
     }
 }
 
-/// A kind of whole number: what to call it in a message, which numbers it holds, and its schema.
-macro_rules! whole {
-    ($(#[$doc:meta])* $name:ident($of:ty), $expected:literal, $range:expr, $schema:tt) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default)]
-        pub struct $name(pub $of);
+/// Reads a list that must hold exactly `N` values.
+pub(super) fn list<'de, T, D, const N: usize>(d: D, expected: &str) -> Result<[T; N], D::Error>
+where
+    T: Deserialize<'de> + Copy + Default,
+    D: Deserializer<'de>,
+{
+    struct ListVisitor<'a, T, const N: usize>(&'a str, PhantomData<T>);
 
-        impl<'de> Deserialize<'de> for $name {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let holds = |x| <$of>::try_from(x).ok().filter(|x| ($range).contains(x));
-                deserializer.deserialize_i64(WholeVisitor { expected: $expected, holds }).map(Self)
-            }
+    impl<'de, T, const N: usize> Visitor<'de> for ListVisitor<'_, T, N>
+    where
+        T: Deserialize<'de> + Copy + Default,
+    {
+        type Value = [T; N];
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str(self.0)
         }
-
-        value_schema!($name, $schema);
-    };
-}
-
-whole!(
-    /// Pixels along a side of the picture; how many a picture can have is checked of both sides.
-    Whole(u32), "a whole number from 1 to 4294967295", 0..=u32::MAX,
-    { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
-whole!(
-    /// Samples per pixel.
-    Samples(u32), "a whole number from 1 to 65536", 1..=MAX_SPP,
-    { "type": "integer", "minimum": 1, "maximum": 65536 });
-whole!(
-    /// How many frames there are.
-    FrameCount(u32), "a whole number from 1 to 1000000", 1..=MAX_FRAMES,
-    { "type": "integer", "minimum": 1, "maximum": 1_000_000 });
-whole!(
-    /// How many times light is followed from a surface.
-    Depth(u32), "a whole number from 0 to 65536", 0..=MAX_DEPTH,
-    { "type": "integer", "minimum": 0, "maximum": 65536 });
-whole!(
-    /// What goes before what: the greater.
-    Priority(i32), "a whole number from -2147483648 to 2147483647", i32::MIN..=i32::MAX,
-    { "type": "integer", "minimum": -2_147_483_648_i32, "maximum": 2_147_483_647 });
-
-struct WholeVisitor<T> {
-    expected: &'static str,
-    /// The number, if it is one of the kind.
-    holds: fn(i64) -> Option<T>,
-}
-
-impl<T> Visitor<'_> for WholeVisitor<T> {
-    type Value = T;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.expected)
+        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<[T; N], A::Error> {
+            elements(seq, &self)
+        }
     }
 
-    fn visit_i64<E: Error>(self, x: i64) -> Result<T, E> {
-        (self.holds)(x).ok_or_else(|| E::invalid_value(Unexpected::Signed(x), &self))
+    d.deserialize_seq(ListVisitor(expected, PhantomData))
+}
+
+/// Reads the elements of a list that must be `N` long.
+pub(super) fn elements<'de, T, A, const N: usize>(
+    mut seq: A,
+    expected: &dyn Expected,
+) -> Result<[T; N], A::Error>
+where
+    T: Deserialize<'de> + Copy + Default,
+    A: SeqAccess<'de>,
+{
+    let mut values = [T::default(); N];
+    for (i, value) in values.iter_mut().enumerate() {
+        *value = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(i, expected))?;
     }
+    let mut length = N;
+    while seq.next_element::<IgnoredAny>()?.is_some() {
+        length += 1;
+    }
+    if length == N { Ok(values) } else { Err(A::Error::invalid_length(length, expected)) }
 }
