@@ -60,11 +60,11 @@ pub struct Tracing {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u32; 2]>,
     /// Samples per pixel [default: the scene's; bare models 16]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
     pub spp: Option<u32>,
     /// How often light is followed off mirrors and through glass, from 0 to 65536 [default: the
     /// scene's, else 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
@@ -76,7 +76,7 @@ pub struct Tracing {
     #[arg(long, value_enum, default_value = "fast")]
     pub precision: PrecisionName,
     /// Threads [default: all there are]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     /// Print no progress and no warnings
     #[arg(short, long)]
@@ -100,7 +100,7 @@ pub struct Render {
     pub output: Vec<PathBuf>,
     /// Frames of an animation: one, such as 7, or some, such as 1-120 or 1-120x2 [default: all for
     /// .gif, .apng and ####, otherwise the first]
-    #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time")]
+    #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time", allow_negative_numbers = true)]
     pub frames: Option<Range>,
     /// Leave alone what is there already, to go on where a rendering was interrupted
     #[arg(long)]

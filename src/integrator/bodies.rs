@@ -129,8 +129,9 @@ impl Bodies {
         ranks.copied().filter(|&rank| rank != NONE)
     }
 
-    /// The side of its body from which a surface is seen whose geometric normal says `side`.
-    fn outer(&self, id: PrimitiveId, side: Side) -> Side {
+    /// The side of its body from which a surface is seen whose geometric normal says `side`:
+    /// another one where the fronts of the triangles are inside.
+    pub fn outer(&self, id: PrimitiveId, side: Side) -> Side {
         let is_mesh = matches!(id.geometry, Geometry::Mesh(_));
         if is_mesh && self.turned[id.instance as usize] { side.opposite() } else { side }
     }

@@ -99,7 +99,7 @@ impl Integrator<'_> {
         let onward = surface.side.opposite();
         if !self.scene.casts_shadow(hit.id) {
             // It is not there for the light; only one who was in it must get out.
-            if surface.side == Side::Back {
+            if self.bodies.outer(hit.id, surface.side) == Side::Back {
                 beam.inside = around.behind;
             }
             return onward;

@@ -131,7 +131,7 @@ pub fn check_size(size: [u32; 2]) -> Result<()> {
 ///
 /// # Errors
 /// When there are none or more than [`MAX_SPP`].
-pub fn check_spp(spp: u32) -> Result<()> {
+fn check_spp(spp: u32) -> Result<()> {
     require((1..=MAX_SPP).contains(&spp), || {
         format!("samples per pixel must be from 1 to {MAX_SPP}, found {spp}")
     })

@@ -285,6 +285,14 @@ fn threads_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn a_number_below_0_is_the_value_of_its_flag_and_refused() {
+    for flag in ["--spp", "--max-depth", "--threads", "--frames"] {
+        let message = refused_with(&endless(), &format!("{flag} -1"));
+        assert!(message.contains(&format!("invalid value '-1' for '{flag} ")), "{message}");
+    }
+}
+
+#[test]
 fn a_camera_that_is_not_there_is_refused_with_those_that_are() {
     for bad in ["back", "1", "-1"] {
         let message = refused_with(&endless(), &format!("--camera={bad}"));

@@ -1,7 +1,7 @@
 //! Shadows of glass.
 
-use envers::scene::{Falloff, Light, LightKind, Material, Plane, Scene, Shadow};
-use glam::{DVec3, Vec3};
+use envers::scene::{Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Scene, Shadow};
+use glam::{DAffine3, DVec3, Vec3};
 
 use super::common::*;
 
@@ -78,6 +78,24 @@ fn glass_that_casts_no_shadow_takes_nothing_off() {
     sphere(&mut scene, DVec3::Y * 5.0, 1.0, Material { absorption, ..glass(1.5) });
     scene.spheres[0].casts_shadow = false;
     assert_near(radiance(&scene), 1.0);
+}
+
+#[test]
+fn a_mesh_of_glass_that_casts_no_shadow_takes_nothing_off_whichever_way_it_winds() {
+    for scale in [DVec3::ONE, DVec3::new(-1.0, 1.0, 1.0)] {
+        let mut scene = ground(Shadow::Tinted);
+        let absorption = Vec3::splat(0.5);
+        let material = scene.add_material(Material { absorption, ..glass(1.5) });
+        let mesh = scene.add_mesh(Mesh {
+            positions: vec![[-2., 4., 3.], [2., 4., 3.], [0., 4., -3.], [0.3, 6., 0.2]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            ..Mesh::default()
+        });
+        let mut tent = Instance::new(mesh, DAffine3::from_scale(scale), material);
+        tent.casts_shadow = false;
+        scene.instances.push(tent);
+        assert_near(radiance(&scene), 1.0);
+    }
 }
 
 /// A white bed under 4 of water that absorbs, seen from within the water, 2 above it.

@@ -46,7 +46,13 @@ fn the_usual_misspellings_find_their_keys() {
         ("[[material]]\n¦colour = 1\n", "diffuse"),
         ("[[material]]\n¦ks = 1\n", "specular"),
         ("[[model]]\n¦rotation = [0, 0, 0]\n", "rotate"),
+        ("[[material]]\n¦refraction_index = 1.5\n", "ior"),
+        ("[[material]]\n¦glass = true\n", "transmit"),
+        ("[[material]]\n¦opacity = 0.5\n", "transmit"),
+        ("[[material]]\n¦metallic = 1\n", "reflect"),
+        ("[[material]]\n¦attenuation = 1\n", "absorption"),
         ("[film]\n¦samples = 4\n", "spp"),
+        ("[film]\n¦max_bounces = 4\n", "max_depth"),
         ("[film]\n¦resolution = [4, 4]\n", "size"),
         ("[[¦spheres]]\n", "sphere"),
     ] {
@@ -98,7 +104,18 @@ fn reflect_and_transmit_are_shares_of_one_whole() {
 #[test]
 fn a_depth_is_a_whole_number_up_to_65536() {
     for bad in ["-1", "65537", "1.5"] {
-        refused(&format!("[film]\nmax_depth = ¦{bad}\n{CAMERA}"));
+        let error = refused(&format!("[film]\nmax_depth = ¦{bad}\n{CAMERA}"));
+        let expected = "`max_depth`: expected a whole number from 0 to 65536, found";
+        assert_eq!(error.message(), format!("{expected} `{bad}`"));
+    }
+}
+
+#[test]
+fn a_priority_is_a_whole_number() {
+    for bad in ["1.5", "5000000000"] {
+        let error = refused_seen(&format!("[[material]]\nname = \"m\"\npriority = ¦{bad}\n"));
+        let expected = "`priority`: expected a whole number from -2147483648 to 2147483647, found";
+        assert_eq!(error.message(), format!("{expected} `{bad}`"));
     }
 }
 
@@ -203,9 +220,10 @@ fn a_picture_of_a_million_by_a_million_is_refused() {
 
 #[test]
 fn samples_are_from_1_to_65536() {
-    for spp in ["0", "65537"] {
+    for spp in ["0", "65537", "1.5"] {
         let error = refused_seen(&format!("film.spp = ¦{spp}\n"));
-        assert!(error.message().starts_with("samples per pixel must be"), "{error}");
+        let expected = "`spp`: expected a whole number from 1 to 65536, found";
+        assert_eq!(error.message(), format!("{expected} `{spp}`"));
     }
 }
 

@@ -178,11 +178,13 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
 fn the_examples_in_the_documents_load_without_a_warning() {
     let text = std::fs::read_to_string(docs_folder().join("scene.md")).unwrap();
     let examples: Vec<&str> = text.split("```toml\n").skip(1).collect();
-    assert_eq!(examples.len(), 4);
+    assert_eq!(examples.len(), 5);
     for example in examples {
         let mut example = example.split("```").next().unwrap().to_owned();
-        if example.starts_with("[[animation.track]]") {
-            // A part of a file: what it is about comes before it.
+        // Parts of a file: what they are about comes before them.
+        if example.starts_with("[[material]]") {
+            example = format!("{}{example}", super::CAMERA);
+        } else if example.starts_with("[[animation.track]]") {
             let lamp = "[[light]]\nname = \"lamp\"\nkind = \"ambient\"\n";
             let frames = "[animation]\nframes = 60\n";
             example = format!("{}{frames}{lamp}{example}", super::CAMERA);

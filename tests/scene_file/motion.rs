@@ -189,12 +189,22 @@ fn a_model_that_turns_with_its_orbit_faces_the_centre() {
 }
 
 #[test]
-fn no_frames_are_refused() {
-    let error = refused(&format!("{CAMERA}[animation]\nframes = ¦0\n"));
-    assert_eq!(error.message(), "an animation of 0 frames cannot be made");
-    assert_eq!(help(&error), "from 1 to 1000000");
-    let error = refused(&format!("{CAMERA}[animation]\nframes = ¦4000000000\n"));
-    assert_eq!(help(&error), "from 1 to 1000000");
+fn a_camera_that_comes_to_where_it_looks_is_named_with_the_time() {
+    let camera = "[camera]\nname = \"eye\"\nposition = [0, 0, 5]\nlook_at = \"ball\"\n";
+    let keys = "times = [0, 1]\nposition = [[0, 0, 5], [2, 0, 0]]\n";
+    let scene = scene(&format!("{camera}{FRAMES}{BALL}{}", track("eye", keys)));
+    let error = scene.at(1.0).unwrap_err();
+    let expected = "at 1.000 s, camera `eye`: the camera looks at the point where it stands";
+    assert_eq!(error.message(), expected);
+}
+
+#[test]
+fn frames_are_a_whole_number_from_1_to_a_million() {
+    for frames in ["0", "3.5", "4000000000"] {
+        let error = refused(&format!("{CAMERA}[animation]\nframes = ¦{frames}\n"));
+        let expected = "`frames`: expected a whole number from 1 to 1000000, found";
+        assert_eq!(error.message(), format!("{expected} `{frames}`"));
+    }
 }
 
 #[test]

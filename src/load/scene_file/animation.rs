@@ -10,7 +10,7 @@ use super::tables::{ModelTable, SceneTable};
 use super::track::{Curves, curves};
 use crate::error::{Error, Result};
 use crate::scene::animation::{
-    self, Anchor, Animation, Curve, Keys, Motion, Node, NodeId, Orbit, Rotation,
+    Anchor, Animation, Curve, Keys, Motion, Node, NodeId, Orbit, Rotation,
 };
 
 /// Frames in a second of an animation that says nothing of it.
@@ -63,15 +63,13 @@ pub fn animation(
     let Some(At { value: Table(table), .. }) = &tables.animation else {
         return Ok((None, Rigs::default()));
     };
-    let At { span, value: frames } = &table.frames;
-    animation::check_frames(frames.0).map_err(|e| source.place(span, e))?;
     let fps = table.fps.map_or(DEFAULT_FPS, |fps| fps.0);
     let mut builder = Builder {
         source,
         names,
         models: models(tables, names),
         orbits: orbits(source, table, names)?,
-        animation: Animation::new(frames.0, fps),
+        animation: Animation::new(table.frames.0, fps),
         rigs: (0..names.objects.len()).map(|_| Rig::default()).collect(),
         state: vec![State::Open; names.objects.len()],
     };

@@ -10,8 +10,8 @@ use serde::{Deserialize, Deserializer};
 
 use super::spanned::{At, Tables};
 use super::values::{
-    Amount, Coordinate, Direction, FieldOfView, Length, Point, PointOrName, Rate, Rotation, Scale,
-    Seconds, Whole,
+    Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
+    Rotation, Scale, Seconds,
 };
 
 /// What moves, and for how long.
@@ -19,7 +19,7 @@ use super::values::{
 #[serde(deny_unknown_fields)]
 pub struct AnimationTable {
     /// How many frames there are, from 1 to 1000000.
-    pub frames: At<Whole>,
+    pub frames: FrameCount,
     /// Frames in a second.
     #[schemars(extend("default" = 24))]
     pub fps: Option<Rate>,

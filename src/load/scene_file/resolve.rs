@@ -65,13 +65,10 @@ fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
     if let Some(At { span, value }) = &table.size {
         check::check_size(value.0).map_err(|e| source.place(span, e))?;
     }
-    if let Some(At { span, value }) = &table.spp {
-        check::check_spp(value.0).map_err(|e| source.place(span, e))?;
-    }
     let transfer = table.transfer.unwrap_or(default.transfer);
     Ok(FilmSettings {
         size: table.size.as_ref().map_or(default.size, |size| size.value.0),
-        spp: table.spp.as_ref().map_or(default.spp, |spp| spp.value.0),
+        spp: table.spp.map_or(default.spp, |spp| spp.0),
         transfer,
         exposure: table.exposure.map_or(default.exposure, |ev| ev.0),
         tone: table.tone.unwrap_or(default.tone),

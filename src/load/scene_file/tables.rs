@@ -11,7 +11,7 @@ use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
     Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
-    Priority, Rotation, Scale, ShadowKind, Share, Shininess, Size, Triple, Whole,
+    Priority, Rotation, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
 };
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
@@ -48,7 +48,7 @@ pub struct FilmTable {
     pub size: Option<At<Size>>,
     /// Samples per pixel, from 1 to 65536.
     #[schemars(extend("default" = 1))]
-    pub spp: Option<At<Whole>>,
+    pub spp: Option<Samples>,
     /// How the PNG encodes light, and what hex colours are decoded by: the sRGB curve, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,

@@ -31,7 +31,7 @@ impl Animation {
 ///
 /// # Errors
 /// When there are none or more than [`MAX_FRAMES`].
-pub fn check_frames(frames: u32) -> Result<()> {
+fn check_frames(frames: u32) -> Result<()> {
     if (1..=MAX_FRAMES).contains(&frames) {
         return Ok(());
     }
@@ -43,7 +43,7 @@ pub fn check_frames(frames: u32) -> Result<()> {
 ///
 /// # Errors
 /// When that is not above 0, or above [`MAX_FPS`].
-pub fn check_fps(fps: f64) -> Result<()> {
+fn check_fps(fps: f64) -> Result<()> {
     if (1e-6..=MAX_FPS).contains(&fps) {
         return Ok(());
     }

@@ -9,7 +9,6 @@ use glam::{DAffine3, DVec3};
 use crate::error::{Error, Result};
 use crate::scene::{Camera, Light, LightKind, Scene};
 
-pub use check::{check_fps, check_frames};
 pub use curve::{Curve, Interpolation, Value};
 pub use node::{Anchor, Keys, Motion, Node, NodeId, Orbit, Rotation};
 
@@ -192,7 +191,13 @@ impl Scene {
                 }
                 Mover::Camera { camera, node, rest, aim, lens } => {
                     let posed = pose_camera(&world(node), rest, aim.as_ref(), &worlds, time)
-                        .map_err(|e| naming(&format!("at {time:.3} s, camera {camera}"), &e))?;
+                        .map_err(|e| {
+                            let name = match &*rest.name {
+                                "" => camera.to_string(),
+                                name => format!("`{name}`"),
+                            };
+                            naming(&format!("at {time:.3} s, camera {name}"), &e)
+                        })?;
                     let kind = lens.as_ref().map_or(rest.lens, |v| rest.lens.with(v.at(time)));
                     scene.cameras[*camera] = Camera { lens: kind, ..posed };
                 }

@@ -9,29 +9,65 @@ use serde::{Deserialize, Deserializer};
 
 use super::{list, value_schema};
 use crate::scene::Shadow;
-use crate::scene::check::MAX_DEPTH;
+use crate::scene::animation::MAX_FRAMES;
+use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 
-/// A whole number, 0 or above.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Whole(pub u32);
+/// A kind of whole number: what to call it in a message, which numbers it holds, and its schema.
+macro_rules! whole {
+    ($(#[$doc:meta])* $name:ident($of:ty), $expected:literal, $range:expr, $schema:tt) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct $name(pub $of);
 
-impl<'de> Deserialize<'de> for Whole {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct WholeVisitor;
-        impl Visitor<'_> for WholeVisitor {
-            type Value = u32;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a whole number from 1 to 4294967295")
-            }
-            fn visit_i64<E: Error>(self, x: i64) -> Result<u32, E> {
-                u32::try_from(x).map_err(|_| E::invalid_value(Unexpected::Signed(x), &self))
+        impl<'de> Deserialize<'de> for $name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let holds = |x| <$of>::try_from(x).ok().filter(|x| ($range).contains(x));
+                deserializer.deserialize_i64(WholeVisitor { expected: $expected, holds }).map(Self)
             }
         }
-        deserializer.deserialize_u32(WholeVisitor).map(Self)
-    }
+
+        value_schema!($name, $schema);
+    };
 }
 
-value_schema!(Whole, { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
+whole!(
+    /// Pixels along a side of the picture; how many a picture can have is checked of both sides.
+    Whole(u32), "a whole number from 1 to 4294967295", 0..=u32::MAX,
+    { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
+whole!(
+    /// Samples per pixel.
+    Samples(u32), "a whole number from 1 to 65536", 1..=MAX_SPP,
+    { "type": "integer", "minimum": 1, "maximum": 65536 });
+whole!(
+    /// How many frames there are.
+    FrameCount(u32), "a whole number from 1 to 1000000", 1..=MAX_FRAMES,
+    { "type": "integer", "minimum": 1, "maximum": 1_000_000 });
+whole!(
+    /// How many times light is followed from a surface.
+    Depth(u32), "a whole number from 0 to 65536", 0..=MAX_DEPTH,
+    { "type": "integer", "minimum": 0, "maximum": 65536 });
+whole!(
+    /// What goes before what: the greater.
+    Priority(i32), "a whole number from -2147483648 to 2147483647", i32::MIN..=i32::MAX,
+    { "type": "integer", "minimum": -2_147_483_648_i32, "maximum": 2_147_483_647 });
+
+struct WholeVisitor<T> {
+    expected: &'static str,
+    /// The number, if it is one of the kind.
+    holds: fn(i64) -> Option<T>,
+}
+
+impl<T> Visitor<'_> for WholeVisitor<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.expected)
+    }
+
+    fn visit_i64<E: Error>(self, x: i64) -> Result<T, E> {
+        (self.holds)(x).ok_or_else(|| E::invalid_value(Unexpected::Signed(x), &self))
+    }
+}
 
 /// A width and a height in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -47,32 +83,6 @@ impl<'de> Deserialize<'de> for Size {
 value_schema!(Size, {
     "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1 },
 });
-
-/// How many times light is followed from a surface.
-#[derive(Clone, Copy, Debug)]
-pub struct Depth(pub u32);
-
-impl<'de> Deserialize<'de> for Depth {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let depth = i64::deserialize(deserializer)?;
-        match u32::try_from(depth) {
-            Ok(depth) if depth <= MAX_DEPTH => Ok(Self(depth)),
-            _ => Err(D::Error::invalid_value(
-                Unexpected::Signed(depth),
-                &"a whole number from 0 to 65536",
-            )),
-        }
-    }
-}
-
-value_schema!(Depth, { "type": "integer", "minimum": 0, "maximum": 65536 });
-
-/// A whole number that says what goes before what.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(transparent)]
-pub struct Priority(pub i32);
-
-value_schema!(Priority, { "type": "integer" });
 
 /// What keeps a light from what lies behind it.
 #[derive(Clone, Copy, Debug)]
