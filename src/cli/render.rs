@@ -71,7 +71,8 @@ pub fn run(arguments: &Render) -> Outcome {
     Ok(Verdict::Good)
 }
 
-/// The first frame's scene; each frame is tried, and its files, before any is rendered.
+/// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
+/// what only a check of all its numbers finds, such as a way out of bounds, is found in its turn.
 fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
     for (i, (frame, time)) in plan.frames.iter().enumerate() {
         scene.at(*time)?;
