@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cli::files;
-use crate::cli::frames::Range;
+use crate::cli::range::Range;
 use crate::cli::values::{
     BackendName, PrecisionName, ToneName, ViewName, finite, goal, not_negative, seconds, size,
 };

@@ -7,6 +7,7 @@ mod frames;
 mod info;
 mod json;
 mod output;
+mod range;
 mod render;
 mod report;
 mod stress;

@@ -10,6 +10,7 @@ mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
 mod entry;
+mod kept;
 mod leaving;
 pub mod primitive;
 

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::brute::is_extreme;
-use crate::intersect::builder::{Kept, used};
 use crate::intersect::entry::Entry;
+use crate::intersect::kept::{Kept, used};
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
 use crate::scene::{Mesh, Scene, Sphere};

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use crate::error::Result;
 use crate::geometry::Bounds;
-use crate::intersect::builder::Kept;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
+use crate::intersect::kept::Kept;
 use crate::scene::{Mesh, Scene};
 use embree4_sys::RTCSceneFlags;
 
@@ -98,7 +98,7 @@ impl Meshes {
                     own[at].insert(made)
                 }
             };
-            placed.add(scene, index, bounds, own);
+            placed.add(scene, index, bounds, &own.scene, own.frame);
         }
         if !placed.is_empty() {
             let callbacks = placements::callbacks(width);

@@ -45,7 +45,7 @@ use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Ray};
-use crate::intersect::builder::Kept;
+use crate::intersect::kept::Kept;
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;

@@ -8,10 +8,10 @@ use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::intersect::builder::Kept;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
 use crate::intersect::embree::{QUALITY, attach, flags, is_outsized, uses};
+use crate::intersect::kept::Kept;
 use crate::scene::{Instance, Mesh, Scene};
 
 /// A mesh in a space of its own, recentred: a model may stand far from its own origin.

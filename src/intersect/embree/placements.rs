@@ -12,7 +12,7 @@ use crate::geometry::{Bounds, PrimitiveId};
 use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit, Valid};
-use crate::intersect::embree::meshes::Own;
+use crate::intersect::embree::raw::InnerScene;
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
 use crate::intersect::entry::Entry;
@@ -41,10 +41,18 @@ impl Placements {
         Self { frame, placements: Vec::new() }
     }
 
-    /// Adds an instance that takes up `bounds` in the world, of the mesh `own`.
-    pub fn add(&mut self, scene: &Scene, instance: u32, bounds: Bounds, own: &Own) {
+    /// Adds an instance that takes up `bounds` in the world, of a mesh whose scene is `inner` and
+    /// whose f32 copies live in `own`.
+    pub fn add(
+        &mut self,
+        scene: &Scene,
+        instance: u32,
+        bounds: Bounds,
+        inner: &InnerScene,
+        own: Frame,
+    ) {
         let entry = Entry::new(&scene.instances[instance as usize], &bounds);
-        let (inner, own) = (own.scene.0, own.frame);
+        let inner = inner.0;
         self.placements.push(Placement { instance, inner, own, entry, bounds });
     }
 

@@ -228,7 +228,7 @@ impl Builder<'_, '_> {
         let mut keys = Keys::still();
         keys.translation = position.unwrap_or(Curve::constant(still));
         if let Some(table) = self.models[object] {
-            let angles = table.rotate.map_or(DVec3::ZERO, |angles| radians(angles.0));
+            let angles = table.rotate.map_or(DVec3::ZERO, |angles| angles.radians());
             let scale = table.scale.map_or(DVec3::ONE, |scale| scale.0);
             let rotation = curves.rotation.clone().unwrap_or(Curve::constant(angles));
             keys.rotation = Rotation::Angles(rotation);
@@ -236,9 +236,4 @@ impl Builder<'_, '_> {
         }
         Some(keys)
     }
-}
-
-/// Angles in radians of such in degrees.
-pub fn radians(degrees: [f64; 3]) -> DVec3 {
-    DVec3::from_array(degrees.map(f64::to_radians))
 }

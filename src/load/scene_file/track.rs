@@ -2,7 +2,6 @@
 
 use glam::DVec3;
 
-use super::animation::radians;
 use super::animation_tables::{Interpolation as Between, List, TrackTable};
 use super::names::{Object, What};
 use super::source::{Source, Span};
@@ -74,7 +73,7 @@ pub fn curves(
     track.place("center", &table.center, &mut curves.position)?;
     track.place("translate", &table.translate, &mut curves.position)?;
     track.place("position", &table.position, &mut curves.position)?;
-    track.vectors("rotate", &table.rotate, |r| radians(r.0), &mut curves.rotation)?;
+    track.vectors("rotate", &table.rotate, |r| r.radians(), &mut curves.rotation)?;
     track.vectors("scale", &table.scale, |s| s.0, &mut curves.scale)?;
     track.vectors("direction", &table.direction, |d| d.0, &mut curves.direction)?;
     track.vectors("look_at", &table.look_at, |p| p.0, &mut curves.look_at)?;

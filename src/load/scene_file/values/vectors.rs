@@ -62,6 +62,13 @@ impl<'de> Deserialize<'de> for Rotation {
     }
 }
 
+impl Rotation {
+    /// The angles in radians.
+    pub fn radians(self) -> DVec3 {
+        DVec3::from_array(self.0.map(f64::to_radians))
+    }
+}
+
 value_schema!(Rotation, {
     "type": "array", "minItems": 3, "maxItems": 3, "items": { "type": "number" },
 });

@@ -1,0 +1,82 @@
+//! What was built of meshes, kept from one frame of an animation to the next.
+
+use std::sync::Arc;
+
+#[cfg(feature = "embree")]
+use crate::error::Result;
+use crate::scene::{Mesh, Scene};
+
+/// What was built of meshes, by their index; the mesh itself is kept with it, to tell it from
+/// another one in its place.
+pub(in crate::intersect) struct Kept<T> {
+    of: Vec<Option<(Arc<Mesh>, Arc<T>)>>,
+    built: u64,
+}
+
+impl<T> Default for Kept<T> {
+    fn default() -> Self {
+        Self { of: Vec::new(), built: 0 }
+    }
+}
+
+impl<T> Kept<T> {
+    /// What was built of a mesh, if it was.
+    pub fn get(&self, index: usize, mesh: &Arc<Mesh>) -> Option<Arc<T>> {
+        let (of, built) = self.of.get(index)?.as_ref()?;
+        Arc::ptr_eq(of, mesh).then(|| built.clone())
+    }
+
+    /// Keeps what was built of a mesh, unless it is what is kept already.
+    pub fn keep(&mut self, index: usize, mesh: &Arc<Mesh>, built: &Arc<T>) {
+        if self.of.len() <= index {
+            self.of.resize_with(index + 1, || None);
+        }
+        if !matches!(&self.of[index], Some((_, kept)) if Arc::ptr_eq(kept, built)) {
+            self.of[index] = Some((mesh.clone(), built.clone()));
+            self.built += 1;
+        }
+    }
+
+    /// What was built of a mesh, or else what `make` builds, and then is kept where there is a
+    /// place for it.
+    ///
+    /// # Errors
+    /// Those of `make`.
+    #[cfg(feature = "embree")]
+    pub fn get_or(
+        kept: &mut Option<&mut Self>,
+        index: usize,
+        mesh: &Arc<Mesh>,
+        make: impl FnOnce() -> Result<T>,
+    ) -> Result<Arc<T>> {
+        if let Some(there) = kept.as_ref().and_then(|kept| kept.get(index, mesh)) {
+            return Ok(there);
+        }
+        let made = Arc::new(make()?);
+        if let Some(kept) = kept {
+            kept.keep(index, mesh, &made);
+        }
+        Ok(made)
+    }
+
+    /// Counts a mesh that was built and cannot be kept.
+    #[cfg(feature = "embree")]
+    pub fn count_one(&mut self) {
+        self.built += 1;
+    }
+
+    /// How many were built.
+    pub fn built(&self) -> u64 {
+        self.built
+    }
+}
+
+/// Whether each mesh stands anywhere, with any triangles.
+pub(in crate::intersect) fn used(scene: &Scene) -> Vec<bool> {
+    let mut used = vec![false; scene.meshes.len()];
+    for instance in &scene.instances {
+        let mesh = instance.mesh.0 as usize;
+        used[mesh] = !scene.meshes[mesh].triangles.is_empty();
+    }
+    used
+}
