@@ -159,6 +159,7 @@ fn info_says_how_long_it_is_and_what_moves() {
 }
 
 #[test]
+#[cfg(feature = "embree")]
 fn validate_takes_one_moment() {
     let folder = Folder::with(&moving());
     folder.run("validate scene.toml").good();
