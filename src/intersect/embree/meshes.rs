@@ -9,10 +9,10 @@ use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::width::Width;
-use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
+use crate::intersect::embree::{attach, certified, is_outsized, user, uses};
 use crate::intersect::kept::Kept;
 use crate::scene::{Mesh, Scene};
-use embree4_sys::RTCSceneFlags;
+use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
 
 /// What Embree keeps the addresses of.
 #[derive(Default)]
@@ -37,15 +37,15 @@ impl Own {
         scene: &Scene,
         mesh: u32,
         bounds: Bounds,
-        top: &embree4_rs::Scene,
         device: &DeviceHandle,
+        quality: RTCBuildQuality,
         width: Width,
     ) -> Result<Self> {
         let frame = Frame::around(bounds);
         let table = Triangles::own(scene, mesh, frame);
         let callbacks = certified::triangles(width);
-        let geometry = user::geometry(&top.device, device, &*table, callbacks)?;
-        let scene = InnerScene::new(device, QUALITY, RTCSceneFlags::NONE, &geometry)?;
+        let geometry = user::geometry(device, &*table, callbacks)?;
+        let scene = InnerScene::new(device, quality, RTCSceneFlags::NONE, &geometry)?;
         Ok(Self { scene, frame, _table: table })
     }
 }
@@ -63,46 +63,45 @@ impl Meshes {
         scene: &Scene,
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
+        quality: RTCBuildQuality,
         (frame, width): (Frame, Width),
         mut kept: Option<&mut Kept<Own>>,
     ) -> Result<()> {
         let uses = uses(scene);
-        let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
-        let mut own: Vec<Option<Arc<Own>>> = vec![None; scene.meshes.len()];
-        let mut placed = Box::new(Placements::new(frame));
-        for (index, instance) in (0..).zip(&scene.instances) {
+        let local: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
+        let world: Vec<Bounds> = (scene.instances.iter())
+            .map(|instance| {
+                let bounds = local[instance.mesh.0 as usize].transformed(&instance.transform);
+                // A baked vertex may round to just outside the transformed box.
+                bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
+            })
+            .collect();
+        let mut has_own = vec![false; scene.meshes.len()];
+        for (instance, bounds) in scene.instances.iter().zip(&world) {
             let at = instance.mesh.0 as usize;
             let mesh = &scene.meshes[at];
-            if mesh.triangles.is_empty() {
-                continue;
-            }
-            let local = bounds[at];
-            let bounds = local.transformed(&instance.transform);
-            // A baked vertex may round to just outside the transformed box.
-            let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
-            let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
-            if once || is_outsized(&local) {
+            let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, bounds, &frame);
+            has_own[at] = !(mesh.triangles.is_empty() || once || is_outsized(&local[at]));
+        }
+        let make = |at: usize| Own::new(scene, at as u32, local[at], device, quality, width);
+        let own = Kept::all(kept.as_deref_mut(), scene, &has_own, make)?;
+        let mut placed = Box::new(Placements::new(frame));
+        for ((index, instance), bounds) in (0..).zip(&scene.instances).zip(world) {
+            let at = instance.mesh.0 as usize;
+            if let Some(own) = &own[at] {
+                placed.add(scene, index, bounds, &own.scene, own.frame);
+            } else if !scene.meshes[at].triangles.is_empty() {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
-                attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;
+                attach(top, &user::geometry(device, &*table, callbacks)?)?;
                 self.tables.push(table);
                 kept.iter_mut().for_each(|kept| kept.count_one());
-                continue;
             }
-            let own = match &own[at] {
-                Some(there) => there,
-                None => {
-                    let make = || Own::new(scene, at as u32, local, top, device, width);
-                    let made = Kept::get_or(&mut kept, at, mesh, make)?;
-                    self.own.push(made.clone());
-                    own[at].insert(made)
-                }
-            };
-            placed.add(scene, index, bounds, &own.scene, own.frame);
         }
+        self.own = own.into_iter().flatten().collect();
         if !placed.is_empty() {
             let callbacks = placements::callbacks(width);
-            attach(top, &user::geometry(&top.device, device, &*placed, callbacks)?)?;
+            attach(top, &user::geometry(device, &*placed, callbacks)?)?;
             self.placements = Some(placed);
         }
         Ok(())

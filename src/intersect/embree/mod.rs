@@ -23,6 +23,7 @@ mod filter;
 mod finish;
 mod frame;
 mod layout;
+mod mesh_geometry;
 mod meshes;
 mod native;
 mod nearest;
@@ -140,11 +141,11 @@ impl<'s> Embree<'s> {
         match precision {
             Precision::Fast => {
                 let kept = shared.map(|shared| &mut shared.fast);
-                instance_of = native::attach_meshes(scene, &top, &device, &frame, kept)?;
+                instance_of = native::attach_meshes(scene, &top, &device, QUALITY, &frame, kept)?;
             }
             Precision::Certified => {
                 let kept = shared.map(|shared| &mut shared.certified);
-                _meshes.attach(scene, &top, &device, (frame, width), kept)?;
+                _meshes.attach(scene, &top, &device, QUALITY, (frame, width), kept)?;
             }
         }
         let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
@@ -153,7 +154,7 @@ impl<'s> Embree<'s> {
                 Precision::Fast => spheres::callbacks(width),
                 Precision::Certified => certified::spheres(width),
             };
-            attach(&top, &user::geometry(&top.device, &device, &**table, callbacks)?)?;
+            attach(&top, &user::geometry(&device, &**table, callbacks)?)?;
         }
         let committed = top
             .commit()

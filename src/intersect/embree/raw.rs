@@ -79,6 +79,8 @@ unsafe impl Send for DeviceHandle {}
 unsafe impl Sync for DeviceHandle {}
 unsafe impl Send for InnerScene {}
 unsafe impl Sync for InnerScene {}
+// SAFETY: Embree lets any thread attach and release a geometry.
+unsafe impl Send for InstanceGeometry {}
 
 /// A scene to be instanced, on a device that already has one.
 pub struct InnerScene(pub sys::RTCScene);
