@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
-use crate::intersect::{Backend, Builder, Built, Intersector, Precision};
+use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
 use crate::scene::Scene;
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
@@ -19,6 +19,8 @@ pub struct Options {
     pub backend: Backend,
     /// How far the hits can be trusted.
     pub precision: Precision,
+    /// How good Embree's trees are; nothing for what suits the number of rays to come.
+    pub quality: Option<BuildQuality>,
     /// How many threads; 0 means all there are.
     pub threads: usize,
     /// Which of the scene's cameras.
@@ -45,6 +47,8 @@ pub struct Statistics {
     pub backend: (&'static str, String),
     /// How far the hits can be trusted.
     pub precision: Precision,
+    /// How good Embree's trees were; nothing where there was no Embree.
+    pub quality: Option<BuildQuality>,
     /// Threads used.
     pub threads: usize,
     /// Rays and other counts.
@@ -63,6 +67,7 @@ impl Statistics {
         Self {
             backend: (options.backend.name(), String::new()),
             precision: options.precision,
+            quality: None,
             threads: options.threads,
             counts: Counts::default(),
             built: Built::default(),
@@ -74,6 +79,7 @@ impl Statistics {
     /// Adds what another frame of the same animation took.
     pub fn add(&mut self, other: &Statistics) {
         (self.backend, self.threads) = (other.backend.clone(), other.threads);
+        self.quality = other.quality;
         self.counts += other.counts;
         self.built += other.built;
         self.build += other.build;
@@ -98,11 +104,12 @@ pub fn render(
     let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
-        let mut builder = Builder::new(options.backend, options.precision, threads);
+        let mut builder = Builder::new(options.backend, options.precision, threads)
+            .with_quality(quality(scene, options));
         let start = Instant::now();
         let intersector = builder.build(scene)?;
-        let built = (start.elapsed(), builder.built());
-        Ok(picture(scene, options, &*intersector, built, progress))
+        let made = Made::new(start, &builder, builder.built());
+        Ok(picture(scene, options, &*intersector, made, progress))
     })
 }
 
@@ -130,7 +137,8 @@ pub fn render_frames(
         let mut builder = match moves {
             true => Builder::for_frames(backend, precision, threads),
             false => Builder::new(backend, precision, threads),
-        };
+        }
+        .with_quality(quality(scene, options));
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         for (i, &time) in times.iter().enumerate() {
@@ -141,15 +149,16 @@ pub fn render_frames(
             let before = builder.built();
             let rendering = if moves {
                 let intersector = builder.build(&posed)?;
-                let built = (start.elapsed(), builder.built() - before);
-                picture(&posed, options, &*intersector, built, &share)
+                let made = Made::new(start, &builder, builder.built() - before);
+                picture(&posed, options, &*intersector, made, &share)
             } else if let Some(intersector) = &still {
                 let built = Built { meshes: 0, reused: before.meshes };
-                picture(&posed, options, &**intersector, (start.elapsed(), built), &share)
+                let made = Made::new(start, &builder, built);
+                picture(&posed, options, &**intersector, made, &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);
-                let built = (start.elapsed(), builder.built());
-                picture(&posed, options, &**intersector, built, &share)
+                let made = Made::new(start, &builder, builder.built());
+                picture(&posed, options, &**intersector, made, &share)
             };
             each(i, rendering)?;
         }
@@ -157,19 +166,53 @@ pub fn render_frames(
     })
 }
 
-/// A picture of a checked scene, by an intersector that took so long, and so many meshes, to build.
+/// How an intersector was made.
+struct Made {
+    quality: Option<BuildQuality>,
+    built: Built,
+    took: Duration,
+}
+
+impl Made {
+    fn new(start: Instant, builder: &Builder, built: Built) -> Self {
+        Self { quality: builder.quality(), built, took: start.elapsed() }
+    }
+}
+
+/// How good the trees of a scene should be, where the options leave it open: by its primary rays and
+/// their shadow rays, which can be told beforehand. All frames of an animation count, also when
+/// only some are asked for: a frame must not depend on which are rendered with it.
+fn quality(scene: &Scene, options: &Options) -> BuildQuality {
+    let (spp, lights) = match options.view {
+        View::Beauty => {
+            (scene.film.spp, scene.lights.iter().filter(|light| light.casts_shadow()).count())
+        }
+        _ => (1, 0),
+    };
+    let frames = scene.animation.as_ref().map_or(1, |animation| animation.frames);
+    let [width, height] = scene.film.size;
+    let factors = [width, height, spp, frames, 1 + lights as u32];
+    let rays = factors.into_iter().map(u64::from).fold(1, u64::saturating_mul);
+    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let primitives = triangles + scene.spheres.len() + scene.instances.len();
+    options.quality.unwrap_or(BuildQuality::for_rays(rays, primitives as u64))
+}
+
+/// A picture of a checked scene, by an intersector that is there.
 fn picture(
     scene: &Scene,
     options: &Options,
     intersector: &dyn Intersector,
-    (build, built): (Duration, Built),
+    made: Made,
     progress: &(dyn Fn(f32) + Sync),
 ) -> Rendering {
     let (film, counts, render) = with_intersector(scene, options, intersector, progress);
     let backend = (intersector.name(), intersector.version());
     let threads = rayon::current_num_threads();
     let precision = options.precision;
-    let statistics = Statistics { backend, precision, threads, counts, built, build, render };
+    let Made { quality, built, took: build } = made;
+    let statistics =
+        Statistics { backend, precision, quality, threads, counts, built, build, render };
     Rendering { film, statistics }
 }
 

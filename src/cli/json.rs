@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::integrator::{self, Counts, RayCounts};
+use crate::intersect::BuildQuality;
 use crate::render::Statistics;
 use crate::scene::Scene;
 
@@ -62,6 +63,8 @@ pub struct Build {
     pub meshes: u64,
     /// Meshes that were there from a frame before.
     pub reused: u64,
+    /// How good Embree's trees are: `low` or `medium`; null without Embree.
+    pub bvh: Option<&'static str>,
 }
 
 #[derive(Serialize)]
@@ -121,7 +124,11 @@ impl Stats {
             spp: scene.film.spp,
             frames,
             geometry: Geometry::of(scene),
-            build: Build { meshes: statistics.built.meshes, reused: statistics.built.reused },
+            build: Build {
+                meshes: statistics.built.meshes,
+                reused: statistics.built.reused,
+                bvh: statistics.quality.map(BuildQuality::name),
+            },
             rays: rays.into(),
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },

@@ -37,7 +37,9 @@ pub fn run(arguments: &Render) -> Outcome {
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
-    let options = Options { backend, precision, threads, camera, view, ..Options::default() };
+    let quality = arguments.bvh.quality();
+    let options =
+        Options { backend, precision, quality, threads, camera, view, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,

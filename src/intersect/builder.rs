@@ -5,7 +5,7 @@ use crate::error::Result;
 #[cfg(feature = "embree")]
 use crate::intersect::embree::{self, Embree};
 use crate::intersect::kept::{Kept, used};
-use crate::intersect::{Backend, Bvh, Intersector, Precision, bvh};
+use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
 use crate::scene::Scene;
 
 /// How many meshes building took.
@@ -38,6 +38,7 @@ pub struct Builder {
     backend: Backend,
     precision: Precision,
     threads: usize,
+    quality: BuildQuality,
     /// What frames share; nothing for one picture.
     shared: Option<Shared>,
     built: Built,
@@ -54,7 +55,8 @@ struct Shared {
 impl Builder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        Self { backend, precision, threads, shared: None, built: Built::default() }
+        let (quality, built) = (BuildQuality::default(), Built::default());
+        Self { backend, precision, threads, quality, shared: None, built }
     }
 
     /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
@@ -62,6 +64,11 @@ impl Builder {
     /// instances.
     pub fn for_frames(backend: Backend, precision: Precision, threads: usize) -> Self {
         Self { shared: Some(Shared::default()), ..Self::new(backend, precision, threads) }
+    }
+
+    /// The same with trees of another quality than medium. The pure-Rust BVH has only one.
+    pub fn with_quality(self, quality: BuildQuality) -> Self {
+        Self { quality, ..self }
     }
 
     /// Builds the intersector of a checked scene.
@@ -77,7 +84,8 @@ impl Builder {
             #[cfg(feature = "embree")]
             Backend::Embree => {
                 let shared = shared.map(|shared| &mut shared.embree);
-                Box::new(Embree::build_sharing(scene, precision, threads, shared)?)
+                let quality = self.quality;
+                Box::new(Embree::build_sharing(scene, precision, threads, quality, shared)?)
             }
             Backend::Rust => {
                 // The BVH is built on the caller's rayon pool.
@@ -89,6 +97,11 @@ impl Builder {
         let meshes = after - before;
         self.built += Built { meshes, reused: used.saturating_sub(meshes) };
         Ok(intersector)
+    }
+
+    /// How good its trees are; nothing where Embree does not build them.
+    pub fn quality(&self) -> Option<BuildQuality> {
+        (self.backend != Backend::Rust).then_some(self.quality)
     }
 
     /// What all intersectors so far took.

@@ -13,12 +13,14 @@ mod entry;
 mod kept;
 mod leaving;
 pub mod primitive;
+mod quality;
 
 pub use brute::BruteForce;
 pub use builder::{Builder, Built};
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, version as embree_version};
+pub use quality::BuildQuality;
 
 use crate::error::Result;
 use crate::geometry::{Hit, Ray};

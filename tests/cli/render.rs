@@ -74,6 +74,42 @@ fn more_samples_smooth_the_edges() {
     assert_eq!((&stats["spp"], &stats["rays"]["primary"]), (&9.into(), &(64 * 48 * 9).into()));
 }
 
+#[test]
+#[cfg(feature = "embree")]
+fn a_certified_exr_is_the_same_bytes_at_any_bvh_quality() {
+    let folder = Folder::with_everything();
+    let [auto, low, medium] = ["auto", "low", "medium"]
+        .map(|bvh| made(&folder, &format!("--precision certified --bvh {bvh}"), "a.exr"));
+    assert!(low == medium && auto == medium);
+}
+
+/// What quality a run says that it built with.
+#[track_caller]
+fn bvh(folder: &Folder, flags: &str) -> Value {
+    folder.run(&format!("render scene.toml {flags} --stats -")).good().json()["build"]["bvh"]
+        .clone()
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn statistics_say_which_bvh_quality_was_asked_for() {
+    let folder = Folder::with_everything();
+    assert_eq!([bvh(&folder, "--bvh low"), bvh(&folder, "--bvh medium")], ["low", "medium"]);
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn the_bvh_is_of_low_quality_where_few_rays_come() {
+    let folder = Folder::with_everything();
+    let [few, many] = ["--size 2x2", "--size 200x200"].map(|size| bvh(&folder, size));
+    assert_eq!([few, many], ["low", "medium"]);
+}
+
+#[test]
+fn the_rust_bvh_has_no_quality() {
+    assert_eq!(bvh(&Folder::with(SPHERE), "--backend rust --bvh low"), Value::Null);
+}
+
 /// The bytes with 1, 2 and 8 threads are the same.
 #[track_caller]
 fn same_for_any_number_of_threads(name: &str, flags: &str) {

@@ -35,6 +35,7 @@ fn statistics_have_every_field() {
             ("size", Value::is_array),
             ("spp", Value::is_u64),
             ("geometry", Value::is_object),
+            ("build", Value::is_object),
             ("rays", Value::is_object),
             ("not_finite", Value::is_object),
             ("seconds", Value::is_object),

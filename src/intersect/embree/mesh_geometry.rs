@@ -30,6 +30,7 @@ impl MeshGeometry {
     pub fn new(
         device: &DeviceHandle,
         mesh: &Mesh,
+        quality: sys::RTCBuildQuality,
         place: impl Fn([f32; 3]) -> [f32; 3] + Sync,
     ) -> Result<Self> {
         let failed = |e: Error| {
@@ -44,6 +45,8 @@ impl MeshGeometry {
             let handle = sys::rtcNewGeometry(device.0, sys::RTCGeometryType::TRIANGLE);
             let geometry = Self(handle);
             device.check("making a geometry").map_err(failed)?;
+            // In a scene of low quality each geometry has a tree of its own, by its own quality.
+            sys::rtcSetGeometryBuildQuality(handle, quality);
             sys::rtcSetSharedGeometryBuffer(
                 handle,
                 sys::RTCBufferType::INDEX,

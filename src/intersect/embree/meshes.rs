@@ -44,7 +44,7 @@ impl Own {
         let frame = Frame::around(bounds);
         let table = Triangles::own(scene, mesh, frame);
         let callbacks = certified::triangles(width);
-        let geometry = user::geometry(device, &*table, callbacks)?;
+        let geometry = user::geometry(device, quality, &*table, callbacks)?;
         let scene = InnerScene::new(device, quality, RTCSceneFlags::NONE, &geometry)?;
         Ok(Self { scene, frame, _table: table })
     }
@@ -93,7 +93,7 @@ impl Meshes {
             } else if !scene.meshes[at].triangles.is_empty() {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
-                attach(top, &user::geometry(device, &*table, callbacks)?)?;
+                attach(top, &user::geometry(device, quality, &*table, callbacks)?)?;
                 self.tables.push(table);
                 kept.iter_mut().for_each(|kept| kept.count_one());
             }
@@ -101,7 +101,7 @@ impl Meshes {
         self.own = own.into_iter().flatten().collect();
         if !placed.is_empty() {
             let callbacks = placements::callbacks(width);
-            attach(top, &user::geometry(device, &*placed, callbacks)?)?;
+            attach(top, &user::geometry(device, quality, &*placed, callbacks)?)?;
             self.placements = Some(placed);
         }
         Ok(())

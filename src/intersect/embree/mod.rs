@@ -47,7 +47,7 @@ use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Ray};
 use crate::intersect::kept::Kept;
-use crate::intersect::{Coherence, Intersector, Precision, leaving};
+use crate::intersect::{BuildQuality, Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
 use canary::failed;
@@ -87,17 +87,19 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::build_sharing(scene, precision, threads, None)
+        Self::build_sharing(scene, precision, threads, BuildQuality::default(), None)
     }
 
-    /// As [`Embree::build`], with the meshes that are there already, on their device.
+    /// As [`Embree::build`], with trees of any quality, and with the meshes that are there already,
+    /// on their device.
     pub(super) fn build_sharing(
         scene: &'s Scene,
         precision: Precision,
         threads: usize,
+        quality: BuildQuality,
         shared: Option<&mut Shared>,
     ) -> Result<Self> {
-        Self::with_width(scene, precision, threads, None, shared)
+        Self::with_width(scene, precision, threads, None, quality, shared)
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -106,7 +108,8 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::with_width(scene, precision, threads, Some(Width::One), None)
+        let (width, quality) = (Some(Width::One), BuildQuality::default());
+        Self::with_width(scene, precision, threads, width, quality, None)
     }
 
     fn with_width(
@@ -114,6 +117,7 @@ impl<'s> Embree<'s> {
         precision: Precision,
         threads: usize,
         width: Option<Width>,
+        quality: BuildQuality,
         mut shared: Option<&mut Shared>,
     ) -> Result<Self> {
         static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
@@ -126,7 +130,11 @@ impl<'s> Embree<'s> {
             Some(there) => there.device(),
             None => Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?,
         };
-        let options = SceneOptions { build_quality: QUALITY, flags: flags() };
+        let quality = match quality {
+            BuildQuality::Low => RTCBuildQuality::LOW,
+            BuildQuality::Medium => RTCBuildQuality::MEDIUM,
+        };
+        let options = SceneOptions { build_quality: quality, flags: flags() };
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
         if let Some(shared) = &mut shared {
@@ -141,11 +149,11 @@ impl<'s> Embree<'s> {
         match precision {
             Precision::Fast => {
                 let kept = shared.map(|shared| &mut shared.fast);
-                instance_of = native::attach_meshes(scene, &top, &device, QUALITY, &frame, kept)?;
+                instance_of = native::attach_meshes(scene, &top, &device, quality, &frame, kept)?;
             }
             Precision::Certified => {
                 let kept = shared.map(|shared| &mut shared.certified);
-                _meshes.attach(scene, &top, &device, QUALITY, (frame, width), kept)?;
+                _meshes.attach(scene, &top, &device, quality, (frame, width), kept)?;
             }
         }
         let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
@@ -154,7 +162,7 @@ impl<'s> Embree<'s> {
                 Precision::Fast => spheres::callbacks(width),
                 Precision::Certified => certified::spheres(width),
             };
-            attach(&top, &user::geometry(&device, &**table, callbacks)?)?;
+            attach(&top, &user::geometry(&device, quality, &**table, callbacks)?)?;
         }
         let committed = top
             .commit()
@@ -210,8 +218,6 @@ impl Shared {
         self.fast.built() + self.certified.built()
     }
 }
-
-const QUALITY: RTCBuildQuality = RTCBuildQuality::MEDIUM;
 
 fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS

@@ -33,7 +33,7 @@ impl Own {
     ) -> Result<Self> {
         let center = bounds.center();
         let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3().to_array();
-        let geometry = MeshGeometry::new(device, mesh, local)?;
+        let geometry = MeshGeometry::new(device, mesh, quality, local)?;
         let scene = InnerScene::new(device, quality, flags(), &geometry)?;
         Ok(Self { scene, center, _mesh: mesh.clone() })
     }
@@ -70,7 +70,7 @@ pub fn attach_meshes(
                 let columns = columns(instance, own.center, frame);
                 Box::new(InstanceGeometry::new(device, &own.scene, &columns)?)
             }
-            None => Box::new(MeshGeometry::new(device, &scene.meshes[at], |p| {
+            None => Box::new(MeshGeometry::new(device, &scene.meshes[at], quality, |p| {
                 frame.point(instance.bake(p))
             })?),
         })

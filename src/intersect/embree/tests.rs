@@ -58,15 +58,15 @@ fn rays(state: &mut u64) -> Vec<Ray> {
 }
 
 fn check(width: Width) {
-    compare(width, Precision::Fast);
-    compare(width, Precision::Certified);
+    compare(width, Precision::Fast, BuildQuality::Medium);
+    compare(width, Precision::Certified, BuildQuality::Medium);
 }
 
-fn compare(width: Width, precision: Precision) {
+fn compare(width: Width, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let embree = Embree::with_width(&scene, precision, 1, Some(width), None).unwrap();
+    let embree = Embree::with_width(&scene, precision, 1, Some(width), quality, None).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
         let mut hits = vec![None; rays.len()];
@@ -106,4 +106,10 @@ fn packets_of_sixteen_equal_the_bvh() {
     if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
         check(Width::Sixteen);
     }
+}
+
+#[test]
+fn trees_of_low_quality_equal_the_bvh() {
+    compare(Width::One, Precision::Fast, BuildQuality::Low);
+    compare(Width::One, Precision::Certified, BuildQuality::Low);
 }

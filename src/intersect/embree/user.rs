@@ -59,6 +59,7 @@ impl UserGeometryImpl for Unused {
 /// callbacks must read it as what it is.
 pub fn geometry<T: Table>(
     device: &DeviceHandle,
+    quality: sys::RTCBuildQuality,
     table: &T,
     callbacks: Callbacks,
 ) -> Result<impl Geometry + use<T>> {
@@ -70,6 +71,8 @@ pub fn geometry<T: Table>(
     // SAFETY: the handle is live; by the caller's word the table stays where it is until the
     // scene is gone, and the callbacks read it as what it is.
     unsafe {
+        // In a scene of low quality each geometry has a tree of its own, by its own quality.
+        sys::rtcSetGeometryBuildQuality(handle, quality);
         sys::rtcSetGeometryUserPrimitiveCount(handle, count);
         sys::rtcSetGeometryUserData(handle, std::ptr::from_ref(table).cast_mut().cast());
         sys::rtcSetGeometryBoundsFunction(handle, Some(bounds::<T>), std::ptr::null_mut());
