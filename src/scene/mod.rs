@@ -17,6 +17,7 @@ pub use camera::{Camera, Lens, RayMaker};
 pub use film::{FilmSettings, SamplePosition, Transfer};
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};
+pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
@@ -142,11 +143,26 @@ impl Scene {
 
     /// The box around all that is finite: spheres and instances, not planes.
     pub fn bounds(&self) -> Bounds {
+        self.bounds_with(&self.mesh_bounds())
+    }
+
+    /// The box around each mesh, in its own space.
+    pub(crate) fn mesh_bounds(&self) -> Vec<Bounds> {
+        self.meshes.iter().map(|mesh| mesh.bounds()).collect()
+    }
+
+    /// As [`Scene::bounds`], for who has the boxes of the meshes already.
+    pub(crate) fn bounds_with(&self, meshes: &[Bounds]) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let mesh_bounds: Vec<Bounds> = self.meshes.iter().map(|m| m.bounds()).collect();
         let instances =
-            self.instances.iter().map(|i| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform));
+            self.instances.iter().map(|i| meshes[i.mesh.0 as usize].transformed(&i.transform));
         spheres.chain(instances).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// How many primitives trees are built of: spheres, instances, and the triangles of each mesh.
+    pub(crate) fn primitive_count(&self) -> u64 {
+        let triangles: usize = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        (triangles + self.spheres.len() + self.instances.len()) as u64
     }
 
     /// How many triangles a ray can meet, counting each instance of a mesh.
