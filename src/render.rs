@@ -143,7 +143,9 @@ pub fn render_frames(
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         for (i, &time) in times.iter().enumerate() {
             let posed = scene.at(time)?;
-            posed.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            if scene.animation.is_some() {
+                posed.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            }
             let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
             let start = Instant::now();
             let before = builder.built();
@@ -193,9 +195,7 @@ fn quality(scene: &Scene, options: &Options) -> BuildQuality {
     let [width, height] = scene.film.size;
     let factors = [width, height, spp, frames, 1 + lights as u32];
     let rays = factors.into_iter().map(u64::from).fold(1, u64::saturating_mul);
-    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let primitives = triangles + scene.spheres.len() + scene.instances.len();
-    options.quality.unwrap_or(BuildQuality::for_rays(rays, primitives as u64))
+    options.quality.unwrap_or(BuildQuality::for_rays(rays, scene.primitive_count()))
 }
 
 /// A picture of a checked scene, by an intersector that is there.
@@ -248,11 +248,15 @@ pub fn with_intersector(
     (film, counts, start.elapsed())
 }
 
-/// Runs `work` on a pool of `threads` threads of its own; 0 means all there are.
+/// Runs `work` on `threads` threads; 0 means all there are. They are those of the current rayon pool
+/// where that has so many, and else a pool of their own.
 ///
 /// # Errors
 /// When the threads cannot be started, and what `work` returns.
 pub fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    if threads == 0 || threads == rayon::current_num_threads() {
+        return work();
+    }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

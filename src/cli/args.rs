@@ -241,6 +241,8 @@ impl Tracing {
     /// When the scene cannot be loaded, or the flags do not fit it.
     pub fn load_animated(&self) -> Result<(Scene, usize)> {
         files::check_input(&self.scene)?;
+        // Loading and writing keep to them, too. Fails only where the pool is there already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let mut scene = crate::load::load_for(&self.scene, self.size)?;
         if let Some(spp) = self.spp {
             scene.film.spp = spp;

@@ -27,6 +27,8 @@ pub struct Stats {
     pub mrays_per_second: f64,
     /// The most memory the process had at any time; null where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
+    /// What of it Embree had, at its own peak; null without Embree.
+    pub embree_peak_memory_bytes: Option<u64>,
     pub warnings: Vec<String>,
 }
 
@@ -134,9 +136,17 @@ impl Stats {
             seconds: Seconds { load, build, render, write, total },
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),
+            embree_peak_memory_bytes: embree_peak_memory(statistics),
             warnings,
         }
     }
+}
+
+fn embree_peak_memory(statistics: &Statistics) -> Option<u64> {
+    #[cfg(feature = "embree")]
+    return statistics.quality.map(|_| crate::intersect::embree_peak_memory());
+    #[cfg(not(feature = "embree"))]
+    statistics.quality.and(None)
 }
 
 /// The process's peak memory, as Linux tells it.

@@ -19,7 +19,7 @@ pub use brute::BruteForce;
 pub use builder::{Builder, Built};
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
-pub use embree::{Embree, version as embree_version};
+pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
 pub use quality::BuildQuality;
 
 use crate::error::Result;

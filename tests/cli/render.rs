@@ -261,3 +261,15 @@ fn quiet_prints_nothing() {
 fn progress_is_not_shown_on_a_pipe() {
     assert_eq!(Folder::with_everything().run("render scene.toml --spp 16").good().stderr, "");
 }
+
+#[test]
+#[cfg(feature = "embree")]
+fn statistics_tell_the_memory_that_embree_takes_for_a_mesh() {
+    let folder = Folder::with_everything();
+    let stats = folder.run("render scene.toml --stats -").good().json();
+    let [embree, all] =
+        ["embree_peak_memory_bytes", "peak_memory_bytes"].map(|k| stats[k].as_u64());
+    // The 32 bytes of at least one box for each of the 4 triangles.
+    assert!(embree.unwrap() > 128);
+    assert!(all.is_none_or(|all| all > embree.unwrap()));
+}

@@ -9,10 +9,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::intersect::embree::raw::DeviceHandle;
-use crate::scene::Mesh;
-
-/// How many vertices are placed before another thread is asked to help.
-const GRAIN: usize = 1 << 14;
+use crate::scene::{GRAIN, Mesh};
 
 /// A triangle geometry of Embree: its indices are the mesh's own, its vertices were written straight
 /// into Embree's memory.

@@ -57,10 +57,11 @@ const SMALL: f64 = 1e-4;
 impl Meshes {
     /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
     /// one that is outsized in its own; the others as placements. Where frames share their meshes
-    /// in `kept`, all are placements but the outsized ones.
+    /// in `kept`, all are placements but the outsized ones. `local` are the boxes of the meshes.
     pub fn attach(
         &mut self,
         scene: &Scene,
+        local: &[Bounds],
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
         quality: RTCBuildQuality,
@@ -68,7 +69,6 @@ impl Meshes {
         mut kept: Option<&mut Kept<Own>>,
     ) -> Result<()> {
         let uses = uses(scene);
-        let local: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
         let world: Vec<Bounds> = (scene.instances.iter())
             .map(|instance| {
                 let bounds = local[instance.mesh.0 as usize].transformed(&instance.transform);

@@ -23,6 +23,7 @@ mod filter;
 mod finish;
 mod frame;
 mod layout;
+mod memory;
 mod mesh_geometry;
 mod meshes;
 mod native;
@@ -52,6 +53,7 @@ use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
 use canary::failed;
 use frame::Frame;
+pub use memory::peak as peak_memory;
 use meshes::Meshes;
 use raw::{DeviceHandle, scene_handle};
 use spheres::SphereTable;
@@ -128,7 +130,11 @@ impl<'s> Embree<'s> {
 
         let device = match shared.as_ref().and_then(|shared| shared.device.as_ref()) {
             Some(there) => there.device(),
-            None => Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?,
+            None => {
+                // Waking threads takes longer than a small tree does.
+                let threads = if scene.primitive_count() < FEW { 1 } else { threads };
+                Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?
+            }
         };
         let quality = match quality {
             BuildQuality::Low => RTCBuildQuality::LOW,
@@ -137,10 +143,12 @@ impl<'s> Embree<'s> {
         let options = SceneOptions { build_quality: quality, flags: flags() };
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
+        memory::watch(&device);
         if let Some(shared) = &mut shared {
             shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
         }
-        let bounds = scene.bounds();
+        let mesh_bounds = scene.mesh_bounds();
+        let bounds = scene.bounds_with(&mesh_bounds);
         let frame = Frame::around(bounds);
         let width = width.unwrap_or_else(|| Width::native(&device));
 
@@ -149,11 +157,27 @@ impl<'s> Embree<'s> {
         match precision {
             Precision::Fast => {
                 let kept = shared.map(|shared| &mut shared.fast);
-                instance_of = native::attach_meshes(scene, &top, &device, quality, &frame, kept)?;
+                instance_of = native::attach_meshes(
+                    scene,
+                    &mesh_bounds,
+                    &top,
+                    &device,
+                    quality,
+                    &frame,
+                    kept,
+                )?;
             }
             Precision::Certified => {
                 let kept = shared.map(|shared| &mut shared.certified);
-                _meshes.attach(scene, &top, &device, quality, (frame, width), kept)?;
+                _meshes.attach(
+                    scene,
+                    &mesh_bounds,
+                    &top,
+                    &device,
+                    quality,
+                    (frame, width),
+                    kept,
+                )?;
             }
         }
         let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
@@ -218,6 +242,9 @@ impl Shared {
         self.fast.built() + self.certified.built()
     }
 }
+
+/// How many primitives one thread builds a tree of in a few milliseconds.
+const FEW: u64 = 1 << 12;
 
 fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS

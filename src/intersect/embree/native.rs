@@ -42,9 +42,10 @@ impl Own {
 /// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
 /// stands several times through Embree's instances, unless it is outsized in its own space. Where
 /// frames share their meshes in `kept`, all stand through instances but the outsized ones. Says
-/// which instance each geometry is. Embree goes on reading the meshes of `scene`.
+/// which instance each geometry is. `bounds` are those of the meshes, which Embree goes on reading.
 pub fn attach_meshes(
     scene: &Scene,
+    bounds: &[Bounds],
     top: &embree4_rs::Scene,
     device: &DeviceHandle,
     quality: RTCBuildQuality,
@@ -52,7 +53,6 @@ pub fn attach_meshes(
     mut kept: Option<&mut Kept<Own>>,
 ) -> Result<Vec<u32>> {
     let uses = uses(scene);
-    let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
     let in_world = |at: usize| (uses[at] == 1 && kept.is_none()) || is_outsized(&bounds[at]);
     let is_there = |at: usize| uses[at] > 0 && !scene.meshes[at].triangles.is_empty();
     let has_own: Vec<bool> = (0..uses.len()).map(|at| is_there(at) && !in_world(at)).collect();
