@@ -176,8 +176,7 @@ impl<'s> Embree<'s> {
                     &mesh_bounds,
                     &top,
                     &device,
-                    quality,
-                    (frame, width),
+                    (frame, width, quality),
                     kept,
                 )?;
             }
