@@ -10,7 +10,7 @@ use crate::integrator::{Counts, Integrator, Wave};
 use crate::intersect::Coherence;
 use crate::scene::LightKind;
 use crate::shading::{self, Reflectance};
-use crate::surface::{Detail, Surfaces};
+use crate::surface::{Detail, Surface, Surfaces};
 
 /// The light that a wave's rays bring back, and what it takes to work it out.
 #[derive(Default)]
@@ -20,7 +20,7 @@ pub(super) struct Light {
     /// Rays of which the radiance is not finite, and is NaN here, with what made it so.
     pub spoilt: Vec<(u32, Cause)>,
     /// The mirrors and the glass that were hit, by ray.
-    pub bounces: Vec<u32>,
+    pub bounces: Vec<(u32, Surface)>,
     /// Room for surfaces, and how many of them are in use.
     lit: (Vec<Lit>, usize),
     shadow: Shadows,
@@ -134,8 +134,11 @@ impl Integrator<'_> {
         lit: &mut Lit,
         radiance: &mut [Vec3],
         spoilt: &mut Vec<(u32, Cause)>,
-        bounces: &mut Vec<u32>,
+        bounces: &mut Vec<(u32, Surface)>,
     ) {
+        if !self.has_detail && self.look_alike(found, lit, radiance) {
+            return;
+        }
         lit.here = [false; LANES];
         lit.shines = false;
         let mut one_exponent = true;
@@ -147,15 +150,16 @@ impl Integrator<'_> {
             let look = &self.looks[material];
             let Reflectance { mut diffuse, specular, shininess } = look.reflectance;
             let mut emission = look.emission;
+            let mut is_finite = look.is_finite;
             if self.has_detail && is_detailed(self.scene, look, &hit) {
                 let (position, normal) =
                     (lit.surfaces.position(i), lit.surfaces.geometric_normal(i));
                 let detail = Detail::new(self.scene, &hit, position, normal);
                 let material = &self.scene.materials[material];
                 (emission, diffuse) = look.with(self.scene, material, &detail);
+                is_finite = emission.is_finite() && diffuse.is_finite();
             }
-            let colors = emission.is_finite() && diffuse.is_finite();
-            if !(colors && lit.surfaces.position(i).is_finite()) {
+            if !(is_finite && lit.surfaces.position(i).is_finite()) {
                 spoil(ray as u32, &mut radiance[ray], Cause::Surface, spoilt);
                 continue;
             }
@@ -169,10 +173,44 @@ impl Integrator<'_> {
                 one_exponent &= *exponent.get_or_insert(shininess) == shininess;
             }
             if self.follows && look.is_followed {
-                bounces.push(ray as u32);
+                bounces.push((ray as u32, lit.surfaces.surface(i, hit.id)));
             }
         }
         lit.exponent = exponent.filter(|_| one_exponent).and_then(shading::whole);
+    }
+
+    /// As `look`, where sixteen rays hit one material without detail that sends nothing on; says
+    /// whether they do.
+    #[inline(always)]
+    fn look_alike(&self, found: &Found, lit: &mut Lit, radiance: &mut [Vec3]) -> bool {
+        let first = lit.surfaces.material[0];
+        let mut alike = true;
+        for i in 0..LANES {
+            let finite = lit.surfaces.position[0][i] - lit.surfaces.position[0][i]
+                + (lit.surfaces.position[1][i] - lit.surfaces.position[1][i])
+                + (lit.surfaces.position[2][i] - lit.surfaces.position[2][i]);
+            alike &= (found.t[i] < f64::INFINITY)
+                & (lit.surfaces.material[i] == first)
+                & (finite == 0.0);
+        }
+        let look = match alike {
+            true => &self.looks[first.0 as usize],
+            false => return false,
+        };
+        if look.is_followed || !look.is_finite {
+            return false;
+        }
+        let Reflectance { diffuse, specular, shininess } = look.reflectance;
+        for axis in 0..3 {
+            lit.diffuse[axis] = [diffuse[axis]; LANES];
+            lit.specular[axis] = [specular[axis]; LANES];
+        }
+        lit.here = [diffuse != Vec3::ZERO || specular != Vec3::ZERO; LANES];
+        lit.shininess = [shininess; LANES];
+        lit.shines = specular != Vec3::ZERO;
+        lit.exponent = shading::whole(shininess);
+        radiance[lit.block * LANES..][..LANES].fill(look.emission);
+        true
     }
 
     /// The light of one source on sixteen surfaces: what reaches them for certain, and the shadow
@@ -188,31 +226,59 @@ impl Integrator<'_> {
         let found = &wave.hits.found()[lit.block];
         let Some(arrivals) = Arrivals::of(light, lit) else { return };
         let Some(shares) = lit.shares(&arrivals, &wave.rays, found) else { return };
-        for i in (0..LANES).filter(|&i| shares.here[i]) {
-            let share = at(&shares.share, i);
-            let intensity = arrivals.intensity[i];
-            let with = match (intensity.is_finite(), share.is_finite()) {
-                (false, _) => NO_LIGHT,
-                (true, false) => Vec3::INFINITY,
-                (true, true) => share * intensity,
-            };
+        let mut bright = shares.here;
+        let mut odd = false;
+        let mut with = [[0.0f32; LANES]; 3];
+        for axis in 0..3 {
+            for i in 0..LANES {
+                with[axis][i] = shares.share[axis][i] * arrivals.intensity[axis][i];
+            }
+        }
+        for i in 0..LANES {
+            let [x, y, z] = [with[0][i], with[1][i], with[2][i]];
+            bright[i] &= (x != 0.0) | (y != 0.0) | (z != 0.0);
+            odd |= shares.here[i] & !((x + y + z).abs() < f32::INFINITY);
+        }
+        if odd {
+            mark_odd(&arrivals, &shares, &mut with, &mut bright);
+        }
+        if !light.casts_shadow() {
+            for i in (0..LANES).filter(|&i| bright[i]) {
+                add((lit.block * LANES + i) as u32, radiance, at(&with, i), spoilt);
+            }
+            return;
+        }
+        let tmax = if arrivals.bounded { 1.0 } else { f64::INFINITY };
+        for i in (0..LANES).filter(|&i| bright[i]) {
             let Some(id) = found.id[i] else { continue };
-            if share == Vec3::ZERO || with == Vec3::ZERO {
-                continue;
-            }
-            let ray = (lit.block * LANES + i) as u32;
-            if !light.casts_shadow() {
-                add(ray, radiance, with, spoilt);
-                continue;
-            }
             let side = if shares.on_front[i] { Side::Front } else { Side::Back };
-            shadow.rays.push_spawned(
-                lit.surfaces.position(i),
-                arrivals.toward(i),
-                if arrivals.bounded { 1.0 } else { f64::INFINITY },
-                Departure { id, side },
-            );
-            shadow.waiting.push((ray, with));
+            let from = Departure { id, side };
+            shadow.rays.push_spawned(lit.surfaces.position(i), arrivals.toward(i), tmax, from);
+            shadow.waiting.push(((lit.block * LANES + i) as u32, at(&with, i)));
+        }
+    }
+}
+
+/// Tells apart, among sums that are not finite, what made them so: NaN where the light's arrival is
+/// not finite, infinite where the surface's share of it is not. What overflows only in their product
+/// is infinite by itself.
+#[cold]
+fn mark_odd(
+    arrivals: &Arrivals,
+    shares: &Shares,
+    with: &mut [Lanes<f32>; 3],
+    bright: &mut Lanes<bool>,
+) {
+    for i in (0..LANES).filter(|&i| shares.here[i]) {
+        let (share, intensity) = (at(&shares.share, i), at(&arrivals.intensity, i));
+        if share == Vec3::ZERO {
+            bright[i] = false;
+        } else if !intensity.is_finite() {
+            put(with, i, NO_LIGHT);
+            bright[i] = true;
+        } else if !share.is_finite() {
+            put(with, i, Vec3::INFINITY);
+            bright[i] = true;
         }
     }
 }
@@ -263,7 +329,7 @@ impl pulp::WithSimd for Reach<'_> {
 /// The light that arrives at sixteen points.
 struct Arrivals {
     toward: [Lanes<f64>; 3],
-    intensity: Lanes<Vec3>,
+    intensity: [Lanes<f32>; 3],
     /// Where any arrives.
     here: Lanes<bool>,
     bounded: bool,
@@ -274,7 +340,7 @@ impl Arrivals {
     fn of(light: &crate::scene::Light, lit: &Lit) -> Option<Self> {
         let mut arrivals = Self {
             toward: [[0.0; LANES]; 3],
-            intensity: [light.intensity; LANES],
+            intensity: light.intensity.to_array().map(|x| [x; LANES]),
             here: lit.here,
             bounded: true,
         };
@@ -302,7 +368,7 @@ impl Arrivals {
                             for axis in 0..3 {
                                 arrivals.toward[axis][i] = arrival.toward[axis];
                             }
-                            arrivals.intensity[i] = arrival.intensity;
+                            put(&mut arrivals.intensity, i, arrival.intensity);
                         }
                     }
                 }

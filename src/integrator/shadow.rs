@@ -18,6 +18,8 @@ use crate::surface::Surface;
 /// Room for shadow rays that may go through glass.
 #[derive(Default)]
 pub(super) struct Through {
+    /// Whether each certainly meets none.
+    clear: Vec<bool>,
     beams: Vec<Beam>,
     ahead: Rays,
     traced: Rays,
@@ -52,7 +54,8 @@ impl Integrator<'_> {
         counts: &mut Counts,
     ) {
         let Shadows { rays, waiting, blocked, left, through } = shadows;
-        let Through { beams, ahead, traced, hits } = through;
+        let Through { clear, beams, ahead, traced, hits } = through;
+        self.clearance.of_all(rays, self.arch, clear);
         left.clear();
         beams.clear();
         ahead.clear();
@@ -61,12 +64,12 @@ impl Integrator<'_> {
                 left.push(DVec3::ZERO);
                 continue;
             }
-            let ray = rays.ray(at);
-            if self.clearance.is_clear(&ray) {
+            if clear[at] {
                 left.push(DVec3::ONE);
                 continue;
             }
             left.push(DVec3::ZERO);
+            let ray = rays.ray(at);
             let inside = self.starts_in(&ray, wave, waiting[at].0 as usize);
             beams.push(Beam { at, inside, left: DVec3::ONE });
             ahead.push(&ray);

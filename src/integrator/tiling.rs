@@ -1,5 +1,7 @@
 //! How a picture is cut up.
 
+use crate::geometry::{LANES, Lanes};
+
 /// How a picture is cut into the batches that go through the intersector together.
 ///
 /// It decides speed and never the picture, in precision `certified`: the stress test tries it.
@@ -17,5 +19,45 @@ impl Default for Tiling {
     /// Tiles of 64 × 16 pixels, of squares of 4 × 4, so that a packet of 16 is a square.
     fn default() -> Self {
         Self { rows: 16, columns: 64, block: 4 }
+    }
+}
+
+/// The pixels of a tile, in the order in which their rays are lined up.
+#[derive(Debug, Default)]
+pub(super) struct Tile {
+    /// Width and height, and the side of the squares.
+    shape: ([usize; 2], usize),
+    /// Column and row of each pixel in the tile.
+    pub within: Vec<[u32; 2]>,
+    /// Columns and rows in the picture, sixteen by sixteen.
+    pub places: Vec<[Lanes<f64>; 2]>,
+}
+
+impl Tile {
+    /// Makes it the tile of a shape whose upper left pixel is at a place in the picture.
+    pub fn set(&mut self, place: [usize; 2], shape: [usize; 2], block: usize) {
+        if self.shape != (shape, block) {
+            self.shape = (shape, block);
+            self.within.clear();
+            let [columns, rows] = shape;
+            for y in (0..rows).step_by(block) {
+                for x in (0..columns).step_by(block) {
+                    for row in y..(y + block).min(rows) {
+                        let end = (x + block).min(columns);
+                        self.within.extend((x..end).map(|column| [column as u32, row as u32]));
+                    }
+                }
+            }
+        }
+        let [left, top] = place.map(|x| x as f64);
+        self.places.clear();
+        self.places.extend(self.within.chunks(LANES).map(|within| {
+            let mut places = [[0.0; LANES]; 2];
+            for (i, &[x, y]) in within.iter().enumerate() {
+                places[0][i] = left + f64::from(x);
+                places[1][i] = top + f64::from(y);
+            }
+            places
+        }));
     }
 }

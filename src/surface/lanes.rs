@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::{flat_face, normal_of_sphere, on_the_plane, smooth_normal};
+use super::{Surface, flat_face, normal_of_sphere, on_the_plane, smooth_normal};
 use crate::geometry::{Departure, Found, Geometry, LANES, Lanes, Lines, PrimitiveId, Rays, Side};
-use crate::scene::{Faces, MaterialId, Scene};
+use crate::scene::{Faces, MaterialId, Plane, Scene, Sphere};
 
 /// The points of surfaces that sixteen rays hit; any numbers where a ray hit nothing. The fields
-/// are those of [`Surface`](super::Surface).
+/// are those of [`Surface`].
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Surfaces {
@@ -87,7 +87,6 @@ impl Surfaces {
         if self.kinds.planes {
             self.set_planes(scene, lines, found);
         }
-        self.normal = self.geometric_normal;
         if self.kinds.triangles {
             self.set_triangles(scene, found);
         }
@@ -99,26 +98,26 @@ impl Surfaces {
         for axis in 0..3 {
             self.position[axis][i] = position[axis];
             self.geometric_normal[axis][i] = normal[axis];
+            self.normal[axis][i] = normal[axis];
         }
     }
 
     #[inline(always)]
     fn set_spheres(&mut self, scene: &Scene, lines: &Lines, found: &Found) {
-        let mut center = [[0.0; LANES]; 3];
-        let mut radius = [0.0; LANES];
         let mut here = [false; LANES];
-        for i in 0..LANES {
-            let Some(id) = found.id[i] else { continue };
-            if id.geometry == Geometry::Spheres {
-                let sphere = &scene.spheres[id.primitive as usize];
-                for axis in 0..3 {
-                    center[axis][i] = sphere.center[axis];
-                }
-                radius[i] = sphere.radius;
-                self.material[i] = sphere.material;
+        // Lanes that hit no sphere take any, so that all are computed alike.
+        let spheres: Lanes<&Sphere> = std::array::from_fn(|i| match found.id[i] {
+            Some(PrimitiveId { geometry: Geometry::Spheres, primitive, .. }) => {
                 here[i] = true;
+                let sphere = &scene.spheres[primitive as usize];
+                self.material[i] = sphere.material;
+                sphere
             }
-        }
+            _ => &scene.spheres[0],
+        });
+        let center: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| spheres[i].center[axis]));
+        let radius: Lanes<f64> = std::array::from_fn(|i| spheres[i].radius);
         for i in 0..LANES {
             let (origin, direction) = lines.line(i);
             let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
@@ -132,21 +131,20 @@ impl Surfaces {
 
     #[inline(always)]
     fn set_planes(&mut self, scene: &Scene, lines: &Lines, found: &Found) {
-        let mut point = [[0.0; LANES]; 3];
-        let mut normal = [[0.0; LANES]; 3];
         let mut here = [false; LANES];
-        for i in 0..LANES {
-            let Some(id) = found.id[i] else { continue };
-            if id.geometry == Geometry::Planes {
-                let plane = &scene.planes[id.primitive as usize];
-                for axis in 0..3 {
-                    point[axis][i] = plane.point[axis];
-                    normal[axis][i] = plane.normal[axis];
-                }
-                self.material[i] = plane.material;
+        let planes: Lanes<&Plane> = std::array::from_fn(|i| match found.id[i] {
+            Some(PrimitiveId { geometry: Geometry::Planes, primitive, .. }) => {
                 here[i] = true;
+                let plane = &scene.planes[primitive as usize];
+                self.material[i] = plane.material;
+                plane
             }
-        }
+            _ => &scene.planes[0],
+        });
+        let point: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].point[axis]));
+        let normal: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].normal[axis]));
         for i in 0..LANES {
             let (origin, direction) = lines.line(i);
             let point = DVec3::new(point[0][i], point[1][i], point[2][i]);
@@ -173,9 +171,6 @@ impl Surfaces {
             let (position, normal) = flat_face(faces.corners(i), found.u[i], found.v[i]);
             if here[i] {
                 self.put(i, position, normal);
-                for axis in 0..3 {
-                    self.normal[axis][i] = normal[axis];
-                }
             }
         }
         for i in (0..LANES).filter(|&i| here[i]) {
@@ -213,6 +208,18 @@ impl Surfaces {
                 let n = self.normal[axis][i];
                 self.normal[axis][i] = if self.is_back[i] & turns[i] { -n } else { n };
             }
+        }
+    }
+
+    /// The surface in lane `i`, where `id` was hit.
+    pub fn surface(&self, i: usize, id: PrimitiveId) -> Surface {
+        Surface {
+            position: self.position(i),
+            geometric_normal: self.geometric_normal(i),
+            normal: self.normal(i),
+            side: self.side(i),
+            material: self.material[i],
+            id,
         }
     }
 

@@ -50,7 +50,7 @@ impl<const W: usize> Clip<W> {
 }
 
 /// Which rays of a packet to trace.
-pub struct Lanes<const W: usize> {
+pub struct Entered<const W: usize> {
     /// Those that come into the box at all.
     pub inside: [bool; W],
     /// Those that no f32 ray can stand for: they start too far away, or their direction is so
@@ -107,7 +107,6 @@ impl<const W: usize> Exact<W> {
     }
 
     /// Sets up the f32 rays: where they start, how long their directions are, where they end.
-    ///
     #[inline(always)]
     pub fn set_up(
         &mut self,
@@ -115,8 +114,8 @@ impl<const W: usize> Exact<W> {
         org: &mut [[f32; W]; 3],
         dir: &mut [[f32; W]; 3],
         tfar: &mut [f32; W],
-    ) -> Lanes<W> {
-        let mut lanes = Lanes { inside: [true; W], astray: [false; W], any_astray: false };
+    ) -> Entered<W> {
+        let mut lanes = Entered { inside: [true; W], astray: [false; W], any_astray: false };
         let mut far = false;
         for i in 0..W {
             let (o, d) = self.line(i);
