@@ -97,9 +97,10 @@ impl Integrator<'_> {
         }
         self.shade(wave, light, counts);
         if wave.paths.is_empty() {
-            light.take_samples(sample, counts);
+            light.take_samples(wave.rays.len(), sample, counts);
         }
-        for (radiance, path) in light.radiance.iter().zip(&wave.paths) {
+        for (i, path) in wave.paths.iter().enumerate() {
+            let radiance = light.radiance(i);
             let to = &mut sample[path.sample as usize];
             if !to.is_nan() && !radiance.is_nan() {
                 *to += (path.throughput * radiance.as_dvec3()).as_vec3();

@@ -22,7 +22,7 @@ mod tiling;
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{Geometry, Hit, Hits, LANES, Lanes, Ray, Rays};
+use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
 use crate::surface::Surface;
@@ -73,7 +73,7 @@ pub struct Scratch {
     next: Wave,
     /// The radiance of the tile's pixels: of one sample, and the sum of all.
     sample: Vec<Vec3>,
-    sum: Vec<Vec3>,
+    sum: Vec<Pixel>,
 }
 
 /// Rays that go through the intersector together, and what they hit.
@@ -142,8 +142,12 @@ impl<'a> Integrator<'a> {
             let columns = widest.min(width - left);
             scratch.tile.set([left, first], [columns, rows], block);
             self.tile(scratch, &mut counts);
-            for (&[x, y], &sum) in scratch.tile.within.iter().zip(&scratch.sum) {
-                pixels[y as usize * width + left + x as usize] = sum.to_array();
+            let mut rest = &scratch.sum[..];
+            for &[x, y, length] in &scratch.tile.runs {
+                let (run, after) = rest.split_at(length as usize);
+                let at = y as usize * width + left + x as usize;
+                pixels[at..at + run.len()].copy_from_slice(run);
+                rest = after;
             }
         }
         counts
@@ -152,13 +156,13 @@ impl<'a> Integrator<'a> {
     /// Works out the pixels of a tile.
     fn tile(&self, scratch: &mut Scratch, counts: &mut Counts) {
         scratch.sum.clear();
-        scratch.sum.resize(scratch.tile.within.len(), Vec3::ZERO);
+        scratch.sum.resize(scratch.tile.count, [0.0; 3]);
         for sample in &self.samples {
             self.sample(*sample, scratch, counts);
         }
         if self.samples.len() > 1 {
             let share = 1.0 / self.samples.len() as f32;
-            scratch.sum.iter_mut().for_each(|sum| *sum *= share);
+            scratch.sum.iter_mut().flatten().for_each(|value| *value *= share);
         }
     }
 
@@ -170,16 +174,15 @@ impl<'a> Integrator<'a> {
         counts: &mut Counts,
     ) {
         let Scratch { tile, wave, sum, .. } = scratch;
-        let places = &tile.places;
-        self.arch.dispatch(Aim { at: &self.rays, places, offset, rays: &mut wave.rays });
-        wave.rays.truncate(tile.within.len());
+        self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
+        wave.rays.truncate(tile.count);
         wave.paths.clear();
         wave.trace(self.intersector, Coherence::Coherent);
         counts.rays.primary += wave.rays.len() as u64;
         counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
             for (i, sum) in sum.iter_mut().enumerate() {
-                *sum = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref()).into();
+                *sum = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
             }
             return;
         }
@@ -188,12 +191,12 @@ impl<'a> Integrator<'a> {
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
-            light.take_samples(sample, counts);
+            light.take_samples(wave.rays.len(), sample, counts);
         }
         for (to, &radiance) in scratch.sum.iter_mut().zip(&scratch.sample) {
-            let sum = *to + radiance;
+            let sum = Vec3::from(*to) + radiance;
             if sum.is_finite() {
-                *to = sum;
+                *to = sum.to_array();
             } else if !radiance.is_nan() {
                 counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
             }
@@ -227,7 +230,8 @@ impl<'a> Integrator<'a> {
 /// The rays from the eye through some pixels.
 struct Aim<'a> {
     at: &'a RayMaker,
-    places: &'a [[Lanes<f64>; 2]],
+    tile: &'a Tile,
+    /// Where in each pixel.
     offset: [f64; 2],
     rays: &'a mut Rays,
 }
@@ -237,13 +241,14 @@ impl pulp::WithSimd for Aim<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let [dx, dy] = self.offset;
-        let all = self.rays.fill(self.places.len());
-        for (lines, [columns, rows]) in all.iter_mut().zip(self.places) {
+        let ([dx, dy], [left, top]) = (self.offset, self.tile.place);
+        let all = self.rays.fill(self.tile.places.len());
+        for (lines, [columns, rows]) in all.iter_mut().zip(&self.tile.places) {
             let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
-                x[i] = columns[i] + dx;
-                y[i] = rows[i] + dy;
+                // The first sum is exact, so that the tiling does not matter.
+                x[i] = (columns[i] + left) + dx;
+                y[i] = (rows[i] + top) + dy;
             }
             self.at.through_all(&x, &y, lines);
         }

@@ -27,37 +27,47 @@ impl Default for Tiling {
 pub(super) struct Tile {
     /// Width and height, and the side of the squares.
     shape: ([usize; 2], usize),
-    /// Column and row of each pixel in the tile.
-    pub within: Vec<[u32; 2]>,
-    /// Columns and rows in the picture, sixteen by sixteen.
+    /// How many pixels there are.
+    pub count: usize,
+    /// Column and row of the upper left one in the picture.
+    pub place: [f64; 2],
+    /// Columns and rows in the tile, sixteen by sixteen.
     pub places: Vec<[Lanes<f64>; 2]>,
+    /// Pixels that are neighbours in a row: column, row and number.
+    pub runs: Vec<[u32; 3]>,
 }
 
 impl Tile {
     /// Makes it the tile of a shape whose upper left pixel is at a place in the picture.
     pub fn set(&mut self, place: [usize; 2], shape: [usize; 2], block: usize) {
-        if self.shape != (shape, block) {
-            self.shape = (shape, block);
-            self.within.clear();
-            let [columns, rows] = shape;
-            for y in (0..rows).step_by(block) {
-                for x in (0..columns).step_by(block) {
-                    for row in y..(y + block).min(rows) {
-                        let end = (x + block).min(columns);
-                        self.within.extend((x..end).map(|column| [column as u32, row as u32]));
-                    }
+        self.place = place.map(|x| x as f64);
+        if self.shape == (shape, block) {
+            return;
+        }
+        self.shape = (shape, block);
+        self.places.clear();
+        self.runs.clear();
+        self.count = 0;
+        let [columns, rows] = shape;
+        for y in (0..rows).step_by(block) {
+            for x in (0..columns).step_by(block) {
+                for row in y..(y + block).min(rows) {
+                    let end = (x + block).min(columns);
+                    self.runs.push([x as u32, row as u32, (end - x) as u32]);
+                    (x..end).for_each(|column| self.add(column, row));
                 }
             }
         }
-        let [left, top] = place.map(|x| x as f64);
-        self.places.clear();
-        self.places.extend(self.within.chunks(LANES).map(|within| {
-            let mut places = [[0.0; LANES]; 2];
-            for (i, &[x, y]) in within.iter().enumerate() {
-                places[0][i] = left + f64::from(x);
-                places[1][i] = top + f64::from(y);
-            }
-            places
-        }));
+    }
+
+    fn add(&mut self, column: usize, row: usize) {
+        let lane = self.count % LANES;
+        if lane == 0 {
+            self.places.push([[0.0; LANES]; 2]);
+        }
+        if let Some([columns, rows]) = self.places.last_mut() {
+            (columns[lane], rows[lane]) = (column as f64, row as f64);
+        }
+        self.count += 1;
     }
 }

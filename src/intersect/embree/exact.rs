@@ -116,12 +116,15 @@ impl<const W: usize> Exact<W> {
         tfar: &mut [f32; W],
     ) -> Entered<W> {
         let mut lanes = Entered { inside: [true; W], astray: [false; W], any_astray: false };
+        for i in 0..W {
+            lanes.inside[i] = self.tmax[i] > 0.0;
+        }
         let mut far = false;
         for i in 0..W {
             let (o, d) = self.line(i);
             let p = (o - frame.center).abs();
-            far |= p.max_element() > REACH * frame.extent;
-            far |= is_extreme(o, d);
+            let away = (p.max_element() > REACH * frame.extent) | is_extreme(o, d);
+            far |= away & (self.tmax[i] > 0.0);
         }
         self.clip.start = [0.0; W];
         if far {
@@ -131,10 +134,10 @@ impl<const W: usize> Exact<W> {
                 let (start, enters) = self.enter(i, frame);
                 // Where one that starts far away passes the box is certain even so.
                 let lost = (distance > FAR * frame.extent) & enters;
-                lanes.astray[i] = lost | is_extreme(o, d);
+                lanes.astray[i] = (lost | is_extreme(o, d)) & lanes.inside[i];
                 lanes.any_astray |= lanes.astray[i];
                 self.clip.start[i] = start;
-                lanes.inside[i] = enters & !lanes.astray[i];
+                lanes.inside[i] &= enters & !lanes.astray[i];
             }
         }
         for i in 0..W {

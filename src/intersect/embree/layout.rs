@@ -5,7 +5,7 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `canary` proves at start that the library agrees.
 
-use crate::geometry::{Found, Geometry, PrimitiveId, Side};
+use crate::geometry::{Found, Ids};
 use crate::intersect::embree::exact::{Clip, Entered, Exact};
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::nearest::Nearest;
@@ -156,15 +156,7 @@ impl<'a, const W: usize> Context<'a, W> {
                 farthest = farthest.max(self.exact.line(i).0.abs().max_element());
             }
             self.slack = greatest_slack(farthest);
-            for i in 0..rays.count {
-                let sphere = |side| match rays.from(i) {
-                    Some(from) if from.id.geometry == Geometry::Spheres && from.side == side => {
-                        from.id.primitive
-                    }
-                    _ => INVALID,
-                };
-                (self.outward[i], self.inward[i]) = (sphere(Side::Front), sphere(Side::Back));
-            }
+            (self.outward, self.inward) = rays.spheres_left();
         }
         entered
     }
@@ -180,14 +172,17 @@ impl<'a, const W: usize> Context<'a, W> {
         if !any {
             return;
         }
-        for i in 0..self.rays.count {
+        for i in 0..W {
             let (t, primitive) = (self.nearest.t[i], self.nearest.primitive[i]);
             // Of two at the same distance the sphere counts.
-            if primitive != INVALID && t <= found.t[at + i] {
-                found.t[at + i] = t;
-                (found.u[at + i], found.v[at + i]) = (0.0, 0.0);
-                found.id[at + i] = Some(PrimitiveId::sphere(primitive));
-            }
+            let counts = (primitive != INVALID) & (t <= found.t[at + i]);
+            found.t[at + i] = if counts { t } else { found.t[at + i] };
+            found.u[at + i] = if counts { 0.0 } else { found.u[at + i] };
+            found.v[at + i] = if counts { 0.0 } else { found.v[at + i] };
+            let id = &mut found.id;
+            id.geometry[at + i] = if counts { Ids::SPHERES } else { id.geometry[at + i] };
+            id.primitive[at + i] = if counts { primitive } else { id.primitive[at + i] };
+            id.instance[at + i] = if counts { 0 } else { id.instance[at + i] };
         }
     }
 
