@@ -11,6 +11,7 @@ use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
 use crate::intersect::{Backend, Builder, Built, Intersector, Precision};
 use crate::scene::Scene;
+use crate::scene::animation::Poses;
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -49,7 +50,7 @@ pub struct Statistics {
     pub threads: usize,
     /// Rays and other counts.
     pub counts: Counts,
-    /// Meshes that were built for the intersector.
+    /// What was built for the intersector, and what was kept.
     pub built: Built,
     /// Time to build the intersector.
     pub build: Duration,
@@ -107,7 +108,7 @@ pub fn render(
 }
 
 /// Renders a scene at each of several times, in seconds, and hands each picture to `each` with its
-/// index before the next is begun. Of the intersector only what moves is built again.
+/// index before the next is begun. Of the intersector only what moves is placed again.
 ///
 /// `progress` is called with the share of the whole that is done, in (0, 1].
 ///
@@ -128,28 +129,30 @@ pub fn render_frames(
         let threads = rayon::current_num_threads();
         let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
         let mut builder = match moves {
-            true => Builder::for_frames(backend, precision, threads),
+            true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
             false => Builder::new(backend, precision, threads),
         };
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
+        let mut poses = Poses::new(scene);
         for (i, &time) in times.iter().enumerate() {
-            let posed = scene.at(time)?;
-            posed.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            poses.pose(time)?;
+            poses.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            let posed = poses.scene();
             let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
             let start = Instant::now();
             let before = builder.built();
             let rendering = if moves {
-                let intersector = builder.build(&posed)?;
+                let intersector = builder.build(posed)?;
                 let built = (start.elapsed(), builder.built() - before);
-                picture(&posed, options, &*intersector, built, &share)
+                picture(posed, options, &*intersector, built, &share)
             } else if let Some(intersector) = &still {
-                let built = Built { meshes: 0, reused: before.meshes };
-                picture(&posed, options, &**intersector, (start.elapsed(), built), &share)
+                let built = Built::kept(before.meshes);
+                picture(posed, options, &**intersector, (start.elapsed(), built), &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);
                 let built = (start.elapsed(), builder.built());
-                picture(&posed, options, &**intersector, built, &share)
+                picture(posed, options, &**intersector, built, &share)
             };
             each(i, rendering)?;
         }

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::integrator::{self, Counts, RayCounts};
+use crate::intersect::Built;
 use crate::render::Statistics;
 use crate::scene::Scene;
 
@@ -55,13 +56,38 @@ impl Geometry {
     }
 }
 
-/// The meshes of all frames.
+/// What all frames took to build, and what they kept of a frame before.
 #[derive(Serialize)]
 pub struct Build {
     /// Meshes that were built.
     pub meshes: u64,
     /// Meshes that were there from a frame before.
     pub reused: u64,
+    /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
+    pub top_levels_built: u64,
+    /// Frames for which it was there, and only what moved was placed again.
+    pub top_levels_kept: u64,
+    /// Instances of meshes that were placed in a level that was built.
+    pub instances_placed: u64,
+    /// Instances that moved in one that was kept.
+    pub instances_moved: u64,
+    /// Spheres that moved in one that was kept.
+    pub spheres_moved: u64,
+}
+
+impl From<Built> for Build {
+    fn from(built: Built) -> Self {
+        let Built { meshes, reused, tops, tops_kept, placed, moved, spheres_moved } = built;
+        Self {
+            meshes,
+            reused,
+            top_levels_built: tops,
+            top_levels_kept: tops_kept,
+            instances_placed: placed,
+            instances_moved: moved,
+            spheres_moved,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -121,7 +147,7 @@ impl Stats {
             spp: scene.film.spp,
             frames,
             geometry: Geometry::of(scene),
-            build: Build { meshes: statistics.built.meshes, reused: statistics.built.reused },
+            build: statistics.built.into(),
             rays: rays.into(),
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },

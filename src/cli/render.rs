@@ -13,6 +13,7 @@ use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering, Statistics};
+use crate::scene::animation::Poses;
 use crate::scene::{Scene, Tone, detail};
 use crate::write::{self, Format, Movie, Settings};
 
@@ -72,10 +73,11 @@ pub fn run(arguments: &Render) -> Outcome {
 }
 
 /// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
-/// what only a check of all its numbers finds, such as a way out of bounds, is found in its turn.
+/// what only a check of its numbers finds, such as a way out of bounds, is found in its turn.
 fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
+    let mut poses = Poses::new(scene);
     for (i, (frame, time)) in plan.frames.iter().enumerate() {
-        scene.at(*time)?;
+        poses.pose(*time)?;
         let files: Vec<PathBuf> = plan.files(*frame).collect();
         files::check_not_a_texture(scene, &files)?;
         if i == 0 {
@@ -83,7 +85,8 @@ fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
         }
     }
     files::check_not_a_texture(scene, &plan.movies)?;
-    scene.at(plan.frames.first().map_or(0.0, |(_, time)| *time))
+    poses.pose(plan.frames.first().map_or(0.0, |(_, time)| *time))?;
+    Ok(poses.into_scene())
 }
 
 /// Where the frames go.

@@ -13,6 +13,7 @@ mod entry;
 mod kept;
 mod leaving;
 pub mod primitive;
+mod standing;
 
 pub use brute::BruteForce;
 pub use builder::{Builder, Built};

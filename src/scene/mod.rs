@@ -142,11 +142,22 @@ impl Scene {
 
     /// The box around all that is finite: spheres and instances, not planes.
     pub fn bounds(&self) -> Bounds {
+        self.bounds_among(&self.mesh_boxes())
+    }
+
+    /// The box of each mesh, in its own space. It takes a look at every triangle.
+    pub fn mesh_boxes(&self) -> Vec<Bounds> {
+        self.meshes.iter().map(|mesh| mesh.bounds()).collect()
+    }
+
+    /// As [`Scene::bounds`], where the boxes of the meshes are known.
+    ///
+    /// # Panics
+    /// When a mesh that stands in the scene has no box.
+    pub fn bounds_among(&self, mesh_boxes: &[Bounds]) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let mesh_bounds: Vec<Bounds> = self.meshes.iter().map(|m| m.bounds()).collect();
-        let instances =
-            self.instances.iter().map(|i| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform));
-        spheres.chain(instances).fold(Bounds::EMPTY, Bounds::union)
+        let placed = |i: &Instance| mesh_boxes[i.mesh.0 as usize].transformed(&i.transform);
+        spheres.chain(self.instances.iter().map(placed)).fold(Bounds::EMPTY, Bounds::union)
     }
 
     /// How many triangles a ray can meet, counting each instance of a mesh.

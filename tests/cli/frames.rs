@@ -145,7 +145,23 @@ fn stats_say_that_a_mesh_was_built_once() {
     folder.write("scene.toml", scene);
     folder.write("tetrahedron.obj", TETRAHEDRON);
     let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
-    assert_eq!(stats["build"], serde_json::json!({"meshes": 1, "reused": 9}));
+    assert_eq!((&stats["build"]["meshes"], &stats["build"]["reused"]), (&1.into(), &9.into()));
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn stats_say_what_was_placed_again() {
+    let folder = Folder::with(&moving());
+    let scene = moving() + "[[model]]\nfile = \"tetrahedron.obj\"\nscale = 20\n";
+    folder.write("scene.toml", scene);
+    folder.write("tetrahedron.obj", TETRAHEDRON);
+    let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
+    let expected = serde_json::json!({
+        "meshes": 1, "reused": 9,
+        "top_levels_built": 1, "top_levels_kept": 9,
+        "instances_placed": 1, "instances_moved": 0, "spheres_moved": 9,
+    });
+    assert_eq!(stats["build"], expected);
 }
 
 #[test]

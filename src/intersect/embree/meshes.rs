@@ -11,7 +11,7 @@ use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
 use crate::intersect::kept::Kept;
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Instance, Mesh, Scene};
 use embree4_sys::RTCSceneFlags;
 
 /// What Embree keeps the addresses of.
@@ -20,7 +20,8 @@ pub struct Meshes {
     #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
     tables: Vec<Box<Triangles>>,
     own: Vec<Arc<Own>>,
-    placements: Option<Box<Placements>>,
+    /// Which geometry they are, and what its callbacks read.
+    placements: Option<(u32, Box<Placements>)>,
 }
 
 /// A mesh in a space of its own.
@@ -64,22 +65,20 @@ impl Meshes {
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
         (frame, width): (Frame, Width),
+        boxes: &[Bounds],
         mut kept: Option<&mut Kept<Own>>,
     ) -> Result<()> {
         let uses = uses(scene);
-        let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
         let mut own: Vec<Option<Arc<Own>>> = vec![None; scene.meshes.len()];
-        let mut placed = Box::new(Placements::new(frame));
+        let mut placements = Box::new(Placements::new(frame));
         for (index, instance) in (0..).zip(&scene.instances) {
             let at = instance.mesh.0 as usize;
             let mesh = &scene.meshes[at];
             if mesh.triangles.is_empty() {
                 continue;
             }
-            let local = bounds[at];
-            let bounds = local.transformed(&instance.transform);
-            // A baked vertex may round to just outside the transformed box.
-            let bounds = bounds.padded(16.0 * f64::EPSILON * bounds.max_abs());
+            let local = boxes[at];
+            let bounds = placed(&local, instance);
             let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
             if once || is_outsized(&local) {
                 let table = Triangles::placed(scene, index, frame);
@@ -98,15 +97,39 @@ impl Meshes {
                     own[at].insert(made)
                 }
             };
-            placed.add(scene, index, bounds, &own.scene, own.frame);
+            placements.add(scene, index, bounds, &own.scene, own.frame);
         }
-        if !placed.is_empty() {
+        if !placements.is_empty() {
             let callbacks = placements::callbacks(width);
-            attach(top, &user::geometry(&top.device, device, &*placed, callbacks)?)?;
-            self.placements = Some(placed);
+            let geometry = user::geometry(&top.device, device, &*placements, callbacks)?;
+            self.placements = Some((attach(top, &geometry)?, placements));
         }
         Ok(())
     }
+
+    /// Places again the instances that `moved`, of which none is outsized.
+    pub fn follow(
+        &mut self,
+        scene: &Scene,
+        top: &embree4_rs::Scene,
+        boxes: &[Bounds],
+        moved: &[u32],
+    ) {
+        let Some((id, placements)) = &mut self.placements else { return };
+        for &index in moved {
+            let instance = &scene.instances[index as usize];
+            let bounds = placed(&boxes[instance.mesh.0 as usize], instance);
+            placements.replace(instance, index, bounds);
+        }
+        user::moved(top, *id, &**placements);
+    }
+}
+
+/// The box in the world of an instance of a mesh with this box.
+fn placed(mesh: &Bounds, instance: &Instance) -> Bounds {
+    let bounds = mesh.transformed(&instance.transform);
+    // A baked vertex may round to just outside the transformed box.
+    bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
 }
 
 /// Whether a mesh that takes up `bounds` in the world has small triangles for the scene.

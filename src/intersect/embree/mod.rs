@@ -33,52 +33,37 @@ mod refine;
 mod spheres;
 #[cfg(test)]
 mod tests;
+mod top;
 mod triangles;
 mod user;
 mod width;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use embree4_rs::geometry::Geometry;
-use embree4_rs::{CommittedScene, Device, SceneOptions};
+use embree4_rs::{Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Ray};
 use crate::intersect::kept::Kept;
+use crate::intersect::standing::Moved;
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
 use canary::failed;
 use frame::Frame;
-use meshes::Meshes;
 use raw::{DeviceHandle, scene_handle};
-use spheres::SphereTable;
+use top::Top;
 use width::Width;
 
 /// The Embree intersector of one scene.
 pub struct Embree<'s> {
     scene: &'s Scene,
-    frame: Frame,
-    width: Width,
-    precision: Precision,
     /// The largest absolute coordinate in the scene.
     reach: f64,
-    /// For each geometry that is attached, the instance that stands there.
-    instance_of: Vec<u32>,
-    committed: CommittedScene,
-    version: String,
-    /// Read by the callbacks; dropped after the scene that calls them.
-    _spheres: Option<Box<SphereTable>>,
-    _meshes: Meshes,
+    top: Arc<Top>,
 }
-
-// SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
-// scene. Embree lets any thread trace a committed scene, and release it.
-#[allow(unsafe_code)]
-unsafe impl Send for Embree<'_> {}
-#[allow(unsafe_code)]
-unsafe impl Sync for Embree<'_> {}
 
 impl<'s> Embree<'s> {
     /// Builds a checked scene on `threads` threads (0: all there are).
@@ -86,17 +71,31 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::build_sharing(scene, precision, threads, None)
+        Self::build_sharing(scene, precision, threads, &scene.mesh_boxes(), None)
     }
 
-    /// As [`Embree::build`], with the meshes that are there already, on their device.
+    /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
+    /// from a frame before.
     pub(super) fn build_sharing(
         scene: &'s Scene,
         precision: Precision,
         threads: usize,
-        shared: Option<&mut Shared>,
+        boxes: &[Bounds],
+        shared: Option<(&mut Shared, Option<&Moved>)>,
     ) -> Result<Self> {
-        Self::with_width(scene, precision, threads, None, shared)
+        let bounds = scene.bounds_among(boxes);
+        let top = match shared {
+            None => {
+                let asked = (precision, None);
+                let frame = Frame::around(bounds);
+                Top::build(scene, new_device(threads)?, asked, frame, boxes, None)?.into()
+            }
+            Some((shared, moved)) => {
+                let frame = Frame::on_stage(bounds, shared.stage);
+                shared.top(scene, precision, threads, frame, boxes, moved)?
+            }
+        };
+        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -105,108 +104,115 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::with_width(scene, precision, threads, Some(Width::One), None)
+        Self::with_width(scene, precision, threads, Width::One)
     }
 
     fn with_width(
         scene: &'s Scene,
         precision: Precision,
         threads: usize,
-        width: Option<Width>,
-        mut shared: Option<&mut Shared>,
+        width: Width,
     ) -> Result<Self> {
-        static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
-        CHECKED
-            .get_or_init(|| canary::check().map_err(|e| e.to_string()))
-            .clone()
-            .map_err(Error::failed)?;
-
-        let device = match shared.as_ref().and_then(|shared| shared.device.as_ref()) {
-            Some(there) => there.device(),
-            None => Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?,
-        };
-        let options = SceneOptions { build_quality: QUALITY, flags: flags() };
-        let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
-        let device = DeviceHandle::of(&top);
-        if let Some(shared) = &mut shared {
-            shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
-        }
-        let bounds = scene.bounds();
-        let frame = Frame::around(bounds);
-        let width = width.unwrap_or_else(|| Width::native(&device));
-
-        let mut instance_of = Vec::new();
-        let mut _meshes = Meshes::default();
-        match precision {
-            Precision::Fast => {
-                let kept = shared.map(|shared| &mut shared.fast);
-                instance_of = native::attach_meshes(scene, &top, &device, &frame, kept)?;
-            }
-            Precision::Certified => {
-                let kept = shared.map(|shared| &mut shared.certified);
-                _meshes.attach(scene, &top, &device, (frame, width), kept)?;
-            }
-        }
-        let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
-        if let Some(table) = &_spheres {
-            let callbacks = match precision {
-                Precision::Fast => spheres::callbacks(width),
-                Precision::Certified => certified::spheres(width),
-            };
-            attach(&top, &user::geometry(&top.device, &device, &**table, callbacks)?)?;
-        }
-        let committed = top
-            .commit()
-            .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
-        let version = version_of(&device);
-        Ok(Self {
-            scene,
-            frame,
-            width,
-            precision,
-            reach: leaving::scene_reach(scene, &bounds),
-            instance_of,
-            committed,
-            version,
-            _spheres,
-            _meshes,
-        })
+        let boxes = scene.mesh_boxes();
+        let bounds = scene.bounds_among(&boxes);
+        let (frame, asked) = (Frame::around(bounds), (precision, Some(width)));
+        let top = Top::build(scene, new_device(threads)?, asked, frame, &boxes, None)?;
+        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
     }
 
     /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
     /// `fast` cannot tell apart. Within an instance it may be magnified by the instance's own
     /// space.
     pub fn margin(&self) -> f64 {
-        self.frame.margin()
+        self.top.frame.margin()
     }
 
     fn target(&self) -> query::Target<'_> {
+        let top = &*self.top;
         query::Target {
-            handle: scene_handle(&self.committed.scene),
+            handle: scene_handle(&top.committed.scene),
             scene: self.scene,
-            instance_of: &self.instance_of,
-            frame: &self.frame,
-            width: self.width,
-            precision: self.precision,
+            instance_of: &top.instance_of,
+            frame: &top.frame,
+            width: top.width,
+            precision: top.precision,
             careful: false,
             reach: self.reach,
         }
     }
 }
 
-/// What frames share: a device, and the meshes that were built on it.
-#[derive(Default)]
+/// Starts a device of `threads` threads (0: all there are), once the library is known to be as
+/// expected.
+fn new_device(threads: usize) -> Result<Device> {
+    static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+    CHECKED
+        .get_or_init(|| canary::check().map_err(|e| e.to_string()))
+        .clone()
+        .map_err(Error::failed)?;
+    Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)
+}
+
+/// What frames share: a device, the meshes that were built on it, and the level above them.
 pub(super) struct Shared {
+    /// Where the frames take place, as far as that is known.
+    stage: Bounds,
     fast: Kept<native::Own>,
     certified: Kept<meshes::Own>,
+    /// That of the last frame.
+    top: Option<Arc<Top>>,
+    /// How many of them were built.
+    tops: u64,
     /// Dropped after what stands on it.
     device: Option<DeviceHandle>,
 }
 
 impl Shared {
+    /// Nothing yet, for frames that take place mostly within `stage`.
+    pub(super) fn new(stage: Bounds) -> Self {
+        let (fast, certified) = Default::default();
+        Self { stage, fast, certified, top: None, tops: 0, device: None }
+    }
+
     /// How many meshes were built.
     pub(super) fn built(&self) -> u64 {
         self.fast.built() + self.certified.built()
+    }
+
+    /// How many levels above the meshes were built.
+    pub(super) fn tops(&self) -> u64 {
+        self.tops
+    }
+
+    /// The level above the meshes for a scene: that of the frame before where only `moved` is not
+    /// as it was there, and else a new one.
+    fn top(
+        &mut self,
+        scene: &Scene,
+        precision: Precision,
+        threads: usize,
+        frame: Frame,
+        boxes: &[Bounds],
+        moved: Option<&Moved>,
+    ) -> Result<Arc<Top>> {
+        // Taken, so that nothing half changed stays behind an error.
+        let mut last = self.top.take();
+        // Whoever traces the last frame holds it, too: then it must not change.
+        if let (Some(top), Some(moved)) = (last.as_mut().and_then(Arc::get_mut), moved)
+            && top.can_follow(scene, &frame, boxes, moved)
+        {
+            top.follow(scene, &frame, boxes, moved)?;
+        } else {
+            let device = match &self.device {
+                Some(there) => there.device(),
+                None => new_device(threads)?,
+            };
+            let asked = (precision, None);
+            last = Some(Top::build(scene, device, asked, frame, boxes, Some(self))?.into());
+            self.tops += 1;
+        }
+        self.top.clone_from(&last);
+        last.ok_or_else(|| Error::failed("no Embree scene was built"))
     }
 }
 
@@ -216,8 +222,9 @@ fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS
 }
 
-fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<()> {
-    top.attach_geometry(geometry).map(|_| ()).map_err(failed)
+/// Attaches a geometry, and says by which number Embree knows it.
+fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<u32> {
+    top.attach_geometry(geometry).map_err(failed)
 }
 
 /// Whether a mesh cannot be traced in its own space: f32 vertices reach 3e38, but Embree passes
@@ -259,7 +266,7 @@ impl Intersector for Embree<'_> {
     }
 
     fn version(&self) -> String {
-        self.version.clone()
+        self.top.version.clone()
     }
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
-use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
+use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry, move_instance};
 use crate::intersect::embree::{QUALITY, attach, flags, is_outsized, uses};
 use crate::intersect::kept::Kept;
 use crate::scene::{Instance, Mesh, Scene};
@@ -38,10 +38,10 @@ pub fn attach_meshes(
     top: &embree4_rs::Scene,
     device: &DeviceHandle,
     frame: &Frame,
+    boxes: &[Bounds],
     mut kept: Option<&mut Kept<Own>>,
 ) -> Result<Vec<u32>> {
     let uses = uses(scene);
-    let bounds: Vec<Bounds> = scene.meshes.iter().map(|m| m.bounds()).collect();
     let mut own: Vec<Option<Arc<Own>>> = scene.meshes.iter().map(|_| None).collect();
     let mut instance_of = Vec::new();
     for (index, instance) in scene.instances.iter().enumerate() {
@@ -50,7 +50,7 @@ pub fn attach_meshes(
         if mesh.triangles.is_empty() {
             continue;
         }
-        if (uses[at] == 1 && kept.is_none()) || is_outsized(&bounds[at]) {
+        if (uses[at] == 1 && kept.is_none()) || is_outsized(&boxes[at]) {
             let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
             attach(top, &geometry)?;
             kept.iter_mut().for_each(|kept| kept.count_one());
@@ -58,7 +58,7 @@ pub fn attach_meshes(
             let own = match &own[at] {
                 Some(there) => there,
                 None => {
-                    let make = || Own::new(mesh, &bounds[at], &top.device, device);
+                    let make = || Own::new(mesh, &boxes[at], &top.device, device);
                     let made = Kept::get_or(&mut kept, at, mesh, make)?;
                     own[at].insert(made)
                 }
@@ -69,6 +69,24 @@ pub fn attach_meshes(
         instance_of.push(index as u32);
     }
     Ok(instance_of)
+}
+
+/// Places again the instances that `moved`, of which none is outsized.
+pub fn follow(
+    scene: &Scene,
+    top: &embree4_rs::Scene,
+    frame: &Frame,
+    boxes: &[Bounds],
+    instance_of: &[u32],
+    moved: &[u32],
+) {
+    for index in moved {
+        // What has no triangles is nowhere.
+        let Ok(id) = instance_of.binary_search(index) else { continue };
+        let instance = &scene.instances[*index as usize];
+        let center = boxes[instance.mesh.0 as usize].center();
+        move_instance(top, id as u32, &columns(instance, center, frame));
+    }
 }
 
 fn upload(

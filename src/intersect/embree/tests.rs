@@ -66,7 +66,7 @@ fn compare(width: Width, precision: Precision) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let embree = Embree::with_width(&scene, precision, 1, Some(width), None).unwrap();
+    let embree = Embree::with_width(&scene, precision, 1, width).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
         let mut hits = vec![None; rays.len()];
