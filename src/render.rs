@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
 use crate::intersect::{Backend, Builder, Built, Intersector, Precision};
-use crate::scene::Scene;
 use crate::scene::animation::Poses;
+use crate::scene::{Scene, Skips};
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -28,6 +28,8 @@ pub struct Options {
     pub view: View,
     /// How it is cut into batches.
     pub tiling: Tiling,
+    /// Which work is left out where the scene has no need of it.
+    pub skips: Skips,
 }
 
 /// A picture, and what it took.
@@ -99,7 +101,8 @@ pub fn render(
     let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
-        let mut builder = Builder::new(options.backend, options.precision, threads);
+        let builder = Builder::new(options.backend, options.precision, threads);
+        let mut builder = builder.skipping(options.skips);
         let start = Instant::now();
         let intersector = builder.build(scene)?;
         let built = (start.elapsed(), builder.built());
@@ -128,10 +131,11 @@ pub fn render_frames(
         let (backend, precision) = (options.backend, options.precision);
         let threads = rayon::current_num_threads();
         let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
-        let mut builder = match moves {
+        let builder = match moves {
             true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
             false => Builder::new(backend, precision, threads),
         };
+        let mut builder = builder.skipping(options.skips);
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         let mut poses = Poses::new(scene);

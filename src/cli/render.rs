@@ -14,7 +14,7 @@ use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::animation::Poses;
-use crate::scene::{Scene, Tone, detail};
+use crate::scene::{Scene, Skips, Tone, detail};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -25,7 +25,8 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let (mut scene, camera) = arguments.tracing.load_animated()?;
+    let skips = Skips::without(&arguments.no_skip)?;
+    let (mut scene, camera) = arguments.tracing.load_animated(skips)?;
     if arguments.view != ViewName::Beauty {
         scene.film.spp = 1;
     }
@@ -38,7 +39,8 @@ pub fn run(arguments: &Render) -> Outcome {
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
-    let options = Options { backend, precision, threads, camera, view, ..Options::default() };
+    let options =
+        Options { backend, precision, threads, camera, view, skips, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,
@@ -66,7 +68,7 @@ pub fn run(arguments: &Render) -> Outcome {
     }
     if let Some(path) = &arguments.stats {
         let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
-        let stats = Stats::new(&first, times.len(), &done.statistics, seconds, warnings);
+        let stats = Stats::new(&first, times.len(), &done.statistics, skips, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)

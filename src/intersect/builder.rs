@@ -8,7 +8,7 @@ use crate::intersect::embree::{self, Embree};
 use crate::intersect::kept::used;
 use crate::intersect::standing::Standing;
 use crate::intersect::{Backend, Bvh, Intersector, Precision, bvh};
-use crate::scene::{MeshId, Scene};
+use crate::scene::{MeshId, Scene, Skips};
 
 /// What building took, and what was kept of a frame before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +27,11 @@ pub struct Built {
     pub moved: u64,
     /// Spheres that were placed again in a level that was kept.
     pub spheres_moved: u64,
+    /// Times that a level that was built has spheres in it: in Embree a user geometry, in Rust a
+    /// tree.
+    pub sphere_sets: u64,
+    /// Instances in a level that was built whose meshes are in spaces of their own.
+    pub instanced: u64,
 }
 
 impl Built {
@@ -40,6 +45,8 @@ impl Built {
             placed: each(self.placed, other.placed),
             moved: each(self.moved, other.moved),
             spheres_moved: each(self.spheres_moved, other.spheres_moved),
+            sphere_sets: each(self.sphere_sets, other.sphere_sets),
+            instanced: each(self.instanced, other.instanced),
         }
     }
 
@@ -69,6 +76,7 @@ pub struct Builder {
     backend: Backend,
     precision: Precision,
     threads: usize,
+    skips: Skips,
     /// What frames share; nothing for one picture.
     shared: Option<Shared>,
     built: Built,
@@ -85,7 +93,13 @@ struct Shared {
 impl Builder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        Self { backend, precision, threads, shared: None, built: Built::default() }
+        let skips = Skips::default();
+        Self { backend, precision, threads, skips, shared: None, built: Built::default() }
+    }
+
+    /// The same builder, which leaves out only `skips` of what a scene has no need of.
+    pub fn skipping(self, skips: Skips) -> Self {
+        Self { skips, ..self }
     }
 
     /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
@@ -121,32 +135,48 @@ impl Builder {
         let is_there = |mesh: MeshId| !scene.meshes[mesh.0 as usize].triangles.is_empty();
         let stand = scene.instances.iter().filter(|i| is_there(i.mesh)).count() as u64;
         let used = used(scene).into_iter().filter(|&used| used).count() as u64;
-        let (precision, threads) = (self.precision, self.threads);
-        let Some(shared) = &mut self.shared else {
-            self.built += Built { meshes: used, tops: 1, placed: stand, ..Built::default() };
-            return Ok(match self.backend {
-                #[cfg(feature = "embree")]
-                Backend::Embree => Box::new(Embree::build(scene, precision, threads)?),
-                // On the caller's rayon pool.
-                Backend::Rust => Box::new(Bvh::build(scene, precision)),
-            });
-        };
-        let before = shared.built();
-        let moved = shared.standing.follow(scene);
-        let intersector: Box<dyn Intersector + 's> = match self.backend {
+        let before = self.shared.as_ref().map_or(Built::default(), Shared::built);
+        let shared = self.shared.as_mut();
+        let (intersector, moved, work): (Box<dyn Intersector + 's>, _, _) = match self.backend {
             #[cfg(feature = "embree")]
             Backend::Embree => {
-                let (boxes, kept) = (shared.standing.boxes(), &mut shared.embree);
-                let kept = Some((kept, moved.as_ref()));
-                Box::new(Embree::build_sharing(scene, precision, threads, boxes, kept)?)
+                let asked = embree::Asked {
+                    precision: self.precision,
+                    threads: self.threads,
+                    skips: self.skips,
+                    width: None,
+                };
+                let (built, moved) = match shared {
+                    None => (Embree::build_as(scene, asked)?, None),
+                    Some(shared) => {
+                        let moved = shared.standing.follow(scene);
+                        let (boxes, kept) = (shared.standing.boxes(), &mut shared.embree);
+                        (Embree::build_sharing(scene, asked, boxes, kept, moved.as_ref())?, moved)
+                    }
+                };
+                let work = built.work();
+                (Box::new(built), moved, work)
             }
             Backend::Rust => {
-                let kept = Some((&mut shared.trees, moved.as_ref()));
-                Box::new(Bvh::build_sharing(scene, precision, kept))
+                // The BVH is built on the caller's rayon pool, and always has all its levels.
+                let _ = (self.threads, self.skips);
+                let (built, moved) = match shared {
+                    None => (Bvh::build(scene, self.precision), None),
+                    Some(shared) => {
+                        let moved = shared.standing.follow(scene);
+                        let trees = &mut shared.trees;
+                        (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
+                    }
+                };
+                (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
             }
         };
-        let built = shared.built() - before;
+        let built = match &self.shared {
+            None => Built { meshes: used, tops: 1, ..Built::default() },
+            Some(shared) => shared.built() - before,
+        };
         let moved = moved.unwrap_or_default();
+        let (sphere_sets, instanced) = work;
         self.built += match built.tops {
             0 => Built {
                 tops_kept: 1,
@@ -154,7 +184,7 @@ impl Builder {
                 spheres_moved: moved.spheres.len() as u64,
                 ..built
             },
-            _ => Built { placed: stand, ..built },
+            _ => Built { placed: stand, sphere_sets, instanced, ..built },
         };
         self.built.reused += used.saturating_sub(built.meshes);
         Ok(intersector)

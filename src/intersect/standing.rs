@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+#[cfg(feature = "embree")]
 use crate::geometry::Bounds;
 use crate::scene::{Instance, Mesh, Scene, Sphere};
 
@@ -10,6 +11,7 @@ use crate::scene::{Instance, Mesh, Scene, Sphere};
 pub(in crate::intersect) struct Standing {
     meshes: Vec<Arc<Mesh>>,
     /// The boxes of the meshes, each in its own space.
+    #[cfg(feature = "embree")]
     boxes: Vec<Bounds>,
     spheres: Vec<Sphere>,
     instances: Vec<Instance>,
@@ -29,9 +31,13 @@ impl Standing {
     /// the same ones.
     pub fn follow(&mut self, scene: &Scene) -> Option<Moved> {
         if !same_meshes(&self.meshes, &scene.meshes) {
-            let (meshes, boxes) = (scene.meshes.clone(), scene.mesh_boxes());
-            let (spheres, instances) = (scene.spheres.clone(), scene.instances.clone());
-            *self = Self { meshes, boxes, spheres, instances };
+            *self = Self {
+                meshes: scene.meshes.clone(),
+                #[cfg(feature = "embree")]
+                boxes: scene.mesh_boxes(),
+                spheres: scene.spheres.clone(),
+                instances: scene.instances.clone(),
+            };
             return None;
         }
         let counts = |spheres: &[Sphere], instances: &[Instance]| (spheres.len(), instances.len());
@@ -49,6 +55,7 @@ impl Standing {
     }
 
     /// The boxes of the meshes, each in its own space.
+    #[cfg(feature = "embree")]
     pub fn boxes(&self) -> &[Bounds] {
         &self.boxes
     }

@@ -59,9 +59,6 @@ impl Scene {
                 index(|| what.clone(), "texture", map.0, self.textures.len())?;
             }
         }
-        for (i, texture) in self.textures.iter().enumerate() {
-            check_texture(i, texture)?;
-        }
         (0..self.spheres.len()).try_for_each(|i| self.check_sphere(i))?;
         for (i, plane) in self.planes.iter().enumerate() {
             let what = format!("plane {i}");
@@ -87,6 +84,11 @@ impl Scene {
             let may_be_flat = moved.as_ref().is_some_and(|moved| moved[i]);
             self.check_instance(i, may_be_flat)?;
         }
+        let mut shown = vec![false; self.textures.len()];
+        let maps = self.materials_in_use().flat_map(|m| [m.diffuse_map, m.emission_map]).flatten();
+        maps.for_each(|map| shown[map.0 as usize] = true);
+        let mut textures = self.textures.iter().zip(shown).enumerate();
+        textures.try_for_each(|(i, (texture, shown))| check_texture(i, texture, shown))?;
         check_extent(&self.bounds())?;
         self.check_lights_and_cameras()?;
         self.animation.iter().try_for_each(|animation| animation.check(self))
@@ -155,8 +157,17 @@ fn check_spp(spp: u32) -> Result<()> {
     })
 }
 
-fn check_texture(i: usize, texture: &Texture) -> Result<()> {
+fn check_texture(i: usize, texture: &Texture, shown: bool) -> Result<()> {
     let image = &texture.image;
+    if !image.is_read() && image.texels.is_empty() {
+        return require(!shown, || {
+            format!(
+                "texture {i} (`{}`): the picture was not read, and a material in use shows it",
+                image.name
+            )
+        })
+        .map_err(|e| e.help("load the scene without skipping `pictures`"));
+    }
     let pixels = u64::from(image.width) * u64::from(image.height);
     require(pixels > 0 && pixels == image.texels.len() as u64, || {
         format!(

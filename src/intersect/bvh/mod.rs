@@ -67,7 +67,10 @@ pub struct MeshTree(Tree);
 impl<'s> Bvh<'s> {
     /// Builds the trees of a checked scene, on the current rayon pool.
     pub fn build(scene: &'s Scene, precision: Precision) -> Self {
-        Self::build_sharing(scene, precision, None)
+        let primitives = Primitives { scene, precision };
+        let meshes = mesh_trees(scene, None);
+        let instances = Instances::new(scene, &meshes).into();
+        Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
     /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
@@ -75,14 +78,10 @@ impl<'s> Bvh<'s> {
     pub(super) fn build_sharing(
         scene: &'s Scene,
         precision: Precision,
-        shared: Option<(&mut Shared, Option<&Moved>)>,
+        shared: &mut Shared,
+        moved: Option<&Moved>,
     ) -> Self {
         let primitives = Primitives { scene, precision };
-        let Some((shared, moved)) = shared else {
-            let meshes = mesh_trees(scene, None);
-            let instances = Instances::new(scene, &meshes).into();
-            return Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes };
-        };
         let meshes = mesh_trees(scene, Some(&mut shared.meshes));
         let (spheres_stay, instances_stay) =
             moved.map_or((false, false), |m| (m.spheres.is_empty(), m.instances.is_empty()));

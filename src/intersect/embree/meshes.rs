@@ -8,6 +8,7 @@ use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
+use crate::intersect::embree::user::Table;
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
 use crate::intersect::kept::Kept;
@@ -57,8 +58,8 @@ const SMALL: f64 = 1e-4;
 
 impl Meshes {
     /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
-    /// one that is outsized in its own; the others as placements. Where frames share their meshes
-    /// in `kept`, all are placements but the outsized ones.
+    /// one that is outsized in its own; the others as placements. Where `all_instanced`, as for
+    /// frames that share their meshes in `kept`, all are placements but the outsized ones.
     pub fn attach(
         &mut self,
         scene: &Scene,
@@ -66,7 +67,7 @@ impl Meshes {
         device: &DeviceHandle,
         (frame, width): (Frame, Width),
         boxes: &[Bounds],
-        mut kept: Option<&mut Kept<Own>>,
+        (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
     ) -> Result<()> {
         let uses = uses(scene);
         let mut own: Vec<Option<Arc<Own>>> = vec![None; scene.meshes.len()];
@@ -79,7 +80,7 @@ impl Meshes {
             }
             let local = boxes[at];
             let bounds = placed(&local, instance);
-            let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
+            let once = !all_instanced && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
             if once || is_outsized(&local) {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
@@ -105,6 +106,11 @@ impl Meshes {
             self.placements = Some((attach(top, &geometry)?, placements));
         }
         Ok(())
+    }
+
+    /// How many instances are placements.
+    pub fn instanced(&self) -> u64 {
+        self.placements.as_ref().map_or(0, |(_, placements)| placements.len() as u64)
     }
 
     /// Places again the instances that `moved`, of which none is outsized.

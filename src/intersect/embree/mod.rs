@@ -49,13 +49,25 @@ use crate::geometry::{Bounds, Hit, Ray};
 use crate::intersect::kept::Kept;
 use crate::intersect::standing::Moved;
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
-use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
+use crate::scene::{Scene, Skips};
 use canary::failed;
 use frame::Frame;
 use raw::{DeviceHandle, scene_handle};
 use top::Top;
 use width::Width;
+
+/// What is asked of an intersector.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Asked {
+    pub precision: Precision,
+    /// How many threads build it; 0 means all there are.
+    pub threads: usize,
+    /// Which work is left out where the scene has no need of it.
+    pub skips: Skips,
+    /// How wide its packets are; none for the widest that is native.
+    pub width: Option<Width>,
+}
 
 /// The Embree intersector of one scene.
 pub struct Embree<'s> {
@@ -71,31 +83,7 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::build_sharing(scene, precision, threads, &scene.mesh_boxes(), None)
-    }
-
-    /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
-    /// from a frame before.
-    pub(super) fn build_sharing(
-        scene: &'s Scene,
-        precision: Precision,
-        threads: usize,
-        boxes: &[Bounds],
-        shared: Option<(&mut Shared, Option<&Moved>)>,
-    ) -> Result<Self> {
-        let bounds = scene.bounds_among(boxes);
-        let top = match shared {
-            None => {
-                let asked = (precision, None);
-                let frame = Frame::around(bounds);
-                Top::build(scene, new_device(threads)?, asked, frame, boxes, None)?.into()
-            }
-            Some((shared, moved)) => {
-                let frame = Frame::on_stage(bounds, shared.stage);
-                shared.top(scene, precision, threads, frame, boxes, moved)?
-            }
-        };
-        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })
+        Self::build_as(scene, Asked { precision, threads, ..Asked::default() })
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -104,20 +92,38 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::with_width(scene, precision, threads, Width::One)
+        let width = Some(Width::One);
+        Self::build_as(scene, Asked { precision, threads, width, ..Asked::default() })
     }
 
-    fn with_width(
-        scene: &'s Scene,
-        precision: Precision,
-        threads: usize,
-        width: Width,
-    ) -> Result<Self> {
+    pub(super) fn build_as(scene: &'s Scene, asked: Asked) -> Result<Self> {
         let boxes = scene.mesh_boxes();
         let bounds = scene.bounds_among(&boxes);
-        let (frame, asked) = (Frame::around(bounds), (precision, Some(width)));
-        let top = Top::build(scene, new_device(threads)?, asked, frame, &boxes, None)?;
+        let device = new_device(asked.threads)?;
+        let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
         Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
+    }
+
+    /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
+    /// from a frame before, of which only `moved` is not as it was there; nothing is known of that
+    /// where the things are other ones.
+    pub(super) fn build_sharing(
+        scene: &'s Scene,
+        asked: Asked,
+        boxes: &[Bounds],
+        shared: &mut Shared,
+        moved: Option<&Moved>,
+    ) -> Result<Self> {
+        let bounds = scene.bounds_among(boxes);
+        let frame = Frame::on_stage(bounds, shared.stage);
+        let top = shared.top(scene, asked, frame, boxes, moved)?;
+        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })
+    }
+
+    /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
+    /// of their own.
+    pub(super) fn work(&self) -> (u64, u64) {
+        self.top.work()
     }
 
     /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
@@ -189,8 +195,7 @@ impl Shared {
     fn top(
         &mut self,
         scene: &Scene,
-        precision: Precision,
-        threads: usize,
+        asked: Asked,
         frame: Frame,
         boxes: &[Bounds],
         moved: Option<&Moved>,
@@ -205,9 +210,8 @@ impl Shared {
         } else {
             let device = match &self.device {
                 Some(there) => there.device(),
-                None => new_device(threads)?,
+                None => new_device(asked.threads)?,
             };
-            let asked = (precision, None);
             last = Some(Top::build(scene, device, asked, frame, boxes, Some(self))?.into());
             self.tops += 1;
         }

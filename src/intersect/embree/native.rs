@@ -31,26 +31,26 @@ impl Own {
 
 /// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
 /// stands several times through Embree's instances, unless it is outsized in its own space. Where
-/// frames share their meshes in `kept`, all stand through instances but the outsized ones. Says
-/// which instance each geometry is.
+/// `all_instanced`, as for frames that share their meshes in `kept`, all stand through instances but
+/// the outsized ones. Says which instance each geometry is, and how many are Embree's instances.
 pub fn attach_meshes(
     scene: &Scene,
     top: &embree4_rs::Scene,
     device: &DeviceHandle,
     frame: &Frame,
     boxes: &[Bounds],
-    mut kept: Option<&mut Kept<Own>>,
-) -> Result<Vec<u32>> {
+    (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
+) -> Result<(Vec<u32>, u64)> {
     let uses = uses(scene);
     let mut own: Vec<Option<Arc<Own>>> = scene.meshes.iter().map(|_| None).collect();
-    let mut instance_of = Vec::new();
+    let (mut instance_of, mut instanced) = (Vec::new(), 0);
     for (index, instance) in scene.instances.iter().enumerate() {
         let at = instance.mesh.0 as usize;
         let mesh = &scene.meshes[at];
         if mesh.triangles.is_empty() {
             continue;
         }
-        if (uses[at] == 1 && kept.is_none()) || is_outsized(&boxes[at]) {
+        if (uses[at] == 1 && !all_instanced) || is_outsized(&boxes[at]) {
             let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
             attach(top, &geometry)?;
             kept.iter_mut().for_each(|kept| kept.count_one());
@@ -65,10 +65,11 @@ pub fn attach_meshes(
             };
             let columns = columns(instance, own.center, frame);
             attach(top, &InstanceGeometry::new(device, &own.scene, &columns)?)?;
+            instanced += 1;
         }
         instance_of.push(index as u32);
     }
-    Ok(instance_of)
+    Ok((instance_of, instanced))
 }
 
 /// Places again the instances that `moved`, of which none is outsized.
