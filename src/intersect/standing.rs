@@ -34,7 +34,7 @@ impl Standing {
             *self = Self {
                 meshes: scene.meshes.clone(),
                 #[cfg(feature = "embree")]
-                boxes: scene.mesh_boxes(),
+                boxes: scene.mesh_bounds(),
                 spheres: scene.spheres.clone(),
                 instances: scene.instances.clone(),
             };

@@ -144,11 +144,11 @@ impl Scene {
 
     /// The box around all that is finite: spheres and instances, not planes.
     pub fn bounds(&self) -> Bounds {
-        self.bounds_among(&self.mesh_boxes())
+        self.bounds_with(&self.mesh_bounds())
     }
 
     /// The box of each mesh, in its own space. It takes a look at every triangle.
-    pub fn mesh_boxes(&self) -> Vec<Bounds> {
+    pub fn mesh_bounds(&self) -> Vec<Bounds> {
         self.meshes.iter().map(|mesh| mesh.bounds()).collect()
     }
 
@@ -156,9 +156,9 @@ impl Scene {
     ///
     /// # Panics
     /// When a mesh that stands in the scene has no box.
-    pub fn bounds_among(&self, mesh_boxes: &[Bounds]) -> Bounds {
+    pub fn bounds_with(&self, mesh_bounds: &[Bounds]) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let placed = |i: &Instance| mesh_boxes[i.mesh.0 as usize].transformed(&i.transform);
+        let placed = |i: &Instance| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform);
         spheres.chain(self.instances.iter().map(placed)).fold(Bounds::EMPTY, Bounds::union)
     }
 

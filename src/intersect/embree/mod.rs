@@ -97,8 +97,8 @@ impl<'s> Embree<'s> {
     }
 
     pub(super) fn build_as(scene: &'s Scene, asked: Asked) -> Result<Self> {
-        let boxes = scene.mesh_boxes();
-        let bounds = scene.bounds_among(&boxes);
+        let boxes = scene.mesh_bounds();
+        let bounds = scene.bounds_with(&boxes);
         let device = new_device(asked.threads)?;
         let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
         Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
@@ -114,7 +114,7 @@ impl<'s> Embree<'s> {
         shared: &mut Shared,
         moved: Option<&Moved>,
     ) -> Result<Self> {
-        let bounds = scene.bounds_among(boxes);
+        let bounds = scene.bounds_with(boxes);
         let frame = Frame::on_stage(bounds, shared.stage);
         let top = shared.top(scene, asked, frame, boxes, moved)?;
         Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })

@@ -168,11 +168,11 @@ impl Scene {
     pub fn bounds_over_time(&self) -> Bounds {
         /// At how many times an animation is looked at.
         const MOMENTS: u32 = 24;
-        let boxes = self.mesh_boxes();
-        let Some(animation) = &self.animation else { return self.bounds_among(&boxes) };
+        let boxes = self.mesh_bounds();
+        let Some(animation) = &self.animation else { return self.bounds_with(&boxes) };
         let moment = |i: u32| animation.seconds() * f64::from(i) / f64::from(MOMENTS);
         let mut poses = Poses::new(self);
-        let mut bounds = |i| Some(poses.pose(moment(i)).ok()?.bounds_among(&boxes));
+        let mut bounds = |i| Some(poses.pose(moment(i)).ok()?.bounds_with(&boxes));
         (0..=MOMENTS).filter_map(&mut bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 }

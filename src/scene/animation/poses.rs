@@ -17,7 +17,7 @@ pub struct Poses<'a> {
     /// Whether instances are left out of it, since they are flat at that time.
     lacks_flat: bool,
     /// The boxes of the meshes, once they were asked for.
-    mesh_boxes: Option<Vec<Bounds>>,
+    mesh_bounds: Option<Vec<Bounds>>,
 }
 
 impl<'a> Poses<'a> {
@@ -37,7 +37,7 @@ impl<'a> Poses<'a> {
             animation: None,
             warnings: scene.warnings.clone(),
         };
-        Self { scene, posed, lacks_flat: false, mesh_boxes: None }
+        Self { scene, posed, lacks_flat: false, mesh_bounds: None }
     }
 
     /// The scene as it is at a time in seconds; see [`Scene::at`].
@@ -83,8 +83,8 @@ impl<'a> Poses<'a> {
             // They have other indices now.
             (0..posed.instances.len()).try_for_each(|i| posed.check_instance(i, false))?;
         }
-        let boxes = self.mesh_boxes.get_or_insert_with(|| original.mesh_boxes());
-        check_extent(&posed.bounds_among(boxes))?;
+        let boxes = self.mesh_bounds.get_or_insert_with(|| original.mesh_bounds());
+        check_extent(&posed.bounds_with(boxes))?;
         posed.check_lights_and_cameras()
     }
 
