@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
-use crate::intersect::{Backend, Builder, Built, Intersector, Precision};
+use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
 use crate::scene::animation::Poses;
 use crate::scene::{Scene, Skips};
 
@@ -20,6 +20,8 @@ pub struct Options {
     pub backend: Backend,
     /// How far the hits can be trusted.
     pub precision: Precision,
+    /// How good Embree's trees are; nothing for what suits the number of rays to come.
+    pub quality: Option<BuildQuality>,
     /// How many threads; 0 means all there are.
     pub threads: usize,
     /// Which of the scene's cameras.
@@ -48,6 +50,8 @@ pub struct Statistics {
     pub backend: (&'static str, String),
     /// How far the hits can be trusted.
     pub precision: Precision,
+    /// How good Embree's trees were; nothing where there was no Embree.
+    pub quality: Option<BuildQuality>,
     /// Threads used.
     pub threads: usize,
     /// Rays and other counts.
@@ -66,6 +70,7 @@ impl Statistics {
         Self {
             backend: (options.backend.name(), String::new()),
             precision: options.precision,
+            quality: None,
             threads: options.threads,
             counts: Counts::default(),
             built: Built::default(),
@@ -77,6 +82,7 @@ impl Statistics {
     /// Adds what another frame of the same animation took.
     pub fn add(&mut self, other: &Statistics) {
         (self.backend, self.threads) = (other.backend.clone(), other.threads);
+        self.quality = other.quality;
         self.counts += other.counts;
         self.built += other.built;
         self.build += other.build;
@@ -101,12 +107,13 @@ pub fn render(
     let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
-        let builder = Builder::new(options.backend, options.precision, threads);
-        let mut builder = builder.skipping(options.skips);
+        let mut builder = Builder::new(options.backend, options.precision, threads)
+            .with_quality(quality(scene, options))
+            .skipping(options.skips);
         let start = Instant::now();
         let intersector = builder.build(scene)?;
-        let built = (start.elapsed(), builder.built());
-        Ok(picture(scene, options, &*intersector, built, progress))
+        let made = Made::new(start, &builder, builder.built());
+        Ok(picture(scene, options, &*intersector, made, progress))
     })
 }
 
@@ -131,32 +138,35 @@ pub fn render_frames(
         let (backend, precision) = (options.backend, options.precision);
         let threads = rayon::current_num_threads();
         let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
-        let builder = match moves {
+        let mut builder = match moves {
             true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
             false => Builder::new(backend, precision, threads),
-        };
-        let mut builder = builder.skipping(options.skips);
+        }
+        .with_quality(quality(scene, options))
+        .skipping(options.skips);
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         let mut poses = Poses::new(scene);
         for (i, &time) in times.iter().enumerate() {
             poses.pose(time)?;
-            poses.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            if scene.animation.is_some() {
+                poses.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+            }
             let posed = poses.scene();
             let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
             let start = Instant::now();
             let before = builder.built();
             let rendering = if moves {
                 let intersector = builder.build(posed)?;
-                let built = (start.elapsed(), builder.built() - before);
-                picture(posed, options, &*intersector, built, &share)
+                let made = Made::new(start, &builder, builder.built() - before);
+                picture(posed, options, &*intersector, made, &share)
             } else if let Some(intersector) = &still {
-                let built = Built::kept(before.meshes);
-                picture(posed, options, &**intersector, (start.elapsed(), built), &share)
+                let made = Made::new(start, &builder, Built::kept(before.meshes));
+                picture(posed, options, &**intersector, made, &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);
-                let built = (start.elapsed(), builder.built());
-                picture(posed, options, &**intersector, built, &share)
+                let made = Made::new(start, &builder, builder.built());
+                picture(posed, options, &**intersector, made, &share)
             };
             each(i, rendering)?;
         }
@@ -164,19 +174,51 @@ pub fn render_frames(
     })
 }
 
-/// A picture of a checked scene, by an intersector that took so long, and so many meshes, to build.
+/// How an intersector was made.
+struct Made {
+    quality: Option<BuildQuality>,
+    built: Built,
+    took: Duration,
+}
+
+impl Made {
+    fn new(start: Instant, builder: &Builder, built: Built) -> Self {
+        Self { quality: builder.quality(), built, took: start.elapsed() }
+    }
+}
+
+/// How good the trees of a scene should be, where the options leave it open: by its primary rays and
+/// their shadow rays, which can be told beforehand. All frames of an animation count, also when
+/// only some are asked for: a frame must not depend on which are rendered with it.
+fn quality(scene: &Scene, options: &Options) -> BuildQuality {
+    let (spp, lights) = match options.view {
+        View::Beauty => {
+            (scene.film.spp, scene.lights.iter().filter(|light| light.casts_shadow()).count())
+        }
+        _ => (1, 0),
+    };
+    let frames = scene.animation.as_ref().map_or(1, |animation| animation.frames);
+    let [width, height] = scene.film.size;
+    let factors = [width, height, spp, frames, 1 + lights as u32];
+    let rays = factors.into_iter().map(u64::from).fold(1, u64::saturating_mul);
+    options.quality.unwrap_or(BuildQuality::for_rays(rays, scene.primitive_count()))
+}
+
+/// A picture of a checked scene, by an intersector that is there.
 fn picture(
     scene: &Scene,
     options: &Options,
     intersector: &dyn Intersector,
-    (build, built): (Duration, Built),
+    made: Made,
     progress: &(dyn Fn(f32) + Sync),
 ) -> Rendering {
     let (film, counts, render) = with_intersector(scene, options, intersector, progress);
     let backend = (intersector.name(), intersector.version());
     let threads = rayon::current_num_threads();
     let precision = options.precision;
-    let statistics = Statistics { backend, precision, threads, counts, built, build, render };
+    let Made { quality, built, took: build } = made;
+    let statistics =
+        Statistics { backend, precision, quality, threads, counts, built, build, render };
     Rendering { film, statistics }
 }
 
@@ -212,11 +254,15 @@ pub fn with_intersector(
     (film, counts, start.elapsed())
 }
 
-/// Runs `work` on a pool of `threads` threads of its own; 0 means all there are.
+/// Runs `work` on `threads` threads; 0 means all there are. They are those of the current rayon pool
+/// where that has so many, and else a pool of their own.
 ///
 /// # Errors
 /// When the threads cannot be started, and what `work` returns.
 pub fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
+    if threads == 0 || threads == rayon::current_num_threads() {
+        return work();
+    }
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

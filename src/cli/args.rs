@@ -7,7 +7,8 @@ use clap::{Args, Parser, Subcommand};
 use crate::cli::files;
 use crate::cli::range::Range;
 use crate::cli::values::{
-    BackendName, PrecisionName, ToneName, ViewName, finite, goal, not_negative, seconds, size,
+    BackendName, BvhName, PrecisionName, ToneName, ViewName, finite, goal, not_negative, seconds,
+    size,
 };
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
@@ -108,6 +109,10 @@ pub struct Render {
     /// Who finds the hits [default: embree where it is built in]
     #[arg(long, value_enum)]
     pub backend: Option<BackendName>,
+    /// How Embree builds its trees: low is built faster, medium traced faster; auto goes by the number
+    /// of rays to come. The pure-Rust intersector builds one way only
+    #[arg(long, value_enum, default_value = "auto", value_name = "QUALITY")]
+    pub bvh: BvhName,
     /// What the picture shows; normal, depth and id are raw values in EXR, colours in PNG
     #[arg(long, value_enum, default_value = "beauty")]
     pub view: ViewName,
@@ -240,6 +245,8 @@ impl Tracing {
     /// When the scene cannot be loaded, or the flags do not fit it.
     pub fn load_animated(&self, skips: Skips) -> Result<(Scene, usize)> {
         files::check_input(&self.scene)?;
+        // Loading and writing keep to them, too. Fails only where the pool is there already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let mut scene = crate::load::load_with(&self.scene, self.size, skips)?;
         if let Some(spp) = self.spp {
             scene.film.spp = spp;

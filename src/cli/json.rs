@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::integrator::{self, Counts, RayCounts};
-use crate::intersect::Built;
+use crate::intersect::{BuildQuality, Built};
 use crate::render::Statistics;
 use crate::scene::{Needs, Scene, Skips, Work};
 
@@ -34,6 +34,8 @@ pub struct Stats {
     pub mrays_per_second: f64,
     /// The most memory the process had at any time; null where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
+    /// What of it Embree had, at its own peak; null without Embree.
+    pub embree_peak_memory_bytes: Option<u64>,
     pub warnings: Vec<String>,
 }
 
@@ -70,6 +72,8 @@ pub struct Build {
     pub meshes: u64,
     /// Meshes that were there from a frame before.
     pub reused: u64,
+    /// How good Embree's trees are: `low` or `medium`; null without Embree.
+    pub bvh: Option<&'static str>,
     /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
     pub top_levels_built: u64,
     /// Frames for which it was there, and only what moved was placed again.
@@ -82,12 +86,14 @@ pub struct Build {
     pub spheres_moved: u64,
 }
 
-impl From<Built> for Build {
-    fn from(built: Built) -> Self {
-        let Built { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } = built;
+impl From<&Statistics> for Build {
+    fn from(statistics: &Statistics) -> Self {
+        let Built { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
+            statistics.built;
         Self {
             meshes,
             reused,
+            bvh: statistics.quality.map(BuildQuality::name),
             top_levels_built: tops,
             top_levels_kept: tops_kept,
             instances_placed: placed,
@@ -156,7 +162,7 @@ impl Stats {
             spp: scene.film.spp,
             frames,
             geometry: Geometry::of(scene),
-            build: statistics.built.into(),
+            build: statistics.into(),
             rays: rays.into(),
             skipped: skipped(&Needs::of(scene, skips), &work),
             work,
@@ -164,6 +170,7 @@ impl Stats {
             seconds: Seconds { load, build, render, write, total },
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),
+            embree_peak_memory_bytes: embree_peak_memory(statistics),
             warnings,
         }
     }
@@ -192,6 +199,13 @@ fn work(scene: &Scene, statistics: &Statistics) -> BTreeMap<&'static str, u64> {
 fn skipped(needs: &Needs, work: &BTreeMap<&'static str, u64>) -> BTreeMap<&'static str, String> {
     let skipped = needs.skipped().map(|(work, why)| (work.name(), why));
     skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
+}
+
+fn embree_peak_memory(statistics: &Statistics) -> Option<u64> {
+    #[cfg(feature = "embree")]
+    return statistics.quality.map(|_| crate::intersect::embree_peak_memory());
+    #[cfg(not(feature = "embree"))]
+    statistics.quality.and(None)
 }
 
 /// The process's peak memory, as Linux tells it.

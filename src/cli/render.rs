@@ -39,8 +39,9 @@ pub fn run(arguments: &Render) -> Outcome {
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
+    let quality = arguments.bvh.quality();
     let options =
-        Options { backend, precision, threads, camera, view, skips, ..Options::default() };
+        Options { backend, precision, quality, threads, camera, view, skips, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,

@@ -6,7 +6,7 @@ use clap::ValueEnum;
 use crate::error::Error;
 use crate::error::Result;
 use crate::film::View;
-use crate::intersect::{Backend, Precision};
+use crate::intersect::{Backend, BuildQuality, Precision};
 use crate::measure::stress::Goal;
 use crate::scene::Tone;
 
@@ -42,6 +42,24 @@ impl From<PrecisionName> for Precision {
         match name {
             PrecisionName::Fast => Precision::Fast,
             PrecisionName::Certified => Precision::Certified,
+        }
+    }
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum BvhName {
+    Auto,
+    Low,
+    Medium,
+}
+
+impl BvhName {
+    /// The quality that is asked for by name.
+    pub fn quality(self) -> Option<BuildQuality> {
+        match self {
+            BvhName::Auto => None,
+            BvhName::Low => Some(BuildQuality::Low),
+            BvhName::Medium => Some(BuildQuality::Medium),
         }
     }
 }

@@ -112,13 +112,7 @@ impl Rays {
     /// # Panics
     /// When there are rays that left none, or went through one.
     #[inline(always)]
-    pub fn push_spawned(
-        &mut self,
-        origin: DVec3,
-        direction: DVec3,
-        tmax: f64,
-        from: Departure,
-    ) {
+    pub fn push_spawned(&mut self, origin: DVec3, direction: DVec3, tmax: f64, from: Departure) {
         let (block, lane) = (self.len / LANES, self.len % LANES);
         assert!(self.from.len() == self.len && self.past.is_empty(), "rays of another kind");
         self.reserve(block + 1);
@@ -232,12 +226,8 @@ pub struct Found {
 }
 
 impl Found {
-    const NOTHING: Self = Self {
-        t: [f64::INFINITY; LANES],
-        u: [0.0; LANES],
-        v: [0.0; LANES],
-        id: [None; LANES],
-    };
+    const NOTHING: Self =
+        Self { t: [f64::INFINITY; LANES], u: [0.0; LANES], v: [0.0; LANES], id: [None; LANES] };
 
     /// The hit in lane `i`.
     #[inline(always)]

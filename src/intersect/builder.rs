@@ -7,7 +7,7 @@ use crate::geometry::Bounds;
 use crate::intersect::embree::{self, Embree};
 use crate::intersect::kept::used;
 use crate::intersect::standing::Standing;
-use crate::intersect::{Backend, Bvh, Intersector, Precision, bvh};
+use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
 use crate::scene::{MeshId, Scene, Skips};
 
 /// What building took, and what was kept of a frame before.
@@ -76,6 +76,7 @@ pub struct Builder {
     backend: Backend,
     precision: Precision,
     threads: usize,
+    quality: BuildQuality,
     skips: Skips,
     /// What frames share; nothing for one picture.
     shared: Option<Shared>,
@@ -93,8 +94,8 @@ struct Shared {
 impl Builder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        let skips = Skips::default();
-        Self { backend, precision, threads, skips, shared: None, built: Built::default() }
+        let (quality, skips, built) = Default::default();
+        Self { backend, precision, threads, quality, skips, shared: None, built }
     }
 
     /// The same builder, which leaves out only `skips` of what a scene has no need of.
@@ -127,6 +128,11 @@ impl Builder {
         Self { shared: Some(shared), ..Self::new(backend, precision, threads) }
     }
 
+    /// The same with trees of another quality than medium. The pure-Rust BVH has only one.
+    pub fn with_quality(self, quality: BuildQuality) -> Self {
+        Self { quality, ..self }
+    }
+
     /// Builds the intersector of a checked scene.
     ///
     /// # Errors
@@ -143,6 +149,7 @@ impl Builder {
                 let asked = embree::Asked {
                     precision: self.precision,
                     threads: self.threads,
+                    quality: self.quality,
                     skips: self.skips,
                     width: None,
                 };
@@ -188,6 +195,11 @@ impl Builder {
         };
         self.built.reused += used.saturating_sub(built.meshes);
         Ok(intersector)
+    }
+
+    /// How good its trees are; nothing where Embree does not build them.
+    pub fn quality(&self) -> Option<BuildQuality> {
+        (self.backend != Backend::Rust).then_some(self.quality)
     }
 
     /// What all intersectors so far took.

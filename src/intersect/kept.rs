@@ -3,6 +3,9 @@
 use std::sync::Arc;
 
 #[cfg(feature = "embree")]
+use rayon::prelude::*;
+
+#[cfg(feature = "embree")]
 use crate::error::Result;
 use crate::scene::{Mesh, Scene};
 
@@ -37,26 +40,34 @@ impl<T> Kept<T> {
         }
     }
 
-    /// What was built of a mesh, or else what `make` builds, and then is kept where there is a
-    /// place for it.
+    /// For each mesh that is `wanted`, what was built of it, or else what `make` builds, several at a
+    /// time; that is then kept where there is a place for it.
     ///
     /// # Errors
     /// Those of `make`.
     #[cfg(feature = "embree")]
-    pub fn get_or(
-        kept: &mut Option<&mut Self>,
-        index: usize,
-        mesh: &Arc<Mesh>,
-        make: impl FnOnce() -> Result<T>,
-    ) -> Result<Arc<T>> {
-        if let Some(there) = kept.as_ref().and_then(|kept| kept.get(index, mesh)) {
-            return Ok(there);
-        }
-        let made = Arc::new(make()?);
+    pub fn all(
+        kept: Option<&mut Self>,
+        scene: &Scene,
+        wanted: &[bool],
+        make: impl Fn(usize) -> Result<T> + Sync,
+    ) -> Result<Vec<Option<Arc<T>>>>
+    where
+        T: Send + Sync,
+    {
+        let there = kept.as_deref();
+        let one = |i: usize| match there.and_then(|kept| kept.get(i, &scene.meshes[i])) {
+            _ if !wanted[i] => Ok(None),
+            None => make(i).map(|made| Some(Arc::new(made))),
+            found => Ok(found),
+        };
+        let all: Vec<_> = (0..wanted.len()).into_par_iter().map(one).collect::<Result<_>>()?;
         if let Some(kept) = kept {
-            kept.keep(index, mesh, &made);
+            for (i, (built, mesh)) in all.iter().zip(&scene.meshes).enumerate() {
+                built.iter().for_each(|built| kept.keep(i, mesh, built));
+            }
         }
-        Ok(made)
+        Ok(all)
     }
 
     /// Counts a mesh that was built and cannot be kept.

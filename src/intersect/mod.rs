@@ -13,13 +13,15 @@ mod entry;
 mod kept;
 mod leaving;
 pub mod primitive;
+mod quality;
 mod standing;
 
 pub use brute::BruteForce;
 pub use builder::{Builder, Built};
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
-pub use embree::{Embree, version as embree_version};
+pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
+pub use quality::BuildQuality;
 
 use crate::error::Result;
 use crate::geometry::{Hit, Hits, Ray, Rays};

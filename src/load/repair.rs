@@ -10,14 +10,15 @@ use crate::scene::Mesh;
 pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
     let at = || place.to_owned();
     let count = mesh.positions.len();
-    let before = mesh.triangles.len();
-    mesh.triangles.retain(|t| t.iter().all(|&i| (i as usize) < count));
-    let dropped = (before - mesh.triangles.len()) as u64;
-    tally.add("{} triangles are left out: they name vertices that are not there", dropped, at);
-
-    let finite: Vec<bool> =
-        mesh.positions.iter().map(|p| p.iter().all(|x| x.is_finite())).collect();
-    if finite.contains(&false) {
+    if !mesh.has_all_vertices() {
+        let before = mesh.triangles.len();
+        mesh.triangles.retain(|t| t.iter().all(|&i| (i as usize) < count));
+        let dropped = (before - mesh.triangles.len()) as u64;
+        tally.add("{} triangles are left out: they name vertices that are not there", dropped, at);
+    }
+    if !mesh.is_finite() {
+        let finite: Vec<bool> =
+            mesh.positions.iter().map(|p| p.iter().all(|x| x.is_finite())).collect();
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| t.iter().all(|&i| finite.get(i as usize) == Some(&true)));
         let dropped = (before - mesh.triangles.len()) as u64;

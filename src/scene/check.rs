@@ -183,10 +183,8 @@ fn check_texture(i: usize, texture: &Texture, shown: bool) -> Result<()> {
 fn check_mesh(i: usize, mesh: &Mesh) -> Result<()> {
     let what = format!("mesh {i} (`{}`)", mesh.name);
     let count = mesh.positions.len();
-    require(mesh.positions.as_flattened().iter().all(|x| x.is_finite()), || {
-        format!("{what}: a vertex is not finite")
-    })?;
-    require(mesh.triangles.as_flattened().iter().all(|&v| (v as usize) < count), || {
+    require(mesh.is_finite(), || format!("{what}: a vertex is not finite"))?;
+    require(mesh.has_all_vertices(), || {
         format!("{what}: a triangle names a vertex that is not there ({count} vertices)")
     })?;
     for (name, length) in

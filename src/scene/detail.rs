@@ -1,7 +1,10 @@
 //! Detail that numbers cannot hold: what is too small for how large the scene is, or for how far
 //! from 0 it stands.
 
-use crate::scene::{Instance, Mesh, Scene};
+use rayon::prelude::*;
+
+use crate::geometry::Bounds;
+use crate::scene::{GRAIN, Instance, Mesh, Scene};
 
 /// The greatest ratio of the longest side of the scene's box to the detail of a mesh that precision
 /// `fast` supports on Embree.
@@ -25,11 +28,17 @@ const F32_SPACING: f64 = f32::EPSILON as f64;
 /// - the spacing of f32 at the mesh's own coordinates, since files and scenes store meshes in f32;
 /// - the spacing of f64 at the object's coordinates in the world.
 pub fn lost(scene: &Scene, f32_rays: bool) -> Vec<String> {
-    let bounds = scene.bounds();
+    let mesh_bounds = scene.mesh_bounds();
+    let bounds = scene.bounds_with(&mesh_bounds);
     if bounds.is_empty() {
         return Vec::new();
     }
-    let meshes: Vec<Grain> = scene.meshes.iter().map(|m| Grain::of(m)).collect();
+    let meshes: Vec<Grain> = scene
+        .meshes
+        .iter()
+        .zip(&mesh_bounds)
+        .map(|(mesh, bounds)| Grain::of(mesh, bounds))
+        .collect();
     let extent = bounds.size().max_element();
     let mut found = Vec::new();
 
@@ -118,14 +127,15 @@ struct Grain {
 }
 
 impl Grain {
-    fn of(mesh: &Mesh) -> Self {
+    fn of(mesh: &Mesh, bounds: &Bounds) -> Self {
         let area = |t: &[u32; 3]| {
             let corners = t.map(|i| glam::DVec3::from(mesh.positions[i as usize].map(f64::from)));
             0.5 * crate::geometry::triangle::area_normal(corners).length()
         };
-        let sum: f64 = mesh.triangles.iter().map(area).sum();
-        let detail = (sum / mesh.triangles.len().max(1) as f64).sqrt();
-        let bounds = mesh.bounds();
+        // Parts that are added up in order: the same sum on any number of threads.
+        let parts: Vec<f64> =
+            mesh.triangles.par_chunks(GRAIN).map(|part| part.iter().map(area).sum()).collect();
+        let detail = (parts.iter().sum::<f64>() / mesh.triangles.len().max(1) as f64).sqrt();
         Self { detail, reach: if bounds.is_empty() { 0.0 } else { bounds.max_abs() } }
     }
 }

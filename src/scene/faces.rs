@@ -92,7 +92,9 @@ mod tests {
     fn corners_are_those_of_the_scene_whatever_the_instances() {
         let scene = scene();
         let face = |t, i| Some(PrimitiveId::triangle(0, t, i));
-        for ids in [[face(0, 1), None, face(2, 1), face(1, 1)], [face(0, 0), None, face(2, 1), face(1, 0)]] {
+        for ids in
+            [[face(0, 1), None, face(2, 1), face(1, 1)], [face(0, 0), None, face(2, 1), face(1, 0)]]
+        {
             let faces = Faces::of(&scene, &ids).unwrap();
             for (i, id) in ids.iter().enumerate().filter_map(|(i, id)| Some((i, (*id)?))) {
                 assert_eq!(faces.corners(i), scene.triangle(id));

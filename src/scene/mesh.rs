@@ -1,8 +1,15 @@
 //! Triangle meshes.
 
-use glam::DVec3;
+use glam::Vec3A;
+use rayon::prelude::*;
 
 use crate::geometry::Bounds;
+
+/// How many vertices or triangles a thread looks at before another is asked to help.
+pub(crate) const GRAIN: usize = 1 << 14;
+
+/// The box that holds nothing.
+const NOWHERE: [Vec3A; 2] = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
 
 /// The index of a mesh in `Scene::meshes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -37,11 +44,34 @@ impl Mesh {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 
+    /// Whether all positions are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        // Each chunk is gone through to its end, which lets the compiler take several at a time.
+        let finite =
+            |p: &[[f32; 3]]| p.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
+        self.positions.par_chunks(GRAIN).all(finite)
+    }
+
+    /// Whether all vertices that triangles name are there.
+    pub(crate) fn has_all_vertices(&self) -> bool {
+        let greatest = |t: &[[u32; 3]]| t.as_flattened().iter().copied().max();
+        let count = self.positions.len();
+        self.triangles.par_chunks(GRAIN).all(|t| greatest(t).is_none_or(|v| (v as usize) < count))
+    }
+
     /// The box around the vertices that triangles use.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.triangles.iter().flatten().map(|&i| {
-            let [x, y, z] = self.positions[i as usize];
-            DVec3::new(x as f64, y as f64, z as f64)
-        }))
+        // In f32, which rounds nothing: the extremes are coordinates of vertices.
+        let around = |triangles: &[[u32; 3]]| {
+            triangles.as_flattened().iter().fold(NOWHERE, |[lower, upper], &i| {
+                let p = Vec3A::from(self.positions[i as usize]);
+                [lower.min(p), upper.max(p)]
+            })
+        };
+        let union = |a: [Vec3A; 2], b: [Vec3A; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        let [lower, upper] = self.triangles.par_chunks(GRAIN).map(around).reduce(|| NOWHERE, union);
+        // So that 0 has one sign, whichever vertex it came from.
+        let [lower, upper] = [lower, upper].map(|p| (p + Vec3A::ZERO).as_dvec3());
+        Bounds { lower, upper }
     }
 }

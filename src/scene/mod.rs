@@ -20,6 +20,7 @@ pub use faces::Faces;
 pub use film::{FilmSettings, SamplePosition, Transfer};
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};
+pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
@@ -162,6 +163,12 @@ impl Scene {
         let spheres = self.spheres.iter().map(Sphere::bounds);
         let placed = |i: &Instance| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform);
         spheres.chain(self.instances.iter().map(placed)).fold(Bounds::EMPTY, Bounds::union)
+    }
+
+    /// How many primitives trees are built of: spheres, instances, and the triangles of each mesh.
+    pub(crate) fn primitive_count(&self) -> u64 {
+        let triangles: usize = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+        (triangles + self.spheres.len() + self.instances.len()) as u64
     }
 
     /// How many triangles a ray can meet, counting each instance of a mesh.

@@ -203,7 +203,8 @@ impl Surfaces {
                 if id.geometry == Geometry::Spheres {
                     turns[i] = scene.materials[self.material[i].0 as usize].double_sided;
                     let left = Departure { id, side: Side::Back };
-                    let past = if rays.are_unbroken() { None } else { rays.past(block * LANES + i) };
+                    let past =
+                        if rays.are_unbroken() { None } else { rays.past(block * LANES + i) };
                     self.is_back[i] |= past.is_some_and(|past| past.through == left);
                 }
             }

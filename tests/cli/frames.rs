@@ -157,7 +157,7 @@ fn stats_say_what_was_placed_again() {
     folder.write("tetrahedron.obj", TETRAHEDRON);
     let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
     let expected = serde_json::json!({
-        "meshes": 1, "reused": 9,
+        "meshes": 1, "reused": 9, "bvh": "medium",
         "top_levels_built": 1, "top_levels_kept": 9,
         "instances_placed": 1, "instances_moved": 0, "spheres_moved": 9,
     });

@@ -74,6 +74,42 @@ fn more_samples_smooth_the_edges() {
     assert_eq!((&stats["spp"], &stats["rays"]["primary"]), (&9.into(), &(64 * 48 * 9).into()));
 }
 
+#[test]
+#[cfg(feature = "embree")]
+fn a_certified_exr_is_the_same_bytes_at_any_bvh_quality() {
+    let folder = Folder::with_everything();
+    let [auto, low, medium] = ["auto", "low", "medium"]
+        .map(|bvh| made(&folder, &format!("--precision certified --bvh {bvh}"), "a.exr"));
+    assert!(low == medium && auto == medium);
+}
+
+/// What quality a run says that it built with.
+#[track_caller]
+fn bvh(folder: &Folder, flags: &str) -> Value {
+    folder.run(&format!("render scene.toml {flags} --stats -")).good().json()["build"]["bvh"]
+        .clone()
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn statistics_say_which_bvh_quality_was_asked_for() {
+    let folder = Folder::with_everything();
+    assert_eq!([bvh(&folder, "--bvh low"), bvh(&folder, "--bvh medium")], ["low", "medium"]);
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn the_bvh_is_of_low_quality_where_few_rays_come() {
+    let folder = Folder::with_everything();
+    let [few, many] = ["--size 2x2", "--size 200x200"].map(|size| bvh(&folder, size));
+    assert_eq!([few, many], ["low", "medium"]);
+}
+
+#[test]
+fn the_rust_bvh_has_no_quality() {
+    assert_eq!(bvh(&Folder::with(SPHERE), "--backend rust --bvh low"), Value::Null);
+}
+
 /// The bytes with 1, 2 and 8 threads are the same.
 #[track_caller]
 fn same_for_any_number_of_threads(name: &str, flags: &str) {
@@ -224,4 +260,16 @@ fn quiet_prints_nothing() {
 #[test]
 fn progress_is_not_shown_on_a_pipe() {
     assert_eq!(Folder::with_everything().run("render scene.toml --spp 16").good().stderr, "");
+}
+
+#[test]
+#[cfg(feature = "embree")]
+fn statistics_tell_the_memory_that_embree_takes_for_a_mesh() {
+    let folder = Folder::with_everything();
+    let stats = folder.run("render scene.toml --stats -").good().json();
+    let [embree, all] =
+        ["embree_peak_memory_bytes", "peak_memory_bytes"].map(|k| stats[k].as_u64());
+    // The 32 bytes of at least one box for each of the 4 triangles.
+    assert!(embree.unwrap() > 128);
+    assert!(all.is_none_or(|all| all > embree.unwrap()));
 }

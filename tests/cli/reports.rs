@@ -43,6 +43,9 @@ fn statistics_have_every_field() {
             ("seconds", Value::is_object),
             ("mrays_per_second", seconds),
             ("peak_memory_bytes", |v| v.is_u64() || (!cfg!(target_os = "linux") && v.is_null())),
+            ("embree_peak_memory_bytes", |v| {
+                v.is_u64() || (!cfg!(feature = "embree") && v.is_null())
+            }),
             ("warnings", texts),
         ],
     );

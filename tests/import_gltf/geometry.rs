@@ -1,6 +1,7 @@
 //! Triangles, accessors and vertex attributes.
 
 use super::*;
+use proptest::prelude::*;
 
 #[test]
 fn triangle_without_indices() {
@@ -151,4 +152,49 @@ fn primitives_of_a_mesh_are_meshes_with_their_own_material() {
     let scene = model.load().unwrap();
     let names = scene.instances.iter().map(|i| &*scene.materials[i.material.0 as usize].name);
     assert_eq!(names.collect::<Vec<_>>(), ["b", "a"]);
+}
+
+/// The bytes of elements with `gap` other bytes after each.
+fn spread(elements: &[Vec<u8>], gap: usize) -> Vec<u8> {
+    elements.iter().flat_map(|e| e.iter().copied().chain(std::iter::repeat_n(0xEE, gap))).collect()
+}
+
+/// A mesh whose positions and indices stand `gap` bytes apart.
+fn spread_out(points: &[[f32; 3]], indices: &[u8], size: usize, gap: usize) -> Model {
+    let mut model = Model::new();
+    let points: Vec<Vec<u8>> =
+        points.iter().map(|p| p.iter().flat_map(|x| x.to_le_bytes()).collect()).collect();
+    let indices: Vec<Vec<u8>> =
+        indices.iter().map(|&i| u32::from(i).to_le_bytes()[..size].to_vec()).collect();
+    let mut accessor = |elements: &[Vec<u8>], component: u32, kind: &str| {
+        let view = model.view(&spread(elements, gap));
+        if gap > 0 {
+            model.last_view()["byteStride"] = (elements[0].len() + gap).into();
+        }
+        let count = elements.len();
+        model.accessor(
+            json!({"bufferView": view, "componentType": component, "type": kind, "count": count}),
+        )
+    };
+    let positions = accessor(&points, 5126, "VEC3");
+    let component = [5121, 5123, 5125][size / 2];
+    let indices = accessor(&indices, component, "SCALAR");
+    model.primitive()["attributes"]["POSITION"] = positions.into();
+    model.primitive()["indices"] = indices.into();
+    model
+}
+
+proptest! {
+    #[test]
+    fn values_side_by_side_are_read_as_those_apart_are(
+        points in prop::collection::vec(prop::array::uniform3(-1e14f32..1e14), 1..40),
+        indices in prop::collection::vec(any::<u8>(), 3..90),
+        size in prop::sample::select(vec![1usize, 2, 4]),
+        gap in 1usize..9,
+    ) {
+        let indices: Vec<u8> = indices.iter().map(|i| i % points.len() as u8).collect();
+        let [packed, apart] =
+            [0, gap].map(|gap| spread_out(&points, &indices, size, gap).load().unwrap());
+        prop_assert_eq!(packed.meshes, apart.meshes);
+    }
 }

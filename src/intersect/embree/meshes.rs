@@ -10,10 +10,10 @@ use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
 use crate::intersect::embree::user::Table;
 use crate::intersect::embree::width::Width;
-use crate::intersect::embree::{QUALITY, attach, certified, is_outsized, user, uses};
+use crate::intersect::embree::{attach, certified, is_outsized, user, uses};
 use crate::intersect::kept::Kept;
 use crate::scene::{Instance, Mesh, Scene};
-use embree4_sys::RTCSceneFlags;
+use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
 
 /// What Embree keeps the addresses of.
 #[derive(Default)]
@@ -39,15 +39,15 @@ impl Own {
         scene: &Scene,
         mesh: u32,
         bounds: Bounds,
-        top: &embree4_rs::Scene,
         device: &DeviceHandle,
+        quality: RTCBuildQuality,
         width: Width,
     ) -> Result<Self> {
         let frame = Frame::around(bounds);
         let table = Triangles::own(scene, mesh, frame);
         let callbacks = certified::triangles(width);
-        let geometry = user::geometry(&top.device, device, &*table, callbacks)?;
-        let scene = InnerScene::new(device, QUALITY, RTCSceneFlags::NONE, &geometry)?;
+        let geometry = user::geometry(device, quality, &*table, callbacks)?;
+        let scene = InnerScene::new(device, quality, RTCSceneFlags::NONE, &geometry)?;
         Ok(Self { scene, frame, _table: table })
     }
 }
@@ -59,50 +59,48 @@ const SMALL: f64 = 1e-4;
 impl Meshes {
     /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
     /// one that is outsized in its own; the others as placements. Where `all_instanced`, as for
-    /// frames that share their meshes in `kept`, all are placements but the outsized ones.
+    /// frames that share their meshes in `kept`, all are placements but the outsized ones. `local` are
+    /// the boxes of the meshes.
     pub fn attach(
         &mut self,
         scene: &Scene,
+        local: &[Bounds],
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
+        quality: RTCBuildQuality,
         (frame, width): (Frame, Width),
-        boxes: &[Bounds],
         (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
     ) -> Result<()> {
         let uses = uses(scene);
-        let mut own: Vec<Option<Arc<Own>>> = vec![None; scene.meshes.len()];
-        let mut placements = Box::new(Placements::new(frame));
-        for (index, instance) in (0..).zip(&scene.instances) {
+        let world: Vec<Bounds> = (scene.instances.iter())
+            .map(|instance| placed(&local[instance.mesh.0 as usize], instance))
+            .collect();
+        let mut has_own = vec![false; scene.meshes.len()];
+        for (instance, bounds) in scene.instances.iter().zip(&world) {
             let at = instance.mesh.0 as usize;
             let mesh = &scene.meshes[at];
-            if mesh.triangles.is_empty() {
-                continue;
-            }
-            let local = boxes[at];
-            let bounds = placed(&local, instance);
-            let once = !all_instanced && uses[at] == 1 && !is_small(mesh, &bounds, &frame);
-            if once || is_outsized(&local) {
+            let once = !all_instanced && uses[at] == 1 && !is_small(mesh, bounds, &frame);
+            has_own[at] = !(mesh.triangles.is_empty() || once || is_outsized(&local[at]));
+        }
+        let make = |at: usize| Own::new(scene, at as u32, local[at], device, quality, width);
+        let own = Kept::all(kept.as_deref_mut(), scene, &has_own, make)?;
+        let mut placements = Box::new(Placements::new(frame));
+        for ((index, instance), bounds) in (0..).zip(&scene.instances).zip(world) {
+            let at = instance.mesh.0 as usize;
+            if let Some(own) = &own[at] {
+                placements.add(scene, index, bounds, &own.scene, own.frame);
+            } else if !scene.meshes[at].triangles.is_empty() {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
-                attach(top, &user::geometry(&top.device, device, &*table, callbacks)?)?;
+                attach(top, &user::geometry(device, quality, &*table, callbacks)?)?;
                 self.tables.push(table);
                 kept.iter_mut().for_each(|kept| kept.count_one());
-                continue;
             }
-            let own = match &own[at] {
-                Some(there) => there,
-                None => {
-                    let make = || Own::new(scene, at as u32, local, top, device, width);
-                    let made = Kept::get_or(&mut kept, at, mesh, make)?;
-                    self.own.push(made.clone());
-                    own[at].insert(made)
-                }
-            };
-            placements.add(scene, index, bounds, &own.scene, own.frame);
         }
+        self.own = own.into_iter().flatten().collect();
         if !placements.is_empty() {
             let callbacks = placements::callbacks(width);
-            let geometry = user::geometry(&top.device, device, &*placements, callbacks)?;
+            let geometry = user::geometry(device, quality, &*placements, callbacks)?;
             self.placements = Some((attach(top, &geometry)?, placements));
         }
         Ok(())

@@ -23,6 +23,8 @@ mod filter;
 mod finish;
 mod frame;
 mod layout;
+mod memory;
+mod mesh_geometry;
 mod meshes;
 mod native;
 mod nearest;
@@ -44,17 +46,18 @@ use std::sync::{Arc, OnceLock};
 
 use embree4_rs::geometry::Geometry;
 use embree4_rs::{Device, SceneOptions};
-use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
+use embree4_sys::{RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Hits, Ray, Rays};
 use crate::intersect::kept::Kept;
 use crate::intersect::standing::Moved;
-use crate::intersect::{Coherence, Intersector, Precision, leaving};
+use crate::intersect::{BuildQuality, Coherence, Intersector, Precision, leaving};
 use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Scene, Skips};
 use canary::failed;
 use frame::Frame;
+pub use memory::peak as peak_memory;
 use raw::{DeviceHandle, scene_handle};
 use top::Top;
 use width::Width;
@@ -65,6 +68,8 @@ pub(super) struct Asked {
     pub precision: Precision,
     /// How many threads build it; 0 means all there are.
     pub threads: usize,
+    /// How good the trees are.
+    pub quality: BuildQuality,
     /// Which work is left out where the scene has no need of it.
     pub skips: Skips,
     /// How wide its packets are; none for the widest that is native.
@@ -101,7 +106,7 @@ impl<'s> Embree<'s> {
     pub(super) fn build_as(scene: &'s Scene, asked: Asked) -> Result<Self> {
         let boxes = scene.mesh_bounds();
         let bounds = scene.bounds_with(&boxes);
-        let device = new_device(asked.threads)?;
+        let device = new_device(scene, asked.threads)?;
         let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
         Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
     }
@@ -152,12 +157,14 @@ impl<'s> Embree<'s> {
 
 /// Starts a device of `threads` threads (0: all there are), once the library is known to be as
 /// expected.
-fn new_device(threads: usize) -> Result<Device> {
+fn new_device(scene: &Scene, threads: usize) -> Result<Device> {
     static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
     CHECKED
         .get_or_init(|| canary::check().map_err(|e| e.to_string()))
         .clone()
         .map_err(Error::failed)?;
+    // Waking threads takes longer than a small tree does.
+    let threads = if scene.primitive_count() < FEW { 1 } else { threads };
     Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)
 }
 
@@ -212,7 +219,7 @@ impl Shared {
         } else {
             let device = match &self.device {
                 Some(there) => there.device(),
-                None => new_device(asked.threads)?,
+                None => new_device(scene, asked.threads)?,
             };
             last = Some(Top::build(scene, device, asked, frame, boxes, Some(self))?.into());
             self.tops += 1;
@@ -222,7 +229,8 @@ impl Shared {
     }
 }
 
-const QUALITY: RTCBuildQuality = RTCBuildQuality::MEDIUM;
+/// How many primitives one thread builds a tree of in a few milliseconds.
+const FEW: u64 = 1 << 12;
 
 fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS

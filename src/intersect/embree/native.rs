@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use embree4_rs::Device;
-use embree4_rs::geometry::TriangleMeshGeometry;
+use embree4_rs::geometry::Geometry;
+use embree4_sys::RTCBuildQuality;
 use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
+use crate::intersect::embree::mesh_geometry::MeshGeometry;
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry, move_instance};
-use crate::intersect::embree::{QUALITY, attach, flags, is_outsized, uses};
+use crate::intersect::embree::{attach, flags, is_outsized, uses};
 use crate::intersect::kept::Kept;
 use crate::scene::{Instance, Mesh, Scene};
 
@@ -18,14 +20,22 @@ use crate::scene::{Instance, Mesh, Scene};
 pub struct Own {
     scene: InnerScene,
     center: DVec3,
+    /// Whose indices Embree reads; dropped after the scene.
+    _mesh: Arc<Mesh>,
 }
 
 impl Own {
-    fn new(mesh: &Mesh, bounds: &Bounds, device: &Device, handle: &DeviceHandle) -> Result<Self> {
+    fn new(
+        mesh: &Arc<Mesh>,
+        bounds: &Bounds,
+        device: &DeviceHandle,
+        quality: RTCBuildQuality,
+    ) -> Result<Self> {
         let center = bounds.center();
-        let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3();
-        let geometry = upload(device, mesh, |p| local(p).to_array())?;
-        Ok(Self { scene: InnerScene::new(handle, QUALITY, flags(), &geometry)?, center })
+        let local = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3().to_array();
+        let geometry = MeshGeometry::new(device, mesh, quality, local)?;
+        let scene = InnerScene::new(device, quality, flags(), &geometry)?;
+        Ok(Self { scene, center, _mesh: mesh.clone() })
     }
 }
 
@@ -33,43 +43,48 @@ impl Own {
 /// stands several times through Embree's instances, unless it is outsized in its own space. Where
 /// `all_instanced`, as for frames that share their meshes in `kept`, all stand through instances but
 /// the outsized ones. Says which instance each geometry is, and how many are Embree's instances.
+/// `bounds` are those of the meshes, which Embree goes on reading.
 pub fn attach_meshes(
     scene: &Scene,
+    bounds: &[Bounds],
     top: &embree4_rs::Scene,
     device: &DeviceHandle,
+    quality: RTCBuildQuality,
     frame: &Frame,
-    boxes: &[Bounds],
     (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
 ) -> Result<(Vec<u32>, u64)> {
     let uses = uses(scene);
-    let mut own: Vec<Option<Arc<Own>>> = scene.meshes.iter().map(|_| None).collect();
-    let (mut instance_of, mut instanced) = (Vec::new(), 0);
-    for (index, instance) in scene.instances.iter().enumerate() {
+    let in_world = |at: usize| (uses[at] == 1 && !all_instanced) || is_outsized(&bounds[at]);
+    let is_there = |at: usize| uses[at] > 0 && !scene.meshes[at].triangles.is_empty();
+    let has_own: Vec<bool> = (0..uses.len()).map(|at| is_there(at) && !in_world(at)).collect();
+    let make = |at: usize| Own::new(&scene.meshes[at], &bounds[at], device, quality);
+    let own = Kept::all(kept.as_deref_mut(), scene, &has_own, make)?;
+
+    let standing: Vec<_> = (0..)
+        .zip(&scene.instances)
+        .filter(|(_, instance)| is_there(instance.mesh.0 as usize))
+        .collect();
+    let geometry = |&(_, instance): &(u32, &Instance)| -> Result<Box<dyn Geometry + Send>> {
         let at = instance.mesh.0 as usize;
-        let mesh = &scene.meshes[at];
-        if mesh.triangles.is_empty() {
-            continue;
-        }
-        if (uses[at] == 1 && !all_instanced) || is_outsized(&boxes[at]) {
-            let geometry = upload(&top.device, mesh, |p| frame.point(instance.bake(p)))?;
-            attach(top, &geometry)?;
-            kept.iter_mut().for_each(|kept| kept.count_one());
-        } else {
-            let own = match &own[at] {
-                Some(there) => there,
-                None => {
-                    let make = || Own::new(mesh, &boxes[at], &top.device, device);
-                    let made = Kept::get_or(&mut kept, at, mesh, make)?;
-                    own[at].insert(made)
-                }
-            };
-            let columns = columns(instance, own.center, frame);
-            attach(top, &InstanceGeometry::new(device, &own.scene, &columns)?)?;
-            instanced += 1;
-        }
-        instance_of.push(index as u32);
+        Ok(match &own[at] {
+            Some(own) => {
+                let columns = columns(instance, own.center, frame);
+                Box::new(InstanceGeometry::new(device, &own.scene, &columns)?)
+            }
+            None => Box::new(MeshGeometry::new(device, &scene.meshes[at], quality, |p| {
+                frame.point(instance.bake(p))
+            })?),
+        })
+    };
+    let geometries: Vec<_> = standing.par_iter().map(geometry).collect::<Result<_>>()?;
+    geometries.iter().try_for_each(|geometry| attach(top, &**geometry).map(|_| ()))?;
+    if let Some(kept) = kept {
+        let outsized = standing.iter().filter(|(_, i)| own[i.mesh.0 as usize].is_none());
+        outsized.for_each(|_| kept.count_one());
     }
-    Ok((instance_of, instanced))
+    let instanced =
+        standing.iter().filter(|(_, i)| own[i.mesh.0 as usize].is_some()).count() as u64;
+    Ok((standing.iter().map(|&(index, _)| index).collect(), instanced))
 }
 
 /// Places again the instances that `moved`, of which none is outsized.
@@ -88,17 +103,6 @@ pub fn follow(
         let center = boxes[instance.mesh.0 as usize].center();
         move_instance(top, id as u32, &columns(instance, center, frame));
     }
-}
-
-fn upload(
-    device: &Device,
-    mesh: &Mesh,
-    place: impl Fn([f32; 3]) -> [f32; 3],
-) -> Result<TriangleMeshGeometry> {
-    let vertices: Vec<(f32, f32, f32)> = mesh.positions.iter().map(|&p| place(p).into()).collect();
-    let triangles: Vec<(u32, u32, u32)> = mesh.triangles.iter().map(|&t| t.into()).collect();
-    TriangleMeshGeometry::try_new(device, &vertices, &triangles)
-        .map_err(|e| Error::failed(format!("Embree cannot take mesh `{}`: {e}", mesh.name)))
 }
 
 /// The matrix from the mesh's space, recentred on `center`, to the recentred world.

@@ -86,6 +86,8 @@ unsafe impl Send for DeviceHandle {}
 unsafe impl Sync for DeviceHandle {}
 unsafe impl Send for InnerScene {}
 unsafe impl Sync for InnerScene {}
+// SAFETY: Embree lets any thread attach and release a geometry.
+unsafe impl Send for InstanceGeometry {}
 
 /// Moves the instance that a scene knows by `id`; the scene is to be committed again then.
 pub fn move_instance(scene: &embree4_rs::Scene, id: u32, columns: &[[f32; 3]; 4]) {

@@ -58,15 +58,15 @@ fn rays(state: &mut u64) -> Vec<Ray> {
 }
 
 fn check(width: Width) {
-    compare(width, Precision::Fast);
-    compare(width, Precision::Certified);
+    compare(width, Precision::Fast, BuildQuality::Medium);
+    compare(width, Precision::Certified, BuildQuality::Medium);
 }
 
-fn compare(width: Width, precision: Precision) {
+fn compare(width: Width, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let asked = Asked { precision, threads: 1, width: Some(width), ..Asked::default() };
+    let asked = Asked { precision, threads: 1, quality, width: Some(width), ..Asked::default() };
     let embree = Embree::build_as(&scene, asked).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
@@ -107,4 +107,10 @@ fn packets_of_sixteen_equal_the_bvh() {
     if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
         check(Width::Sixteen);
     }
+}
+
+#[test]
+fn trees_of_low_quality_equal_the_bvh() {
+    compare(Width::One, Precision::Fast, BuildQuality::Low);
+    compare(Width::One, Precision::Certified, BuildQuality::Low);
 }

@@ -5,11 +5,13 @@
 //! motion it took a third less time to build, but rays took up to twice as long in precision
 //! `certified`, and 50,000 instances took longer to build.
 
+use std::sync::Arc;
+
 use embree4_rs::{CommittedScene, SceneOptions};
+use embree4_sys::RTCBuildQuality;
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::intersect::Precision;
 use crate::intersect::embree::canary::failed;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::meshes::Meshes;
@@ -17,10 +19,11 @@ use crate::intersect::embree::raw::{DeviceHandle, commit_again};
 use crate::intersect::embree::spheres::{self, SphereTable};
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{
-    Asked, QUALITY, Shared, attach, certified, flags, is_outsized, native, user, version_of,
+    Asked, Shared, attach, certified, flags, is_outsized, memory, native, user, version_of,
 };
 use crate::intersect::standing::Moved;
-use crate::scene::{Scene, Work};
+use crate::intersect::{BuildQuality, Precision};
+use crate::scene::{Mesh, Scene, Work};
 
 /// A committed Embree scene and what belongs to it.
 pub struct Top {
@@ -37,6 +40,8 @@ pub struct Top {
     /// calls them.
     spheres: Option<(u32, Box<SphereTable>)>,
     meshes: Meshes,
+    /// Whose indices Embree goes on reading; dropped after the scene.
+    _shown: Vec<Arc<Mesh>>,
 }
 
 // SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
@@ -61,9 +66,14 @@ impl Top {
         boxes: &[Bounds],
         mut shared: Option<&mut Shared>,
     ) -> Result<Self> {
-        let options = SceneOptions { build_quality: QUALITY, flags: flags() };
+        let quality = match asked.quality {
+            BuildQuality::Low => RTCBuildQuality::LOW,
+            BuildQuality::Medium => RTCBuildQuality::MEDIUM,
+        };
+        let options = SceneOptions { build_quality: quality, flags: flags() };
         let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
         let device = DeviceHandle::of(&top);
+        memory::watch(&device);
         if let Some(shared) = &mut shared {
             shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
         }
@@ -75,11 +85,12 @@ impl Top {
         let (instance_of, instanced) = match precision {
             Precision::Fast => {
                 let kept = (all_instanced, shared.map(|shared| &mut shared.fast));
-                native::attach_meshes(scene, &top, &device, &frame, boxes, kept)?
+                native::attach_meshes(scene, boxes, &top, &device, quality, &frame, kept)?
             }
             Precision::Certified => {
                 let kept = (all_instanced, shared.map(|shared| &mut shared.certified));
-                meshes.attach(scene, &top, &device, (frame, width), boxes, kept)?;
+                let space = (frame, width);
+                meshes.attach(scene, boxes, &top, &device, quality, space, kept)?;
                 (Vec::new(), meshes.instanced())
             }
         };
@@ -90,7 +101,7 @@ impl Top {
                 Precision::Fast => spheres::callbacks(width),
                 Precision::Certified => certified::spheres(width),
             };
-            let id = attach(&top, &user::geometry(&top.device, &device, &*table, callbacks)?)?;
+            let id = attach(&top, &user::geometry(&device, quality, &*table, callbacks)?)?;
             spheres = Some((id, table));
         }
         let committed = top
@@ -107,6 +118,7 @@ impl Top {
             version,
             spheres,
             meshes,
+            _shown: scene.meshes.clone(),
         })
     }
 

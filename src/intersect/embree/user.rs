@@ -58,12 +58,12 @@ impl UserGeometryImpl for Unused {
 /// The user geometry over `table`, which must outlive the scene that it is attached to; the
 /// callbacks must read it as what it is.
 pub fn geometry<T: Table>(
-    device: &embree4_rs::Device,
-    errors: &DeviceHandle,
+    device: &DeviceHandle,
+    quality: sys::RTCBuildQuality,
     table: &T,
     callbacks: Callbacks,
 ) -> Result<impl Geometry + use<T>> {
-    let geometry = UserGeometry::try_new(device, &Unused)
+    let geometry = UserGeometry::try_new(&device.device(), &Unused)
         .map_err(|e| Error::failed(format!("Embree failed while making a geometry: {e}")))?;
     let count = u32::try_from(table.len())
         .map_err(|_| Error::input("more than 4,294,967,295 primitives of one kind"))?;
@@ -71,6 +71,8 @@ pub fn geometry<T: Table>(
     // SAFETY: the handle is live; by the caller's word the table stays where it is until the
     // scene is gone, and the callbacks read it as what it is.
     unsafe {
+        // In a scene of low quality each geometry has a tree of its own, by its own quality.
+        sys::rtcSetGeometryBuildQuality(handle, quality);
         sys::rtcSetGeometryUserPrimitiveCount(handle, count);
         sys::rtcSetGeometryUserData(handle, std::ptr::from_ref(table).cast_mut().cast());
         sys::rtcSetGeometryBoundsFunction(handle, Some(bounds::<T>), std::ptr::null_mut());
@@ -78,7 +80,7 @@ pub fn geometry<T: Table>(
         sys::rtcSetGeometryOccludedFunction(handle, Some(callbacks.occluded));
         sys::rtcCommitGeometry(handle);
     }
-    errors.check("making a geometry")?;
+    device.check("making a geometry")?;
     Ok(geometry)
 }
 

@@ -8,6 +8,7 @@ use gltf::json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf::json::validation::Checked;
 
 use super::buffers::{Buffers, get, range};
+use super::packed;
 use crate::error::{Error, Place, Result};
 
 /// The most elements that a file can have us read beyond one for each byte of its buffers: it
@@ -53,13 +54,17 @@ impl<'a> Accessors<'a> {
     /// Elements of `N` floats; integers are normalised where the accessor says so.
     /// `by` is the place of what refers to the accessor.
     pub fn floats<const N: usize>(&self, index: usize, by: &str) -> Result<Vec<[f32; N]>> {
-        self.read(index, by, Number::float)
+        self.read(index, by, Number::float, |number, bytes| match number.kind {
+            ComponentType::F32 => Some(packed::decode(bytes, f32::from_le_bytes)),
+            _ => None,
+        })
     }
 
     /// Elements of `N` floats, with integers normalised whatever the accessor says: colours mean
     /// nothing otherwise.
     pub fn colors<const N: usize>(&self, index: usize, by: &str) -> Result<Vec<[f32; N]>> {
-        self.read(index, by, |number, bytes| Number { normalized: true, ..number }.float(bytes))
+        let decode = |number, bytes: &[u8]| Number { normalized: true, ..number }.float(bytes);
+        self.read(index, by, decode, |_, _| None)
     }
 
     /// Vertex indices.
@@ -72,14 +77,25 @@ impl<'a> Accessors<'a> {
                 .place(place)
                 .help("unsigned byte (5121), short (5123) or int (5125)"));
         }
-        Ok(self.read::<u32, 1>(index, by, Number::integer)?.into_iter().map(|[i]| i).collect())
+        let all_at_once = |number: Number, bytes: &[u8]| {
+            Some(match number.kind {
+                ComponentType::U8 => packed::decode(bytes, |[a]: [u8; 1]| u32::from(a)),
+                ComponentType::U16 => packed::decode(bytes, |two| u16::from_le_bytes(two).into()),
+                _ => packed::decode(bytes, u32::from_le_bytes),
+            })
+        };
+        let read = self.read::<u32, 1>(index, by, Number::integer, all_at_once)?;
+        Ok(read.into_iter().map(|[i]| i).collect())
     }
 
+    /// Elements of numbers, each by `decode`, or `all_at_once` where they stand side by side and it
+    /// knows how.
     fn read<T: Copy + Default, const N: usize>(
         &self,
         index: usize,
         by: &str,
         decode: impl Fn(Number, &[u8]) -> T,
+        all_at_once: impl Fn(Number, &[u8]) -> Option<Vec<[T; N]>>,
     ) -> Result<Vec<[T; N]>> {
         let accessor = get(&self.root.accessors, index, "accessor", by)?;
         let at = format!("accessors[{index}]");
@@ -105,7 +121,10 @@ impl<'a> Accessors<'a> {
                 let size = N * number.kind.size();
                 let rows = Rows::new(bytes, offset, stride.unwrap_or(size), size, count)
                     .ok_or_else(|| past_the_view(&at, count, view.value(), bytes.len()))?;
-                elements.extend(rows.map(decode_element));
+                match rows.packed().and_then(|bytes| all_at_once(number, bytes)) {
+                    Some(all) => elements = all,
+                    None => elements.extend(rows.map(decode_element)),
+                }
             }
             // Without a view all is zero, save what a sparse part replaces.
             None => elements.resize(count, [T::default(); N]),
@@ -245,6 +264,13 @@ impl<'a> Rows<'a> {
         }
         let length = (count as u64 - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
         Some(Self { bytes: range(bytes, offset, length)?, stride, size, left: count })
+    }
+}
+
+impl<'a> Rows<'a> {
+    /// The bytes of all elements, where there are no others between them.
+    fn packed(&self) -> Option<&'a [u8]> {
+        (self.stride == self.size).then_some(self.bytes)
     }
 }
 

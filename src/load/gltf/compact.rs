@@ -5,6 +5,9 @@ use crate::scene::Mesh;
 
 /// Drops the vertices that no triangle uses, when they are more than half of all.
 pub fn compact(mesh: &mut Mesh) {
+    if uses_half(mesh) {
+        return;
+    }
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.positions.len()];
     let mut kept: Vec<usize> = Vec::new();
@@ -14,9 +17,6 @@ pub fn compact(mesh: &mut Mesh) {
             kept.push(i as usize);
         }
     }
-    if kept.len() >= mesh.positions.len().div_ceil(2) {
-        return;
-    }
     for i in mesh.triangles.as_flattened_mut() {
         *i = new_index.get(*i as usize).copied().unwrap_or(UNUSED);
     }
@@ -24,6 +24,22 @@ pub fn compact(mesh: &mut Mesh) {
     keep(&mut mesh.normals, &kept);
     keep(&mut mesh.uvs, &kept);
     keep(&mut mesh.colors, &kept);
+}
+
+/// Whether triangles use half of the vertices or more.
+fn uses_half(mesh: &Mesh) -> bool {
+    let mut is_used = vec![false; mesh.positions.len()];
+    let mut missing = mesh.positions.len().div_ceil(2);
+    for &i in mesh.triangles.as_flattened() {
+        if missing == 0 {
+            break;
+        }
+        if let Some(used) = is_used.get_mut(i as usize) {
+            missing -= usize::from(!*used);
+            *used = true;
+        }
+    }
+    missing == 0
 }
 
 fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {

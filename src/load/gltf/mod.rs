@@ -15,6 +15,7 @@ mod lights;
 mod material;
 mod nodes;
 mod optics;
+mod packed;
 mod primitive;
 mod texture;
 mod topology;
