@@ -10,7 +10,8 @@ use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Tiling};
 use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
-use crate::scene::Scene;
+use crate::scene::animation::Poses;
+use crate::scene::{Scene, Skips};
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub struct Options {
     pub view: View,
     /// How it is cut into batches.
     pub tiling: Tiling,
+    /// Which work is left out where the scene has no need of it.
+    pub skips: Skips,
 }
 
 /// A picture, and what it took.
@@ -53,7 +56,7 @@ pub struct Statistics {
     pub threads: usize,
     /// Rays and other counts.
     pub counts: Counts,
-    /// Meshes that were built for the intersector.
+    /// What was built for the intersector, and what was kept.
     pub built: Built,
     /// Time to build the intersector.
     pub build: Duration,
@@ -105,7 +108,8 @@ pub fn render(
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
         let mut builder = Builder::new(options.backend, options.precision, threads)
-            .with_quality(quality(scene, options));
+            .with_quality(quality(scene, options))
+            .skipping(options.skips);
         let start = Instant::now();
         let intersector = builder.build(scene)?;
         let made = Made::new(start, &builder, builder.built());
@@ -114,7 +118,7 @@ pub fn render(
 }
 
 /// Renders a scene at each of several times, in seconds, and hands each picture to `each` with its
-/// index before the next is begun. Of the intersector only what moves is built again.
+/// index before the next is begun. Of the intersector only what moves is placed again.
 ///
 /// `progress` is called with the share of the whole that is done, in (0, 1].
 ///
@@ -135,32 +139,34 @@ pub fn render_frames(
         let threads = rayon::current_num_threads();
         let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
         let mut builder = match moves {
-            true => Builder::for_frames(backend, precision, threads),
+            true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
             false => Builder::new(backend, precision, threads),
         }
-        .with_quality(quality(scene, options));
+        .with_quality(quality(scene, options))
+        .skipping(options.skips);
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
+        let mut poses = Poses::new(scene);
         for (i, &time) in times.iter().enumerate() {
-            let posed = scene.at(time)?;
+            poses.pose(time)?;
             if scene.animation.is_some() {
-                posed.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+                poses.check().map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
             }
+            let posed = poses.scene();
             let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
             let start = Instant::now();
             let before = builder.built();
             let rendering = if moves {
-                let intersector = builder.build(&posed)?;
+                let intersector = builder.build(posed)?;
                 let made = Made::new(start, &builder, builder.built() - before);
-                picture(&posed, options, &*intersector, made, &share)
+                picture(posed, options, &*intersector, made, &share)
             } else if let Some(intersector) = &still {
-                let built = Built { meshes: 0, reused: before.meshes };
-                let made = Made::new(start, &builder, built);
-                picture(&posed, options, &**intersector, made, &share)
+                let made = Made::new(start, &builder, Built::kept(before.meshes));
+                picture(posed, options, &**intersector, made, &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);
                 let made = Made::new(start, &builder, builder.built());
-                picture(&posed, options, &**intersector, made, &share)
+                picture(posed, options, &**intersector, made, &share)
             };
             each(i, rendering)?;
         }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use envers::geometry::Ray;
-use envers::intersect::{Backend, Builder, Coherence, Intersector, Precision};
+use envers::geometry::{Bounds, Ray};
+use envers::intersect::{Backend, Builder, Built, Coherence, Intersector, Precision};
 use envers::render::{Options, render, render_frames};
 use envers::scene::animation::{
     Anchor, Animation, Curve, Interpolation, Keys, Motion, Mover, Node, Orbit,
@@ -245,12 +245,11 @@ fn backends() -> Vec<(Backend, Precision)> {
     all
 }
 
-/// The films of all frames, and how many meshes were built and reused.
-fn rendered(scene: &Scene, times: &[f64], options: &Options) -> (Vec<Vec<[f32; 3]>>, [u64; 2]) {
-    let (mut films, mut built) = (Vec::new(), [0, 0]);
+/// The films of all frames, and what was built for them.
+fn rendered(scene: &Scene, times: &[f64], options: &Options) -> (Vec<Vec<[f32; 3]>>, Built) {
+    let (mut films, mut built) = (Vec::new(), Built::default());
     render_frames(scene, times, options, &|_| {}, &mut |_, frame| {
-        built[0] += frame.statistics.built.meshes;
-        built[1] += frame.statistics.built.reused;
+        built += frame.statistics.built;
         films.push(frame.film.pixels);
         Ok(())
     })
@@ -269,7 +268,7 @@ fn each_mesh_is_built_once_for_all_frames() {
     for (backend, precision) in backends() {
         let options = Options { backend, precision, ..Options::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!(built, [2, 10], "{backend:?} {precision:?}");
+        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
     }
 }
 
@@ -287,23 +286,103 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
     for (backend, precision) in backends() {
         let options = Options { backend, precision, ..Options::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!(built, [2, 10], "{backend:?} {precision:?}");
+        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.tops, built.tops_kept), (1, 5), "{backend:?} {precision:?}");
         assert_ne!(films[0], films[1]);
     }
 }
 
+/// The counts of what was placed, in the first frame and again.
+fn places(built: Built) -> [u64; 5] {
+    [built.tops, built.tops_kept, built.placed, built.moved, built.spheres_moved]
+}
+
 #[test]
-fn a_frame_that_shares_meshes_is_the_frame_that_stands_alone() {
+#[cfg(feature = "embree")]
+fn embree_places_again_only_what_moved() {
     let scene = workshop();
+    for precision in [Precision::Fast, Precision::Certified] {
+        let options = Options { backend: Backend::Embree, precision, ..Options::default() };
+        let (_, built) = rendered(&scene, &times(&scene), &options);
+        assert_eq!(places(built), [1, 5, 3, 5, 5], "{precision:?}");
+    }
+}
+
+#[test]
+fn nothing_is_placed_again_where_nothing_moved() {
+    let scene = workshop();
+    for (backend, precision) in backends() {
+        let options = Options { backend, precision, ..Options::default() };
+        let (_, built) = rendered(&scene, &[0.1; 4], &options);
+        assert_eq!(places(built), [1, 3, 3, 0, 0], "{backend:?} {precision:?}");
+    }
+}
+
+/// Asserts that certified frames are those that stand alone; says how often the level above the
+/// meshes was built.
+#[track_caller]
+fn assert_alone(scene: &Scene) -> Vec<u64> {
+    let mut tops = Vec::new();
     for (backend, precision) in backends() {
         if precision != Precision::Certified {
             continue;
         }
         let options = Options { backend, precision, ..Options::default() };
-        let (films, _) = rendered(&scene, &times(&scene), &options);
-        for (film, time) in films.iter().zip(times(&scene)) {
+        let (films, built) = rendered(scene, &times(scene), &options);
+        for (film, time) in films.iter().zip(times(scene)) {
             let alone = render(&scene.at(time).unwrap(), &options, &|_| {}).unwrap();
             assert!(*film == alone.film.pixels, "{backend:?} at {time}");
+        }
+        tops.push(built.tops);
+    }
+    tops
+}
+
+#[test]
+fn a_frame_that_shares_meshes_is_the_frame_that_stands_alone() {
+    assert_alone(&workshop());
+}
+
+#[test]
+fn a_scene_that_grows_is_placed_anew() {
+    let mut scene = workshop();
+    let movers = &mut scene.animation.as_mut().unwrap().movers;
+    let Mover::Sphere { radius, .. } = &mut movers[1] else { panic!("the sphere") };
+    let (times, values) = (vec![0.0, 0.2], vec![0.4, 40.0]);
+    *radius = Some(Curve { times, values, interpolation: Interpolation::Linear });
+    assert!(assert_alone(&scene).iter().all(|&tops| tops > 1));
+}
+
+#[test]
+fn what_is_flat_for_a_while_comes_back() {
+    let mut scene = workshop();
+    let animation = scene.animation.as_mut().unwrap();
+    let Motion::Keys(keys) = &mut animation.nodes[0].motion else { panic!("keys") };
+    keys.scale = Curve {
+        times: vec![0.0, 2.0 / 24.0, 4.0 / 24.0],
+        values: vec![DVec3::ONE, DVec3::ZERO, DVec3::ONE],
+        interpolation: Interpolation::Linear,
+    };
+    let counts: Vec<usize> = frames(&scene).map(|(_, scene)| scene.instances.len()).collect();
+    assert_eq!(counts, [3, 3, 2, 3, 3, 3]);
+    assert_alone(&scene);
+}
+
+#[test]
+fn a_scene_that_is_still_traced_is_left_as_it_is() {
+    let scene = workshop();
+    let [first, second] = [0.0, 0.1].map(|time| scene.at(time).unwrap());
+    let ray = |scene: &Scene| {
+        let ball = scene.spheres[0].center;
+        [Ray::new(ball + DVec3::Y * 5.0, DVec3::NEG_Y)]
+    };
+    for (backend, precision) in backends() {
+        let mut builder = Builder::for_frames(backend, precision, 1, Bounds::EMPTY);
+        let [one, two] = [&first, &second].map(|scene| builder.build(scene).unwrap());
+        for (intersector, scene) in [(one, &first), (two, &second)] {
+            let mut hits = [None];
+            intersector.closest(&ray(scene), Coherence::Coherent, &mut hits);
+            assert!(hits[0].is_some_and(|hit| (hit.t - 4.6).abs() < 1e-6), "{hits:?}");
         }
     }
 }
@@ -335,7 +414,7 @@ fn a_mesh_in_the_place_of_another_is_not_taken_for_it() {
     scene.instances.truncate(1);
     let ray = [Ray::new(DVec3::new(0.1, 5.0, 0.1), DVec3::NEG_Y)];
     for (backend, precision) in backends() {
-        let mut builder = Builder::for_frames(backend, precision, 1);
+        let mut builder = Builder::for_frames(backend, precision, 1, Bounds::EMPTY);
         let mut hit = |scene: &Scene| {
             let mut hits = [None];
             builder.build(scene).unwrap().closest(&ray, Coherence::Coherent, &mut hits);

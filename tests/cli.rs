@@ -12,6 +12,8 @@ mod outputs;
 mod render;
 #[path = "cli/reports.rs"]
 mod reports;
+#[path = "cli/skips.rs"]
+mod skips;
 #[path = "cli/stress.rs"]
 mod stress;
 #[path = "cli/tone.rs"]

@@ -32,7 +32,8 @@ struct Settings {
 }
 
 fn settings() -> Option<Settings> {
-    let mut settings = Settings { scenes: Vec::new(), size: None, threads: 1, rounds: 15, ours: false };
+    let mut settings =
+        Settings { scenes: Vec::new(), size: None, threads: 1, rounds: 15, ours: false };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut number = || arguments.next()?.parse().ok();
@@ -158,7 +159,12 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
         let rate = |seconds: f64| kind.count as f64 / seconds * 1e-6;
         let rates: Vec<_> =
             all.iter().map(|(w, seconds)| format!("{w}: {:.1}", rate(*seconds))).collect();
-        println!("  bare {} ({} rays), Mrays/s by width: {}", kind.name, kind.count, rates.join(", "));
+        println!(
+            "  bare {} ({} rays), Mrays/s by width: {}",
+            kind.name,
+            kind.count,
+            rates.join(", ")
+        );
         kind.best = best.0;
     }
 

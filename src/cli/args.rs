@@ -14,8 +14,8 @@ use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
-use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
+use crate::scene::{Scene, Skips};
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
 #[derive(Parser)]
@@ -129,6 +129,10 @@ pub struct Render {
     /// Write what was counted and timed as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
+    /// Do this kind of work even where the scene has no need of it: to test that leaving it out
+    /// changes nothing; may be given several times
+    #[arg(long, value_name = "NAME", hide = true)]
+    pub no_skip: Vec<String>,
 }
 
 #[derive(Args)]
@@ -230,20 +234,20 @@ impl Tracing {
     /// # Errors
     /// As there.
     pub fn load(&self) -> Result<(Scene, usize)> {
-        let (scene, camera) = self.load_animated()?;
+        let (scene, camera) = self.load_animated(Skips::default())?;
         Ok((scene.at(0.0)?, camera))
     }
 
     /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
-    /// for a moment the scene is that.
+    /// for a moment the scene is that. What nothing shows is left out as `skips` says.
     ///
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
-    pub fn load_animated(&self) -> Result<(Scene, usize)> {
+    pub fn load_animated(&self, skips: Skips) -> Result<(Scene, usize)> {
         files::check_input(&self.scene)?;
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene = crate::load::load_for(&self.scene, self.size)?;
+        let mut scene = crate::load::load_with(&self.scene, self.size, skips)?;
         if let Some(spp) = self.spp {
             scene.film.spp = spp;
         }

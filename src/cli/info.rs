@@ -1,5 +1,6 @@
 //! `envers info`.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Serialize;
@@ -10,7 +11,7 @@ use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load;
 use crate::scene::animation::{Animation, Mover};
-use crate::scene::{Lens, LightKind, Scene, detail};
+use crate::scene::{Lens, LightKind, Needs, Scene, Skips, detail};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -29,8 +30,10 @@ struct Summary {
     animation: Option<Motion>,
     /// The corners of the box around all that is finite; null when nothing is.
     bounds: Option<[[f64; 3]; 2]>,
-    /// What the scene does not need, and so is not done.
-    skipped: Vec<&'static str>,
+    /// Which kinds of work the scene needs, and for what.
+    needed: BTreeMap<&'static str, String>,
+    /// Which it does not need, and why: these are not done.
+    skipped: BTreeMap<&'static str, String>,
     warnings: Vec<String>,
 }
 
@@ -110,6 +113,7 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     // As the default of `render`: precision fast, on Embree where it is built in.
     let mut warnings = scene.warnings.clone();
     warnings.extend(detail::lost(scene, Backend::default() != Backend::Rust));
+    let needs = Needs::of(scene, Skips::default());
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
@@ -122,29 +126,10 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
         cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
         animation,
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
-        skipped: skipped(scene),
+        needed: needs.done().map(|(work, why)| (work.name(), why)).collect(),
+        skipped: needs.skipped().map(|(work, why)| (work.name(), why)).collect(),
         warnings,
     }
-}
-
-/// What of the work the scene has no need of.
-fn skipped(scene: &Scene) -> Vec<&'static str> {
-    let mut uses = vec![0u32; scene.meshes.len()];
-    scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
-    let textured = scene.materials.iter().any(|m| m.is_textured());
-    let followed = scene.materials_in_use().any(|m| m.is_followed());
-    let shadows = scene.lights.iter().any(|l| l.casts_shadow());
-    [
-        (scene.spheres.is_empty(), "user geometry: there are no spheres"),
-        (uses.iter().all(|&n| n <= 1), "instance level: no mesh stands twice"),
-        (scene.planes.is_empty(), "plane tests: there are no planes"),
-        (!textured, "texture coordinates: no material has a texture"),
-        (!shadows, "shadow rays: no light casts a shadow"),
-        (!followed, "reflected and refracted rays: there are no mirrors and no glass"),
-    ]
-    .into_iter()
-    .filter_map(|(skip, what)| skip.then_some(what))
-    .collect()
 }
 
 fn named(what: impl std::fmt::Display, name: &str) -> String {
@@ -191,7 +176,10 @@ impl fmt::Display for Summary {
             Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
             None => writeln!(f, "bounds     nothing finite")?,
         }
-        self.skipped.iter().try_for_each(|what| writeln!(f, "skips      {what}"))
+        let line = |does: &str, (work, why): (&&str, &String)| format!("{does:10} {work}: {why}");
+        let needs = self.needed.iter().map(|needed| line("needs", needed));
+        let skips = self.skipped.iter().map(|skipped| line("skips", skipped));
+        needs.chain(skips).try_for_each(|line| writeln!(f, "{line}"))
     }
 }
 

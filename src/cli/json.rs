@@ -1,11 +1,14 @@
 //! The shapes of the command's JSON.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use crate::integrator::{self, Counts, RayCounts};
-use crate::intersect::BuildQuality;
+use crate::intersect::{BuildQuality, Built};
 use crate::render::Statistics;
-use crate::scene::Scene;
+use crate::scene::{Needs, Scene, Skips, Work};
 
 /// `render --stats`.
 #[derive(Serialize)]
@@ -20,6 +23,10 @@ pub struct Stats {
     pub geometry: Geometry,
     pub build: Build,
     pub rays: Rays,
+    /// Of each kind of work that is counted, how much was done.
+    pub work: BTreeMap<&'static str, u64>,
+    /// Why each kind of work that was left out could be.
+    pub skipped: BTreeMap<&'static str, String>,
     /// Samples that were left out, by what made them not finite.
     pub not_finite: NotFinite,
     pub seconds: Seconds,
@@ -58,7 +65,7 @@ impl Geometry {
     }
 }
 
-/// The meshes of all frames.
+/// What all frames took to build, and what they kept of a frame before.
 #[derive(Serialize)]
 pub struct Build {
     /// Meshes that were built.
@@ -67,6 +74,33 @@ pub struct Build {
     pub reused: u64,
     /// How good Embree's trees are: `low` or `medium`; null without Embree.
     pub bvh: Option<&'static str>,
+    /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
+    pub top_levels_built: u64,
+    /// Frames for which it was there, and only what moved was placed again.
+    pub top_levels_kept: u64,
+    /// Instances of meshes that were placed in a level that was built.
+    pub instances_placed: u64,
+    /// Instances that moved in one that was kept.
+    pub instances_moved: u64,
+    /// Spheres that moved in one that was kept.
+    pub spheres_moved: u64,
+}
+
+impl From<&Statistics> for Build {
+    fn from(statistics: &Statistics) -> Self {
+        let Built { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
+            statistics.built;
+        Self {
+            meshes,
+            reused,
+            bvh: statistics.quality.map(BuildQuality::name),
+            top_levels_built: tops,
+            top_levels_kept: tops_kept,
+            instances_placed: placed,
+            instances_moved: moved,
+            spheres_moved,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -112,12 +146,14 @@ impl Stats {
         scene: &Scene,
         frames: usize,
         statistics: &Statistics,
+        skips: Skips,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
     ) -> Self {
         let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
         let (name, version) = statistics.backend.clone();
         let Counts { rays, not_finite, .. } = statistics.counts;
+        let work = work(scene, statistics);
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
@@ -126,12 +162,10 @@ impl Stats {
             spp: scene.film.spp,
             frames,
             geometry: Geometry::of(scene),
-            build: Build {
-                meshes: statistics.built.meshes,
-                reused: statistics.built.reused,
-                bvh: statistics.quality.map(BuildQuality::name),
-            },
+            build: statistics.into(),
             rays: rays.into(),
+            skipped: skipped(&Needs::of(scene, skips), &work),
+            work,
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
@@ -140,6 +174,31 @@ impl Stats {
             warnings,
         }
     }
+}
+
+/// How much was done of each kind of work that is counted.
+fn work(scene: &Scene, statistics: &Statistics) -> BTreeMap<&'static str, u64> {
+    let (built, rays) = (&statistics.built, &statistics.counts.rays);
+    let mut read: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
+    read.retain(|image| image.is_read());
+    read.sort_by_key(|image| Arc::as_ptr(image));
+    read.dedup_by_key(|image| Arc::as_ptr(image));
+    [
+        (Work::Spheres, built.sphere_sets),
+        (Work::Instances, built.instanced),
+        (Work::Pictures, read.len() as u64),
+        (Work::Shadows, rays.shadow),
+        (Work::Reflection, rays.reflection),
+        (Work::Refraction, rays.refraction),
+    ]
+    .map(|(work, count)| (work.name(), count))
+    .into()
+}
+
+/// Why each kind of work could be left out, of which none was done.
+fn skipped(needs: &Needs, work: &BTreeMap<&'static str, u64>) -> BTreeMap<&'static str, String> {
+    let skipped = needs.skipped().map(|(work, why)| (work.name(), why));
+    skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
 }
 
 fn embree_peak_memory(statistics: &Statistics) -> Option<u64> {

@@ -13,7 +13,8 @@ use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering, Statistics};
-use crate::scene::{Scene, Tone, detail};
+use crate::scene::animation::Poses;
+use crate::scene::{Scene, Skips, Tone, detail};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -24,7 +25,8 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let (mut scene, camera) = arguments.tracing.load_animated()?;
+    let skips = Skips::without(&arguments.no_skip)?;
+    let (mut scene, camera) = arguments.tracing.load_animated(skips)?;
     if arguments.view != ViewName::Beauty {
         scene.film.spp = 1;
     }
@@ -39,7 +41,7 @@ pub fn run(arguments: &Render) -> Outcome {
     let precision = arguments.tracing.precision.into();
     let quality = arguments.bvh.quality();
     let options =
-        Options { backend, precision, quality, threads, camera, view, ..Options::default() };
+        Options { backend, precision, quality, threads, camera, view, skips, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,
@@ -67,17 +69,18 @@ pub fn run(arguments: &Render) -> Outcome {
     }
     if let Some(path) = &arguments.stats {
         let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
-        let stats = Stats::new(&first, times.len(), &done.statistics, seconds, warnings);
+        let stats = Stats::new(&first, times.len(), &done.statistics, skips, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)
 }
 
 /// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
-/// what only a check of all its numbers finds, such as a way out of bounds, is found in its turn.
+/// what only a check of its numbers finds, such as a way out of bounds, is found in its turn.
 fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
+    let mut poses = Poses::new(scene);
     for (i, (frame, time)) in plan.frames.iter().enumerate() {
-        scene.at(*time)?;
+        poses.pose(*time)?;
         let files: Vec<PathBuf> = plan.files(*frame).collect();
         files::check_not_a_texture(scene, &files)?;
         if i == 0 {
@@ -85,7 +88,8 @@ fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
         }
     }
     files::check_not_a_texture(scene, &plan.movies)?;
-    scene.at(plan.frames.first().map_or(0.0, |(_, time)| *time))
+    poses.pose(plan.frames.first().map_or(0.0, |(_, time)| *time))?;
+    Ok(poses.into_scene())
 }
 
 /// Where the frames go.

@@ -69,12 +69,8 @@ pub struct Found {
 }
 
 impl Found {
-    const NOTHING: Self = Self {
-        t: [f64::INFINITY; LANES],
-        u: [0.0; LANES],
-        v: [0.0; LANES],
-        id: Ids::NOTHING,
-    };
+    const NOTHING: Self =
+        Self { t: [f64::INFINITY; LANES], u: [0.0; LANES], v: [0.0; LANES], id: Ids::NOTHING };
 
     /// The hit in lane `i`.
     #[inline(always)]

@@ -167,12 +167,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// Adds one sample of each pixel of a tile.
-    fn sample(
-        &self,
-        offset: [f64; 2],
-        scratch: &mut Scratch,
-        counts: &mut Counts,
-    ) {
+    fn sample(&self, offset: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
         let Scratch { tile, wave, sum, .. } = scratch;
         self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
         wave.rays.truncate(tile.count);

@@ -255,7 +255,7 @@ impl Integrator<'_> {
             for i in 0..LANES {
                 let [x, y, z] = [with[0][i], with[1][i], with[2][i]];
                 bright[i] = shares.here[i] & ((x != 0.0) | (y != 0.0) | (z != 0.0));
-                odd |= shares.here[i] & !((x + y + z).abs() < f32::INFINITY);
+                odd |= shares.here[i] & !(x + y + z).is_finite();
                 any |= bright[i];
             }
             if odd {
@@ -324,7 +324,7 @@ impl Sums<'_> {
             }
         }
         for i in 0..LANES {
-            odd |= here[i] & !((sum[0][i] + sum[1][i] + sum[2][i]).abs() < f32::INFINITY);
+            odd |= here[i] & !(sum[0][i] + sum[1][i] + sum[2][i]).is_finite();
         }
         if !odd {
             *radiance = sum;
@@ -493,7 +493,7 @@ impl Shares {
         }
         self.any = false;
         for i in 0..LANES {
-            self.here[i] = arrivals.here[i] & !(cosines[i] <= 0.0);
+            self.here[i] = arrivals.here[i] & ((cosines[i] > 0.0) | cosines[i].is_nan());
             self.on_front[i] = over[i] > 0.0;
         }
         if surfaces.kinds.triangles {

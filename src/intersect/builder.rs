@@ -2,25 +2,63 @@
 //! their meshes.
 
 use crate::error::Result;
+use crate::geometry::Bounds;
 #[cfg(feature = "embree")]
 use crate::intersect::embree::{self, Embree};
-use crate::intersect::kept::{Kept, used};
+use crate::intersect::kept::used;
+use crate::intersect::standing::Standing;
 use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
-use crate::scene::Scene;
+use crate::scene::{MeshId, Scene, Skips};
 
-/// How many meshes building took.
+/// What building took, and what was kept of a frame before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Built {
     /// Meshes whose trees were built.
     pub meshes: u64,
     /// Meshes that were there already, from another frame.
     pub reused: u64,
+    /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
+    pub tops: u64,
+    /// Times that it was kept, with what moved in it placed again.
+    pub tops_kept: u64,
+    /// Instances of meshes that were placed in a level that was built.
+    pub placed: u64,
+    /// Instances that were placed again in one that was kept.
+    pub moved: u64,
+    /// Spheres that were placed again in a level that was kept.
+    pub spheres_moved: u64,
+    /// Times that a level that was built has spheres in it: in Embree a user geometry, in Rust a
+    /// tree.
+    pub sphere_sets: u64,
+    /// Instances in a level that was built whose meshes are in spaces of their own.
+    pub instanced: u64,
+}
+
+impl Built {
+    /// Each count, of this and another.
+    fn with(self, other: Self, each: impl Fn(u64, u64) -> u64) -> Self {
+        Self {
+            meshes: each(self.meshes, other.meshes),
+            reused: each(self.reused, other.reused),
+            tops: each(self.tops, other.tops),
+            tops_kept: each(self.tops_kept, other.tops_kept),
+            placed: each(self.placed, other.placed),
+            moved: each(self.moved, other.moved),
+            spheres_moved: each(self.spheres_moved, other.spheres_moved),
+            sphere_sets: each(self.sphere_sets, other.sphere_sets),
+            instanced: each(self.instanced, other.instanced),
+        }
+    }
+
+    /// What a frame takes for which nothing is built that there is already: so many meshes.
+    pub fn kept(meshes: u64) -> Self {
+        Self { reused: meshes, tops_kept: 1, ..Self::default() }
+    }
 }
 
 impl std::ops::AddAssign for Built {
     fn add_assign(&mut self, other: Self) {
-        self.meshes += other.meshes;
-        self.reused += other.reused;
+        *self = self.with(other, |a, b| a + b);
     }
 }
 
@@ -29,7 +67,7 @@ impl std::ops::Sub for Built {
 
     /// What was built since there was only `before`.
     fn sub(self, before: Self) -> Self {
-        Self { meshes: self.meshes - before.meshes, reused: self.reused - before.reused }
+        self.with(before, |a, b| a - b)
     }
 }
 
@@ -39,15 +77,16 @@ pub struct Builder {
     precision: Precision,
     threads: usize,
     quality: BuildQuality,
+    skips: Skips,
     /// What frames share; nothing for one picture.
     shared: Option<Shared>,
     built: Built,
 }
 
-/// What was built of meshes, for whichever backend it was.
-#[derive(Default)]
+/// What frames share, for whichever backend it was built.
 struct Shared {
-    trees: Kept<bvh::MeshTree>,
+    standing: Standing,
+    trees: bvh::Shared,
     #[cfg(feature = "embree")]
     embree: embree::Shared,
 }
@@ -55,15 +94,38 @@ struct Shared {
 impl Builder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        let (quality, built) = (BuildQuality::default(), Built::default());
-        Self { backend, precision, threads, quality, shared: None, built }
+        let (quality, skips, built) = Default::default();
+        Self { backend, precision, threads, quality, skips, shared: None, built }
+    }
+
+    /// The same builder, which leaves out only `skips` of what a scene has no need of.
+    pub fn skipping(self, skips: Skips) -> Self {
+        Self { skips, ..self }
     }
 
     /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
-    /// in which it may stand still or move. What is built anew is the level above, of spheres and
-    /// instances.
-    pub fn for_frames(backend: Backend, precision: Precision, threads: usize) -> Self {
-        Self { shared: Some(Shared::default()), ..Self::new(backend, precision, threads) }
+    /// in which it may stand still or move. The level above, of spheres and instances, is kept for
+    /// the next scene, too, if that is of the same things, and the intersector of the one before
+    /// is gone by then.
+    ///
+    /// `stage` is the box in which they mostly take place, such as [`Scene::bounds_over_time`]:
+    /// scenes that stay in it, and fill it, share the space of Embree's f32 numbers. An empty box is
+    /// right, too.
+    pub fn for_frames(
+        backend: Backend,
+        precision: Precision,
+        threads: usize,
+        stage: Bounds,
+    ) -> Self {
+        // The BVH is in f64.
+        let _ = stage;
+        let shared = Shared {
+            standing: Standing::default(),
+            trees: bvh::Shared::default(),
+            #[cfg(feature = "embree")]
+            embree: embree::Shared::new(stage),
+        };
+        Self { shared: Some(shared), ..Self::new(backend, precision, threads) }
     }
 
     /// The same with trees of another quality than medium. The pure-Rust BVH has only one.
@@ -76,26 +138,62 @@ impl Builder {
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
     pub fn build<'s>(&mut self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
+        let is_there = |mesh: MeshId| !scene.meshes[mesh.0 as usize].triangles.is_empty();
+        let stand = scene.instances.iter().filter(|i| is_there(i.mesh)).count() as u64;
         let used = used(scene).into_iter().filter(|&used| used).count() as u64;
-        let before = self.shared.as_ref().map_or(0, |shared| shared.built());
-        let (precision, threads) = (self.precision, self.threads);
+        let before = self.shared.as_ref().map_or(Built::default(), Shared::built);
         let shared = self.shared.as_mut();
-        let intersector: Box<dyn Intersector + 's> = match self.backend {
+        let (intersector, moved, work): (Box<dyn Intersector + 's>, _, _) = match self.backend {
             #[cfg(feature = "embree")]
             Backend::Embree => {
-                let shared = shared.map(|shared| &mut shared.embree);
-                let quality = self.quality;
-                Box::new(Embree::build_sharing(scene, precision, threads, quality, shared)?)
+                let asked = embree::Asked {
+                    precision: self.precision,
+                    threads: self.threads,
+                    quality: self.quality,
+                    skips: self.skips,
+                    width: None,
+                };
+                let (built, moved) = match shared {
+                    None => (Embree::build_as(scene, asked)?, None),
+                    Some(shared) => {
+                        let moved = shared.standing.follow(scene);
+                        let (boxes, kept) = (shared.standing.boxes(), &mut shared.embree);
+                        (Embree::build_sharing(scene, asked, boxes, kept, moved.as_ref())?, moved)
+                    }
+                };
+                let work = built.work();
+                (Box::new(built), moved, work)
             }
             Backend::Rust => {
-                // The BVH is built on the caller's rayon pool.
-                let _ = threads;
-                Box::new(Bvh::build_sharing(scene, precision, shared.map(|s| &mut s.trees)))
+                // The BVH is built on the caller's rayon pool, and always has all its levels.
+                let _ = (self.threads, self.skips);
+                let (built, moved) = match shared {
+                    None => (Bvh::build(scene, self.precision), None),
+                    Some(shared) => {
+                        let moved = shared.standing.follow(scene);
+                        let trees = &mut shared.trees;
+                        (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
+                    }
+                };
+                (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
             }
         };
-        let after = self.shared.as_ref().map_or(used, |shared| shared.built());
-        let meshes = after - before;
-        self.built += Built { meshes, reused: used.saturating_sub(meshes) };
+        let built = match &self.shared {
+            None => Built { meshes: used, tops: 1, ..Built::default() },
+            Some(shared) => shared.built() - before,
+        };
+        let moved = moved.unwrap_or_default();
+        let (sphere_sets, instanced) = work;
+        self.built += match built.tops {
+            0 => Built {
+                tops_kept: 1,
+                moved: moved.instances.len() as u64,
+                spheres_moved: moved.spheres.len() as u64,
+                ..built
+            },
+            _ => Built { placed: stand, sphere_sets, instanced, ..built },
+        };
+        self.built.reused += used.saturating_sub(built.meshes);
         Ok(intersector)
     }
 
@@ -111,13 +209,12 @@ impl Builder {
 }
 
 impl Shared {
-    /// How many meshes were built.
-    fn built(&self) -> u64 {
-        let trees = self.trees.built();
+    /// How many meshes, and levels above them, were built.
+    fn built(&self) -> Built {
+        let (meshes, tops) = (self.trees.built(), self.trees.tops());
         #[cfg(feature = "embree")]
-        return trees + self.embree.built();
-        #[cfg(not(feature = "embree"))]
-        trees
+        let (meshes, tops) = (meshes + self.embree.built(), tops + self.embree.tops());
+        Built { meshes, tops, ..Built::default() }
     }
 }
 

@@ -14,6 +14,7 @@ mod kept;
 mod leaving;
 pub mod primitive;
 mod quality;
+mod standing;
 
 pub use brute::BruteForce;
 pub use builder::{Builder, Built};

@@ -21,7 +21,7 @@ pub fn frame(scene: &mut Scene) {
     if !scene.cameras.is_empty() {
         return;
     }
-    let bounds = match bounds(scene) {
+    let bounds = match scene.bounds_over_time() {
         // Nothing finite to frame: look at the origin from a little above.
         b if b.is_empty() => Bounds { lower: DVec3::NEG_ONE, upper: DVec3::ONE },
         b => b,
@@ -39,16 +39,6 @@ pub fn frame(scene: &mut Scene) {
         camera.name = "framing".to_owned();
         scene.cameras.push(camera);
     }
-}
-
-/// The box around the scene, wherever it moves.
-fn bounds(scene: &Scene) -> Bounds {
-    /// At how many times an animation is looked at.
-    const MOMENTS: u32 = 24;
-    let Some(animation) = &scene.animation else { return scene.bounds() };
-    let moment = |i: u32| animation.seconds() * f64::from(i) / f64::from(MOMENTS);
-    let posed = (0..=MOMENTS).filter_map(|i| scene.at(moment(i)).ok());
-    posed.map(|posed| posed.bounds()).fold(Bounds::EMPTY, Bounds::union)
 }
 
 /// A key light from the upper left, a weaker fill from the right, and a little from everywhere.

@@ -16,7 +16,7 @@ mod tally;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{Scene, closed};
+use crate::scene::{Scene, Skips, Work, closed};
 
 pub use scene_file::schema;
 
@@ -31,7 +31,7 @@ pub const BARE_MODEL_SPP: u32 = 16;
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
 pub fn load(path: &Path) -> Result<Scene> {
-    load_for(path, None)
+    load_with(path, None, Skips::default())
 }
 
 /// Loads as [`load`] does, for a picture of another size than the file asks for; a camera that
@@ -40,8 +40,18 @@ pub fn load(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`load`].
 pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
+    load_with(path, size, Skips::default())
+}
+
+/// Loads as [`load_for`] does. Unless `skips` is without [`Work::Pictures`], pictures are only
+/// named that no material in use shows.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Scene> {
+    let all = !skips.has(Work::Pictures);
     let from_file = extension(path) == "toml";
-    let mut scene = if from_file { scene_file::load(path)? } else { model(path, None)? };
+    let mut scene = if from_file { scene_file::load(path, all)? } else { model(path, None, true)? };
     if let Some(size) = size {
         scene.film.size = size;
     }
@@ -57,14 +67,14 @@ pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none, and with its animation of
-/// that name, or the first.
-fn model(path: &Path, animation: Option<&str>) -> Result<Scene> {
+/// that name, or the first. Its pictures are read where they are `wanted`.
+fn model(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene> {
     match extension(path).as_str() {
-        "gltf" | "glb" => gltf::load(path, animation),
+        "gltf" | "glb" => gltf::load(path, animation, wanted),
         "obj" if animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(path)
             .help("leave `animation` out")),
-        "obj" => obj::load(path),
+        "obj" => obj::load(path, wanted),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),
@@ -85,10 +95,19 @@ fn extension(path: &Path) -> String {
 /// When it is missing, unreadable, or no regular file (a folder, a pipe, a device), which could
 /// keep the program waiting for ever.
 fn read(path: &Path) -> Result<Vec<u8>> {
+    check_file(path)?;
+    std::fs::read(path).map_err(|e| Error::io("read", path, &e))
+}
+
+/// Checks that a file is there, and a regular one.
+///
+/// # Errors
+/// When it is not.
+fn check_file(path: &Path) -> Result<()> {
     let metadata = std::fs::metadata(path).map_err(|e| Error::io("read", path, &e))?;
     if !metadata.is_file() {
         let what = if metadata.is_dir() { "a folder" } else { "a pipe or a device" };
         return Err(Error::input(format!("this is {what}, not a file")).at(path));
     }
-    std::fs::read(path).map_err(|e| Error::io("read", path, &e))
+    Ok(())
 }

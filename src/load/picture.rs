@@ -12,20 +12,30 @@ use crate::scene::Image;
 const MAX_SIDE: u32 = 1 << 15;
 const MAX_BYTES: u64 = 1 << 30;
 
-/// Reads and decodes the picture in a file.
+/// Reads and decodes the picture in a file, if it is `wanted`; otherwise the file only has to be
+/// there.
 ///
 /// # Errors
 /// When the file cannot be read or decoded.
-pub fn read(path: &Path) -> Result<Image> {
+pub fn read(path: &Path, wanted: bool) -> Result<Image> {
+    let name = path.display().to_string();
+    if !wanted {
+        super::check_file(path)?;
+        return Ok(Image::unread(&name));
+    }
     let bytes = super::read(path)?;
-    decode(&bytes, &path.display().to_string()).map_err(|e| e.at(path))
+    decode(&bytes, &name, wanted).map_err(|e| e.at(path))
 }
 
-/// Decodes a picture (PNG, JPEG, WebP, TGA or BMP); `name` says where it came from.
+/// Decodes a picture (PNG, JPEG, WebP, TGA or BMP), if it is `wanted`; `name` says where it came
+/// from.
 ///
 /// # Errors
 /// When it is none of these, is damaged, or is larger than 32768 pixels on a side.
-pub fn decode(bytes: &[u8], name: &str) -> Result<Image> {
+pub fn decode(bytes: &[u8], name: &str, wanted: bool) -> Result<Image> {
+    if !wanted {
+        return Ok(Image::unread(name));
+    }
     let fail = |e: image::ImageError| Error::input(format!("the picture cannot be decoded: {e}"));
     let mut reader = ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()

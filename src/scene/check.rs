@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::error::{Error, Result};
+use crate::geometry::Bounds;
 use crate::scene::{Camera, Lens, LightKind, Mesh, Scene, Texture};
 
 /// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
@@ -27,7 +28,7 @@ impl Scene {
     pub fn check(&self) -> Result<()> {
         check_size(self.film.size)?;
         check_spp(self.film.spp)?;
-        color("the background", self.film.background)?;
+        color(|| "the background".to_owned(), self.film.background)?;
         require(self.film.max_depth <= MAX_DEPTH, || {
             format!("max_depth must be at most {MAX_DEPTH}, found {}", self.film.max_depth)
         })?;
@@ -39,49 +40,36 @@ impl Scene {
         })?;
         for (i, material) in self.materials.iter().enumerate() {
             let what = format!("material {i} (`{}`)", material.name);
-            color(&format!("{what}: diffuse"), material.diffuse)?;
-            color(&format!("{what}: specular"), material.specular)?;
-            color(&format!("{what}: emission"), material.emission)?;
+            color(|| format!("{what}: diffuse"), material.diffuse)?;
+            color(|| format!("{what}: specular"), material.specular)?;
+            color(|| format!("{what}: emission"), material.emission)?;
             require(material.shininess > 0.0 && material.shininess.is_finite(), || {
                 format!("{what}: shininess must be above 0, found {}", material.shininess)
             })?;
-            color(&format!("{what}: reflect"), material.reflect)?;
-            color(&format!("{what}: transmit"), material.transmit)?;
+            color(|| format!("{what}: reflect"), material.reflect)?;
+            color(|| format!("{what}: transmit"), material.transmit)?;
             require((material.reflect + material.transmit).max_element() <= 1.0 + SLACK, || {
                 format!("{what}: reflect and transmit are more than 1 together")
             })?;
             require((0.01..=100.0).contains(&material.ior), || {
                 format!("{what}: ior must be from 0.01 to 100, found {}", material.ior)
             })?;
-            color(&format!("{what}: absorption"), material.absorption)?;
+            color(|| format!("{what}: absorption"), material.absorption)?;
             for map in [material.diffuse_map, material.emission_map].into_iter().flatten() {
-                index(&what, "texture", map.0, self.textures.len())?;
+                index(|| what.clone(), "texture", map.0, self.textures.len())?;
             }
         }
-        for (i, texture) in self.textures.iter().enumerate() {
-            check_texture(i, texture)?;
-        }
-        for (i, sphere) in self.spheres.iter().enumerate() {
-            let what = format!("sphere {i}");
-            position(&format!("{what}: center"), sphere.center)?;
-            require(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE, || {
-                format!(
-                    "{what}: radius must be above 0 (and at most 1e15), found {}",
-                    sphere.radius
-                )
-            })?;
-            index(&what, "material", sphere.material.0, self.materials.len())?;
-        }
+        (0..self.spheres.len()).try_for_each(|i| self.check_sphere(i))?;
         for (i, plane) in self.planes.iter().enumerate() {
             let what = format!("plane {i}");
-            position(&format!("{what}: point"), plane.point)?;
-            unit(&format!("{what}: normal"), plane.normal)?;
-            index(&what, "material", plane.material.0, self.materials.len())?;
+            position(|| format!("{what}: point"), plane.point)?;
+            unit(|| format!("{what}: normal"), plane.normal)?;
+            index(|| what.clone(), "material", plane.material.0, self.materials.len())?;
             require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
                 format!("{what}: texture_size must be above 0, found {}", plane.texture_size)
             })?;
             if let Some(checker) = plane.checker {
-                checker.colors.iter().try_for_each(|&c| color(&format!("{what}: checker"), c))?;
+                checker.colors.iter().try_for_each(|&c| color(|| format!("{what}: checker"), c))?;
                 require(checker.size > 0.0 && checker.size.is_finite(), || {
                     format!("{what}: the checker's size must be above 0, found {}", checker.size)
                 })?;
@@ -91,28 +79,60 @@ impl Scene {
             check_mesh(i, mesh)?;
         }
         let moved = self.animation.as_ref().map(|a| a.moved_instances(self.instances.len()));
-        for (i, instance) in self.instances.iter().enumerate() {
-            let what = format!("instance {i}");
-            index(&what, "mesh", instance.mesh.0, self.meshes.len())?;
-            index(&what, "material", instance.material.0, self.materials.len())?;
+        for i in 0..self.instances.len() {
             // What moves may be flat at one time; it then is not there.
             let may_be_flat = moved.as_ref().is_some_and(|moved| moved[i]);
-            let is_sound = instance.transform.is_finite() && (may_be_flat || !instance.is_flat());
-            require(is_sound, || {
-                format!("{what}: its transform cannot be inverted (a scale of 0?)")
-            })?;
+            self.check_instance(i, may_be_flat)?;
         }
-        let extent = self.bounds().max_abs();
-        require(extent <= MAX_COORDINATE, || {
-            format!("the scene reaches out to {extent:e}, beyond the {MAX_COORDINATE:e} supported")
-        })?;
-        self.lights.iter().enumerate().try_for_each(|(i, l)| {
-            color(&format!("light {i}: intensity"), l.intensity)?;
-            check_light(i, &l.kind)
-        })?;
-        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))?;
+        let mut shown = vec![false; self.textures.len()];
+        let maps = self.materials_in_use().flat_map(|m| [m.diffuse_map, m.emission_map]).flatten();
+        maps.for_each(|map| shown[map.0 as usize] = true);
+        let mut textures = self.textures.iter().zip(shown).enumerate();
+        textures.try_for_each(|(i, (texture, shown))| check_texture(i, texture, shown))?;
+        check_extent(&self.bounds())?;
+        self.check_lights_and_cameras()?;
         self.animation.iter().try_for_each(|animation| animation.check(self))
     }
+
+    /// Checks sphere `i`.
+    pub(in crate::scene) fn check_sphere(&self, i: usize) -> Result<()> {
+        let sphere = &self.spheres[i];
+        position(|| format!("sphere {i}: center"), sphere.center)?;
+        require(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE, || {
+            let found = sphere.radius;
+            format!("sphere {i}: radius must be above 0 (and at most 1e15), found {found}")
+        })?;
+        index(|| format!("sphere {i}"), "material", sphere.material.0, self.materials.len())
+    }
+
+    /// Checks instance `i`.
+    pub(in crate::scene) fn check_instance(&self, i: usize, may_be_flat: bool) -> Result<()> {
+        let instance = &self.instances[i];
+        let what = || format!("instance {i}");
+        index(what, "mesh", instance.mesh.0, self.meshes.len())?;
+        index(what, "material", instance.material.0, self.materials.len())?;
+        let is_sound = instance.transform.is_finite() && (may_be_flat || !instance.is_flat());
+        require(is_sound, || {
+            format!("{}: its transform cannot be inverted (a scale of 0?)", what())
+        })
+    }
+
+    /// Checks what is cheap to check.
+    pub(in crate::scene) fn check_lights_and_cameras(&self) -> Result<()> {
+        self.lights.iter().enumerate().try_for_each(|(i, l)| {
+            color(|| format!("light {i}: intensity"), l.intensity)?;
+            check_light(i, &l.kind)
+        })?;
+        self.cameras.iter().enumerate().try_for_each(|(i, c)| check_camera(i, c))
+    }
+}
+
+/// Checks that a scene within these bounds is not too large.
+pub(in crate::scene) fn check_extent(bounds: &Bounds) -> Result<()> {
+    let extent = bounds.max_abs();
+    require(extent <= MAX_COORDINATE, || {
+        format!("the scene reaches out to {extent:e}, beyond the {MAX_COORDINATE:e} supported")
+    })
 }
 
 /// Checks the size of a picture.
@@ -137,8 +157,17 @@ fn check_spp(spp: u32) -> Result<()> {
     })
 }
 
-fn check_texture(i: usize, texture: &Texture) -> Result<()> {
+fn check_texture(i: usize, texture: &Texture, shown: bool) -> Result<()> {
     let image = &texture.image;
+    if !image.is_read() && image.texels.is_empty() {
+        return require(!shown, || {
+            format!(
+                "texture {i} (`{}`): the picture was not read, and a material in use shows it",
+                image.name
+            )
+        })
+        .map_err(|e| e.help("load the scene without skipping `pictures`"));
+    }
     let pixels = u64::from(image.width) * u64::from(image.height);
     require(pixels > 0 && pixels == image.texels.len() as u64, || {
         format!(
@@ -172,14 +201,14 @@ fn check_light(i: usize, kind: &LightKind) -> Result<()> {
     let what = format!("light {i}");
     match *kind {
         LightKind::Ambient => Ok(()),
-        LightKind::Directional { direction } => unit(&format!("{what}: direction"), direction),
+        LightKind::Directional { direction } => unit(|| format!("{what}: direction"), direction),
         LightKind::Point { position: p, range, .. } => {
-            position(&format!("{what}: position"), p)?;
+            position(|| format!("{what}: position"), p)?;
             require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))
         }
         LightKind::Spot { position: p, direction, range, inner_angle, outer_angle, .. } => {
-            position(&format!("{what}: position"), p)?;
-            unit(&format!("{what}: direction"), direction)?;
+            position(|| format!("{what}: position"), p)?;
+            unit(|| format!("{what}: direction"), direction)?;
             require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))?;
             let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
             let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;
@@ -196,10 +225,10 @@ fn check_light(i: usize, kind: &LightKind) -> Result<()> {
 
 fn check_camera(i: usize, camera: &Camera) -> Result<()> {
     let what = format!("camera {i} (`{}`)", camera.name);
-    position(&format!("{what}: position"), camera.position)?;
-    unit(&format!("{what}: forward"), camera.forward)?;
-    unit(&format!("{what}: right"), camera.right)?;
-    unit(&format!("{what}: up"), camera.up)?;
+    position(|| format!("{what}: position"), camera.position)?;
+    unit(|| format!("{what}: forward"), camera.forward)?;
+    unit(|| format!("{what}: right"), camera.right)?;
+    unit(|| format!("{what}: up"), camera.up)?;
     let (value, in_range) = match camera.lens {
         Lens::FovY(a) | Lens::FovX(a) => (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI),
         Lens::FocalPx { focal, width } => (focal, focal > 0.0 && focal.is_finite() && width > 0),
@@ -214,24 +243,26 @@ fn require(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
     if holds { Ok(()) } else { Err(Error::input(message())) }
 }
 
-fn position(what: &str, p: DVec3) -> Result<()> {
+fn position(what: impl FnOnce() -> String, p: DVec3) -> Result<()> {
     require(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE, || {
-        format!("{what}: must be finite and within 1e15 of the origin, found {p}")
+        format!("{}: must be finite and within 1e15 of the origin, found {p}", what())
     })
 }
 
-fn unit(what: &str, v: DVec3) -> Result<()> {
-    require((v.length() - 1.0).abs() < 1e-6, || format!("{what}: must have length 1, found {v}"))
+fn unit(what: impl FnOnce() -> String, v: DVec3) -> Result<()> {
+    require((v.length() - 1.0).abs() < 1e-6, || {
+        format!("{}: must have length 1, found {v}", what())
+    })
 }
 
-fn color(what: &str, c: Vec3) -> Result<()> {
+fn color(what: impl FnOnce() -> String, c: Vec3) -> Result<()> {
     require(c.is_finite() && c.min_element() >= 0.0, || {
-        format!("{what}: must be finite and not negative, found {c}")
+        format!("{}: must be finite and not negative, found {c}", what())
     })
 }
 
-fn index(what: &str, kind: &str, index: u32, count: usize) -> Result<()> {
+fn index(what: impl FnOnce() -> String, kind: &str, index: u32, count: usize) -> Result<()> {
     require((index as usize) < count, || {
-        format!("{what}: there is no {kind} {index}, only {count} of them")
+        format!("{}: there is no {kind} {index}, only {count} of them", what())
     })
 }

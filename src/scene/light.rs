@@ -106,10 +106,7 @@ impl Light {
     /// Whether it is a point that sends the same light everywhere: without falloff, range or cone.
     #[inline]
     pub fn is_steady(&self) -> bool {
-        matches!(
-            self.kind,
-            LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. }
-        )
+        matches!(self.kind, LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. })
     }
 
     /// The light moved and turned. Its intensity and its range stay as they are under any scale, as

@@ -10,6 +10,7 @@ mod film;
 mod light;
 mod material;
 mod mesh;
+mod needs;
 mod object;
 mod texture;
 mod tone;
@@ -21,6 +22,7 @@ pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
+pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
 pub use tone::Tone;
@@ -148,17 +150,19 @@ impl Scene {
         self.bounds_with(&self.mesh_bounds())
     }
 
-    /// The box around each mesh, in its own space.
-    pub(crate) fn mesh_bounds(&self) -> Vec<Bounds> {
+    /// The box of each mesh, in its own space. It takes a look at every triangle.
+    pub fn mesh_bounds(&self) -> Vec<Bounds> {
         self.meshes.iter().map(|mesh| mesh.bounds()).collect()
     }
 
-    /// As [`Scene::bounds`], for who has the boxes of the meshes already.
-    pub(crate) fn bounds_with(&self, meshes: &[Bounds]) -> Bounds {
+    /// As [`Scene::bounds`], where the boxes of the meshes are known.
+    ///
+    /// # Panics
+    /// When a mesh that stands in the scene has no box.
+    pub fn bounds_with(&self, mesh_bounds: &[Bounds]) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let instances =
-            self.instances.iter().map(|i| meshes[i.mesh.0 as usize].transformed(&i.transform));
-        spheres.chain(instances).fold(Bounds::EMPTY, Bounds::union)
+        let placed = |i: &Instance| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform);
+        spheres.chain(self.instances.iter().map(placed)).fold(Bounds::EMPTY, Bounds::union)
     }
 
     /// How many primitives trees are built of: spheres, instances, and the triangles of each mesh.

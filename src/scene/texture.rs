@@ -13,17 +13,30 @@ pub struct TextureId(pub u32);
 /// One stored pixel: red, green, blue, alpha, 8 bits each as the file has them.
 pub type Texel = [u8; 4];
 
-/// A decoded picture, row by row from the upper left.
+/// A decoded picture, row by row from the upper left; or one that was not read, since nothing
+/// shows it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Where it came from, for messages.
     pub name: String,
-    /// Width in pixels, at least 1.
+    /// Width in pixels, at least 1; 0 for one that was not read.
     pub width: u32,
-    /// Height in pixels, at least 1.
+    /// Height in pixels, at least 1; 0 for one that was not read.
     pub height: u32,
     /// `width · height` pixels.
     pub texels: Vec<Texel>,
+}
+
+impl Image {
+    /// A picture that was not read. A scene in which a material in use shows it is not valid.
+    pub fn unread(name: &str) -> Self {
+        Self { name: name.to_owned(), width: 0, height: 0, texels: Vec::new() }
+    }
+
+    /// Whether it was read.
+    pub fn is_read(&self) -> bool {
+        self.width > 0 && self.height > 0
+    }
 }
 
 /// What lies beyond the edges of a picture.

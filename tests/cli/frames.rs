@@ -149,6 +149,22 @@ fn stats_say_that_a_mesh_was_built_once() {
 }
 
 #[test]
+#[cfg(feature = "embree")]
+fn stats_say_what_was_placed_again() {
+    let folder = Folder::with(&moving());
+    let scene = moving() + "[[model]]\nfile = \"tetrahedron.obj\"\nscale = 20\n";
+    folder.write("scene.toml", scene);
+    folder.write("tetrahedron.obj", TETRAHEDRON);
+    let stats = folder.run("render scene.toml -o f#.png --stats -").good().json();
+    let expected = serde_json::json!({
+        "meshes": 1, "reused": 9, "bvh": "medium",
+        "top_levels_built": 1, "top_levels_kept": 9,
+        "instances_placed": 1, "instances_moved": 0, "spheres_moved": 9,
+    });
+    assert_eq!(stats["build"], expected);
+}
+
+#[test]
 fn info_says_how_long_it_is_and_what_moves() {
     let folder = Folder::with(&moving());
     let said = folder.run("info scene.toml").good().stdout;

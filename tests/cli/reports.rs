@@ -37,6 +37,8 @@ fn statistics_have_every_field() {
             ("geometry", Value::is_object),
             ("build", Value::is_object),
             ("rays", Value::is_object),
+            ("work", Value::is_object),
+            ("skipped", Value::is_object),
             ("not_finite", Value::is_object),
             ("seconds", Value::is_object),
             ("mrays_per_second", seconds),
@@ -358,8 +360,8 @@ fn info_says_what_is_in_a_scene() {
 #[test]
 fn info_says_what_will_be_skipped() {
     let stdout = Folder::with(SPHERE).run("info scene.toml").good().stdout;
-    assert!(stdout.contains("\nskips      instance level"), "{stdout}");
-    assert!(!stdout.contains("skips      shadow rays"), "{stdout}");
+    assert!(stdout.contains("\nskips      instances: there are no meshes\n"), "{stdout}");
+    assert!(!stdout.contains("skips      shadows"), "{stdout}");
 }
 
 #[test]
@@ -370,7 +372,8 @@ fn info_json_says_the_same() {
     assert_eq!(info["size"], serde_json::json!([150, 110]));
     assert_eq!(info["lights"].as_array().unwrap().len(), 4);
     assert_eq!(info["cameras"].as_array().unwrap().len(), 2);
-    assert!(texts(&info["skipped"]) && texts(&info["warnings"]));
+    assert!(info["needed"].is_object() && info["skipped"].is_object());
+    assert!(texts(&info["warnings"]));
 }
 
 #[test]

@@ -432,7 +432,9 @@ fn a_picture_that_is_not_there_is_named() {
 
 #[test]
 fn a_picture_that_is_none_is_refused() {
-    refused_seen("[[material]]\nname = \"m\"\nemission_map = ¦\"scene.toml\"\n");
+    let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"m\"\n";
+    let material = "[[material]]\nname = \"m\"\nemission_map = ¦\"scene.toml\"\n";
+    refused_seen(&format!("{sphere}{material}"));
 }
 
 #[test]

@@ -141,6 +141,37 @@ fn every_key_of_a_material_is_read() {
 }
 
 #[test]
+fn a_picture_that_nothing_shows_is_named_and_not_read() {
+    let material = "[[material]]\nname = \"a\"\ndiffuse_map = \"dot.png\"\n";
+    let file = File::new(format!("{}{material}", super::CAMERA));
+    std::fs::write(file.beside("dot.png"), "no picture").unwrap();
+    let mut scene = file.load().unwrap();
+    let image = scene.textures[0].image.clone();
+    assert!(!image.is_read() && image.name.ends_with("dot.png"), "{image:?}");
+    let ball = envers::scene::Sphere::new(glam::DVec3::ZERO, 1.0, envers::scene::MaterialId(0));
+    scene.spheres.push(ball);
+    let error = scene.check().unwrap_err();
+    assert!(error.message().contains("the picture was not read"), "{error}");
+}
+
+#[test]
+fn pictures_of_a_model_in_another_material_are_not_read() {
+    let (camera, material) = (super::CAMERA, "[[material]]\nname = \"a\"\n");
+    let model = "[[model]]\nfile = \"m.obj\"\n";
+    let painted = format!("{model}material = \"a\"\n");
+    for (models, read) in [(painted.clone(), false), (format!("{painted}{model}"), true)] {
+        let file = File::new(format!("{camera}{material}{models}"));
+        let dot = image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 255]));
+        dot.save(file.beside("dot.png")).unwrap();
+        std::fs::write(file.beside("m.mtl"), "newmtl m\nmap_Kd dot.png\n").unwrap();
+        let text = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        std::fs::write(file.beside("m.obj"), text).unwrap();
+        let scene = file.load().unwrap();
+        assert_eq!(scene.textures[0].image.is_read(), read, "{models}");
+    }
+}
+
+#[test]
 fn a_picture_named_twice_is_read_once() {
     let text = format!(
         "{}[[material]]\nname = \"a\"\ndiffuse_map = \"dot.png\"\nemission_map = \"./dot.png\"\n",

@@ -17,19 +17,47 @@ use crate::intersect::brute::is_extreme;
 use crate::intersect::entry::Entry;
 use crate::intersect::kept::{Kept, used};
 use crate::intersect::primitive::Primitives;
+use crate::intersect::standing::Moved;
 use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
-use crate::scene::{Mesh, Scene, Sphere};
+use crate::scene::{Instance, Mesh, Scene, Sphere};
 use build::build;
 use tree::{Line, Tree};
 
 /// The pure-Rust intersector.
 pub struct Bvh<'s> {
     primitives: Primitives<'s>,
-    spheres: Tree,
-    instances: Tree,
+    spheres: Arc<Tree>,
+    instances: Arc<Instances>,
+    meshes: Vec<Arc<MeshTree>>,
+}
+
+/// Where the meshes stand.
+#[derive(Default)]
+struct Instances {
+    tree: Tree,
     /// For each instance, the way into its mesh's space.
     entries: Vec<Entry>,
-    meshes: Vec<Arc<MeshTree>>,
+}
+
+/// What frames share: the trees of the meshes, and those above them while nothing in these moves.
+#[derive(Default)]
+pub struct Shared {
+    meshes: Kept<MeshTree>,
+    spheres: Arc<Tree>,
+    instances: Arc<Instances>,
+    tops: u64,
+}
+
+impl Shared {
+    /// How many meshes were built.
+    pub fn built(&self) -> u64 {
+        self.meshes.built()
+    }
+
+    /// How often a tree above them was built, or both.
+    pub fn tops(&self) -> u64 {
+        self.tops
+    }
 }
 
 /// The tree over the triangles of a mesh, in its own space; empty for one that stands nowhere.
@@ -39,44 +67,33 @@ pub struct MeshTree(Tree);
 impl<'s> Bvh<'s> {
     /// Builds the trees of a checked scene, on the current rayon pool.
     pub fn build(scene: &'s Scene, precision: Precision) -> Self {
-        Self::build_sharing(scene, precision, None)
+        let primitives = Primitives { scene, precision };
+        let meshes = mesh_trees(scene, None);
+        let instances = Instances::new(scene, &meshes).into();
+        Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
-    /// As [`Bvh::build`], with the trees of meshes that are there already.
+    /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
+    /// since, if all else is as it was.
     pub(super) fn build_sharing(
         scene: &'s Scene,
         precision: Precision,
-        mut kept: Option<&mut Kept<MeshTree>>,
+        shared: &mut Shared,
+        moved: Option<&Moved>,
     ) -> Self {
-        let there = |index, mesh| kept.as_ref().and_then(|kept| kept.get(index, mesh));
-        let used = used(scene);
-        let meshes: Vec<Arc<MeshTree>> = (scene.meshes.par_iter().enumerate())
-            .map(|(i, mesh)| match used[i] {
-                true => there(i, mesh).unwrap_or_else(|| MeshTree::new(mesh).into()),
-                false => Arc::default(),
-            })
-            .collect();
-        if let Some(kept) = &mut kept {
-            for (i, (mesh, tree)) in scene.meshes.iter().zip(&meshes).enumerate() {
-                if used[i] {
-                    kept.keep(i, mesh, tree);
-                }
-            }
-        }
-        let spheres: Vec<Bounds> = scene.spheres.iter().map(Sphere::bounds).collect();
-        let placed: Vec<Bounds> = scene
-            .instances
-            .iter()
-            .map(|i| {
-                let bounds = meshes[i.mesh.0 as usize].0.bounds().transformed(&i.transform);
-                // A baked vertex may round to just outside the transformed box.
-                bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
-            })
-            .collect();
-        let entries = scene.instances.iter().zip(&placed).map(|(i, b)| Entry::new(i, b)).collect();
-        let (spheres, instances) = (build(&spheres), build(&placed));
         let primitives = Primitives { scene, precision };
-        Self { primitives, spheres, instances, entries, meshes }
+        let meshes = mesh_trees(scene, Some(&mut shared.meshes));
+        let (spheres_stay, instances_stay) =
+            moved.map_or((false, false), |m| (m.spheres.is_empty(), m.instances.is_empty()));
+        if !spheres_stay {
+            shared.spheres = sphere_tree(scene).into();
+        }
+        if !instances_stay {
+            shared.instances = Instances::new(scene, &meshes).into();
+        }
+        shared.tops += u64::from(!(spheres_stay && instances_stay));
+        let (spheres, instances) = (shared.spheres.clone(), shared.instances.clone());
+        Self { primitives, spheres, instances, meshes }
     }
 
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
@@ -95,9 +112,9 @@ impl<'s> Bvh<'s> {
         if done {
             return;
         }
-        self.instances.walk(&line, limit, |instance, limit| {
+        self.instances.tree.walk(&line, limit, |instance, limit| {
             let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
-            let entry = &self.entries[instance as usize];
+            let entry = &self.instances.entries[instance as usize];
             let (origin, direction) = entry.line(ray.origin, ray.direction);
             let local = Line::new(origin, direction, entry.error(ray.origin));
             self.meshes[mesh as usize].0.walk(&local, limit, |triangle, limit| {
@@ -105,6 +122,43 @@ impl<'s> Bvh<'s> {
                 self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))
             })
         });
+    }
+}
+
+/// The trees of the meshes that stand anywhere.
+fn mesh_trees(scene: &Scene, mut kept: Option<&mut Kept<MeshTree>>) -> Vec<Arc<MeshTree>> {
+    let there = |index, mesh| kept.as_ref().and_then(|kept| kept.get(index, mesh));
+    let used = used(scene);
+    let meshes: Vec<Arc<MeshTree>> = (scene.meshes.par_iter().enumerate())
+        .map(|(i, mesh)| match used[i] {
+            true => there(i, mesh).unwrap_or_else(|| MeshTree::new(mesh).into()),
+            false => Arc::default(),
+        })
+        .collect();
+    if let Some(kept) = &mut kept {
+        for (i, (mesh, tree)) in scene.meshes.iter().zip(&meshes).enumerate() {
+            if used[i] {
+                kept.keep(i, mesh, tree);
+            }
+        }
+    }
+    meshes
+}
+
+fn sphere_tree(scene: &Scene) -> Tree {
+    build(&scene.spheres.iter().map(Sphere::bounds).collect::<Vec<_>>())
+}
+
+impl Instances {
+    fn new(scene: &Scene, meshes: &[Arc<MeshTree>]) -> Self {
+        let placed = |i: &Instance| {
+            let bounds = meshes[i.mesh.0 as usize].0.bounds().transformed(&i.transform);
+            // A baked vertex may round to just outside the transformed box.
+            bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
+        };
+        let placed: Vec<Bounds> = scene.instances.iter().map(placed).collect();
+        let entries = scene.instances.iter().zip(&placed).map(|(i, b)| Entry::new(i, b)).collect();
+        Self { tree: build(&placed), entries }
     }
 }
 

@@ -50,6 +50,33 @@ impl Frame {
         Self { center: bounds.center(), bounds, extent }
     }
 
+    /// A frame for a picture of an animation that takes place mostly within `stage`, as far as that
+    /// is known: one for them all where the picture's own box lies in it and is at least a quarter
+    /// as large, and else one that is the same while the box changes a little. Which pictures came
+    /// before has no part in it.
+    pub fn on_stage(bounds: Bounds, stage: Bounds) -> Self {
+        let own = Self::around(bounds);
+        let shared = Self { bounds, ..Self::steady(stage) };
+        let far = (bounds.lower - shared.center).abs().max((bounds.upper - shared.center).abs());
+        let fits = far.max_element() <= 0.5 * shared.extent;
+        if fits && 4.0 * own.extent >= shared.extent { shared } else { Self::steady(bounds) }
+    }
+
+    /// L is a power of two, more than 5/4 of the box's longest side and at most 5/2 of it, and the
+    /// centre is a multiple of L/8 that is at most L/16 from the box's own on each axis. So the box
+    /// lies within (2/5 + 1/16) L < L/2 of it, and what is said at the head of this file holds.
+    fn steady(bounds: Bounds) -> Self {
+        let Self { center, extent, bounds } = Self::around(bounds);
+        let extent = (1.25 * extent).log2().floor().exp2() * 2.0;
+        let step = extent / 8.0;
+        Self { center: (center / step).round() * step, bounds, extent }
+    }
+
+    /// Whether f32 copies in the other frame are those in this one.
+    pub fn is_at(&self, other: &Self) -> bool {
+        (self.center, self.extent) == (other.center, other.extent)
+    }
+
     /// A point, recentred and rounded.
     pub fn point(&self, p: DVec3) -> [f32; 3] {
         (p - self.center).as_vec3().to_array()
@@ -78,5 +105,60 @@ impl Frame {
     /// a triangle seen at a grazing angle allowed for.
     pub fn doubt(&self) -> f32 {
         (1024.0 * self.margin()) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_steady_frame_holds_its_box_within_half_of_its_side(
+            middle in prop::array::uniform3(-1.0..1.0f64),
+            size in prop::array::uniform3(0.0..1.0f64),
+            offset in -9..9i32,
+            scale in -40..40i32,
+        ) {
+            let middle = DVec3::from(middle) * 10f64.powi(offset);
+            let half = DVec3::from(size) * f64::from(scale).exp2();
+            let bounds = Bounds { lower: middle - half, upper: middle + half };
+            let Frame { center, extent, .. } = Frame::steady(bounds);
+            let far = (bounds.lower - center).abs().max((bounds.upper - center).abs());
+            prop_assert!(far.max_element() < 0.5 * extent, "{far} {extent}");
+            let longest = bounds.size().max_element().max(1e-9 * bounds.max_abs());
+            prop_assert!(extent <= 2.5 * longest.max(1e-30), "{extent} {longest}");
+        }
+    }
+
+    /// A box of this side about a point of the x axis.
+    fn cube(x: f64, side: f64) -> Bounds {
+        Bounds::of([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
+    }
+
+    #[test]
+    fn pictures_of_one_stage_share_a_frame() {
+        let frame = |x| Frame::on_stage(cube(x, 1.0), cube(0.0, 1.5));
+        assert!(frame(-0.25).is_at(&frame(0.25)));
+        assert_ne!(frame(-0.25).bounds, frame(0.25).bounds);
+    }
+
+    #[test]
+    fn what_leaves_the_stage_or_is_small_on_it_has_a_frame_of_its_own() {
+        let stage = cube(0.0, 8.0);
+        let shared = Frame::on_stage(stage, stage);
+        for bounds in [cube(9.0, 8.0), cube(0.0, 1.0)] {
+            let frame = Frame::on_stage(bounds, stage);
+            assert!(!frame.is_at(&shared) && frame.is_at(&Frame::steady(bounds)));
+        }
+    }
+
+    #[test]
+    fn a_scene_of_nothing_has_a_frame() {
+        for (bounds, stage) in [(Bounds::EMPTY, cube(0.0, 1.0)), (cube(0.0, 1.0), Bounds::EMPTY)] {
+            let frame = Frame::on_stage(bounds, stage);
+            assert!(frame.center.is_finite() && frame.extent > 0.0);
+        }
     }
 }

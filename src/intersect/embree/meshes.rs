@@ -8,10 +8,11 @@ use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::placements::{self, Placements};
 use crate::intersect::embree::raw::{DeviceHandle, InnerScene};
 use crate::intersect::embree::triangles::Triangles;
+use crate::intersect::embree::user::Table;
 use crate::intersect::embree::width::Width;
 use crate::intersect::embree::{attach, certified, is_outsized, user, uses};
 use crate::intersect::kept::Kept;
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Instance, Mesh, Scene};
 use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
 
 /// What Embree keeps the addresses of.
@@ -20,7 +21,8 @@ pub struct Meshes {
     #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
     tables: Vec<Box<Triangles>>,
     own: Vec<Arc<Own>>,
-    placements: Option<Box<Placements>>,
+    /// Which geometry they are, and what its callbacks read.
+    placements: Option<(u32, Box<Placements>)>,
 }
 
 /// A mesh in a space of its own.
@@ -56,39 +58,37 @@ const SMALL: f64 = 1e-4;
 
 impl Meshes {
     /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
-    /// one that is outsized in its own; the others as placements. Where frames share their meshes
-    /// in `kept`, all are placements but the outsized ones. `local` are the boxes of the meshes.
+    /// one that is outsized in its own; the others as placements. Where `all_instanced`, as for
+    /// frames that share their meshes in `kept`, all are placements but the outsized ones. `local` are
+    /// the boxes of the meshes.
     pub fn attach(
         &mut self,
         scene: &Scene,
         local: &[Bounds],
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
-        (frame, width, quality): (Frame, Width, RTCBuildQuality),
-        mut kept: Option<&mut Kept<Own>>,
+        quality: RTCBuildQuality,
+        (frame, width): (Frame, Width),
+        (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
     ) -> Result<()> {
         let uses = uses(scene);
         let world: Vec<Bounds> = (scene.instances.iter())
-            .map(|instance| {
-                let bounds = local[instance.mesh.0 as usize].transformed(&instance.transform);
-                // A baked vertex may round to just outside the transformed box.
-                bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
-            })
+            .map(|instance| placed(&local[instance.mesh.0 as usize], instance))
             .collect();
         let mut has_own = vec![false; scene.meshes.len()];
         for (instance, bounds) in scene.instances.iter().zip(&world) {
             let at = instance.mesh.0 as usize;
             let mesh = &scene.meshes[at];
-            let once = kept.is_none() && uses[at] == 1 && !is_small(mesh, bounds, &frame);
+            let once = !all_instanced && uses[at] == 1 && !is_small(mesh, bounds, &frame);
             has_own[at] = !(mesh.triangles.is_empty() || once || is_outsized(&local[at]));
         }
         let make = |at: usize| Own::new(scene, at as u32, local[at], device, quality, width);
         let own = Kept::all(kept.as_deref_mut(), scene, &has_own, make)?;
-        let mut placed = Box::new(Placements::new(frame));
+        let mut placements = Box::new(Placements::new(frame));
         for ((index, instance), bounds) in (0..).zip(&scene.instances).zip(world) {
             let at = instance.mesh.0 as usize;
             if let Some(own) = &own[at] {
-                placed.add(scene, index, bounds, &own.scene, own.frame);
+                placements.add(scene, index, bounds, &own.scene, own.frame);
             } else if !scene.meshes[at].triangles.is_empty() {
                 let table = Triangles::placed(scene, index, frame);
                 let callbacks = certified::triangles(width);
@@ -98,13 +98,42 @@ impl Meshes {
             }
         }
         self.own = own.into_iter().flatten().collect();
-        if !placed.is_empty() {
+        if !placements.is_empty() {
             let callbacks = placements::callbacks(width);
-            attach(top, &user::geometry(device, quality, &*placed, callbacks)?)?;
-            self.placements = Some(placed);
+            let geometry = user::geometry(device, quality, &*placements, callbacks)?;
+            self.placements = Some((attach(top, &geometry)?, placements));
         }
         Ok(())
     }
+
+    /// How many instances are placements.
+    pub fn instanced(&self) -> u64 {
+        self.placements.as_ref().map_or(0, |(_, placements)| placements.len() as u64)
+    }
+
+    /// Places again the instances that `moved`, of which none is outsized.
+    pub fn follow(
+        &mut self,
+        scene: &Scene,
+        top: &embree4_rs::Scene,
+        boxes: &[Bounds],
+        moved: &[u32],
+    ) {
+        let Some((id, placements)) = &mut self.placements else { return };
+        for &index in moved {
+            let instance = &scene.instances[index as usize];
+            let bounds = placed(&boxes[instance.mesh.0 as usize], instance);
+            placements.replace(instance, index, bounds);
+        }
+        user::moved(top, *id, &**placements);
+    }
+}
+
+/// The box in the world of an instance of a mesh with this box.
+fn placed(mesh: &Bounds, instance: &Instance) -> Bounds {
+    let bounds = mesh.transformed(&instance.transform);
+    // A baked vertex may round to just outside the transformed box.
+    bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
 }
 
 /// Whether a mesh that takes up `bounds` in the world has small triangles for the scene.

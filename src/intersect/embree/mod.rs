@@ -37,53 +37,52 @@ mod refine;
 mod spheres;
 #[cfg(test)]
 mod tests;
+mod top;
 mod triangles;
 mod user;
 mod width;
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use embree4_rs::geometry::Geometry;
-use embree4_rs::{CommittedScene, Device, SceneOptions};
-use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
+use embree4_rs::{Device, SceneOptions};
+use embree4_sys::{RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Hits, Ray, Rays};
 use crate::intersect::kept::Kept;
+use crate::intersect::standing::Moved;
 use crate::intersect::{BuildQuality, Coherence, Intersector, Precision, leaving};
-use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
+use crate::scene::{Scene, Skips};
 use canary::failed;
 use frame::Frame;
 pub use memory::peak as peak_memory;
-use meshes::Meshes;
 use raw::{DeviceHandle, scene_handle};
-use spheres::SphereTable;
+use top::Top;
 use width::Width;
+
+/// What is asked of an intersector.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Asked {
+    pub precision: Precision,
+    /// How many threads build it; 0 means all there are.
+    pub threads: usize,
+    /// How good the trees are.
+    pub quality: BuildQuality,
+    /// Which work is left out where the scene has no need of it.
+    pub skips: Skips,
+    /// How wide its packets are; none for the widest that is native.
+    pub width: Option<Width>,
+}
 
 /// The Embree intersector of one scene.
 pub struct Embree<'s> {
     scene: &'s Scene,
-    frame: Frame,
-    width: Width,
-    precision: Precision,
     /// The largest absolute coordinate in the scene.
     reach: f64,
-    /// For each geometry that is attached, the instance that stands there.
-    instance_of: Vec<u32>,
-    committed: CommittedScene,
-    version: String,
-    /// Read by the callbacks; dropped after the scene that calls them.
-    _spheres: Option<Box<SphereTable>>,
-    _meshes: Meshes,
+    top: Arc<Top>,
 }
-
-// SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
-// scene. Embree lets any thread trace a committed scene, and release it.
-#[allow(unsafe_code)]
-unsafe impl Send for Embree<'_> {}
-#[allow(unsafe_code)]
-unsafe impl Sync for Embree<'_> {}
 
 impl<'s> Embree<'s> {
     /// Builds a checked scene on `threads` threads (0: all there are).
@@ -91,19 +90,7 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::build_sharing(scene, precision, threads, BuildQuality::default(), None)
-    }
-
-    /// As [`Embree::build`], with trees of any quality, and with the meshes that are there already,
-    /// on their device.
-    pub(super) fn build_sharing(
-        scene: &'s Scene,
-        precision: Precision,
-        threads: usize,
-        quality: BuildQuality,
-        shared: Option<&mut Shared>,
-    ) -> Result<Self> {
-        Self::with_width(scene, precision, threads, None, quality, shared)
+        Self::build_as(scene, Asked { precision, threads, ..Asked::default() })
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -112,135 +99,133 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        let (width, quality) = (Some(Width::One), BuildQuality::default());
-        Self::with_width(scene, precision, threads, width, quality, None)
+        let width = Some(Width::One);
+        Self::build_as(scene, Asked { precision, threads, width, ..Asked::default() })
     }
 
-    fn with_width(
+    pub(super) fn build_as(scene: &'s Scene, asked: Asked) -> Result<Self> {
+        let boxes = scene.mesh_bounds();
+        let bounds = scene.bounds_with(&boxes);
+        let device = new_device(scene, asked.threads)?;
+        let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
+        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
+    }
+
+    /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
+    /// from a frame before, of which only `moved` is not as it was there; nothing is known of that
+    /// where the things are other ones.
+    pub(super) fn build_sharing(
         scene: &'s Scene,
-        precision: Precision,
-        threads: usize,
-        width: Option<Width>,
-        quality: BuildQuality,
-        mut shared: Option<&mut Shared>,
+        asked: Asked,
+        boxes: &[Bounds],
+        shared: &mut Shared,
+        moved: Option<&Moved>,
     ) -> Result<Self> {
-        static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
-        CHECKED
-            .get_or_init(|| canary::check().map_err(|e| e.to_string()))
-            .clone()
-            .map_err(Error::failed)?;
+        let bounds = scene.bounds_with(boxes);
+        let frame = Frame::on_stage(bounds, shared.stage);
+        let top = shared.top(scene, asked, frame, boxes, moved)?;
+        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })
+    }
 
-        let device = match shared.as_ref().and_then(|shared| shared.device.as_ref()) {
-            Some(there) => there.device(),
-            None => {
-                // Waking threads takes longer than a small tree does.
-                let threads = if scene.primitive_count() < FEW { 1 } else { threads };
-                Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)?
-            }
-        };
-        let quality = match quality {
-            BuildQuality::Low => RTCBuildQuality::LOW,
-            BuildQuality::Medium => RTCBuildQuality::MEDIUM,
-        };
-        let options = SceneOptions { build_quality: quality, flags: flags() };
-        let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
-        let device = DeviceHandle::of(&top);
-        memory::watch(&device);
-        if let Some(shared) = &mut shared {
-            shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
-        }
-        let mesh_bounds = scene.mesh_bounds();
-        let bounds = scene.bounds_with(&mesh_bounds);
-        let frame = Frame::around(bounds);
-        let width = width.unwrap_or_else(|| Width::native(&device));
-
-        let mut instance_of = Vec::new();
-        let mut _meshes = Meshes::default();
-        match precision {
-            Precision::Fast => {
-                let kept = shared.map(|shared| &mut shared.fast);
-                instance_of = native::attach_meshes(
-                    scene,
-                    &mesh_bounds,
-                    &top,
-                    &device,
-                    quality,
-                    &frame,
-                    kept,
-                )?;
-            }
-            Precision::Certified => {
-                let kept = shared.map(|shared| &mut shared.certified);
-                _meshes.attach(
-                    scene,
-                    &mesh_bounds,
-                    &top,
-                    &device,
-                    (frame, width, quality),
-                    kept,
-                )?;
-            }
-        }
-        let _spheres = (!scene.spheres.is_empty()).then(|| SphereTable::new(scene, frame));
-        if let Some(table) = &_spheres {
-            let callbacks = match precision {
-                Precision::Fast => spheres::callbacks(width),
-                Precision::Certified => certified::spheres(width),
-            };
-            attach(&top, &user::geometry(&device, quality, &**table, callbacks)?)?;
-        }
-        let committed = top
-            .commit()
-            .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
-        let version = version_of(&device);
-        Ok(Self {
-            scene,
-            frame,
-            width,
-            precision,
-            reach: leaving::scene_reach(scene, &bounds),
-            instance_of,
-            committed,
-            version,
-            _spheres,
-            _meshes,
-        })
+    /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
+    /// of their own.
+    pub(super) fn work(&self) -> (u64, u64) {
+        self.top.work()
     }
 
     /// How far, in world units, the f32 rays may be from the exact ones anywhere in the scene: what
     /// `fast` cannot tell apart. Within an instance it may be magnified by the instance's own
     /// space.
     pub fn margin(&self) -> f64 {
-        self.frame.margin()
+        self.top.frame.margin()
     }
 
     fn target(&self) -> query::Target<'_> {
+        let top = &*self.top;
         query::Target {
-            handle: scene_handle(&self.committed.scene),
+            handle: scene_handle(&top.committed.scene),
             scene: self.scene,
-            instance_of: &self.instance_of,
-            frame: &self.frame,
-            width: self.width,
-            precision: self.precision,
+            instance_of: &top.instance_of,
+            frame: &top.frame,
+            width: top.width,
+            precision: top.precision,
             careful: false,
             reach: self.reach,
         }
     }
 }
 
-/// What frames share: a device, and the meshes that were built on it.
-#[derive(Default)]
+/// Starts a device of `threads` threads (0: all there are), once the library is known to be as
+/// expected.
+fn new_device(scene: &Scene, threads: usize) -> Result<Device> {
+    static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+    CHECKED
+        .get_or_init(|| canary::check().map_err(|e| e.to_string()))
+        .clone()
+        .map_err(Error::failed)?;
+    // Waking threads takes longer than a small tree does.
+    let threads = if scene.primitive_count() < FEW { 1 } else { threads };
+    Device::try_new(Some(&format!("threads={threads}\0"))).map_err(failed)
+}
+
+/// What frames share: a device, the meshes that were built on it, and the level above them.
 pub(super) struct Shared {
+    /// Where the frames take place, as far as that is known.
+    stage: Bounds,
     fast: Kept<native::Own>,
     certified: Kept<meshes::Own>,
+    /// That of the last frame.
+    top: Option<Arc<Top>>,
+    /// How many of them were built.
+    tops: u64,
     /// Dropped after what stands on it.
     device: Option<DeviceHandle>,
 }
 
 impl Shared {
+    /// Nothing yet, for frames that take place mostly within `stage`.
+    pub(super) fn new(stage: Bounds) -> Self {
+        let (fast, certified) = Default::default();
+        Self { stage, fast, certified, top: None, tops: 0, device: None }
+    }
+
     /// How many meshes were built.
     pub(super) fn built(&self) -> u64 {
         self.fast.built() + self.certified.built()
+    }
+
+    /// How many levels above the meshes were built.
+    pub(super) fn tops(&self) -> u64 {
+        self.tops
+    }
+
+    /// The level above the meshes for a scene: that of the frame before where only `moved` is not
+    /// as it was there, and else a new one.
+    fn top(
+        &mut self,
+        scene: &Scene,
+        asked: Asked,
+        frame: Frame,
+        boxes: &[Bounds],
+        moved: Option<&Moved>,
+    ) -> Result<Arc<Top>> {
+        // Taken, so that nothing half changed stays behind an error.
+        let mut last = self.top.take();
+        // Whoever traces the last frame holds it, too: then it must not change.
+        if let (Some(top), Some(moved)) = (last.as_mut().and_then(Arc::get_mut), moved)
+            && top.can_follow(scene, &frame, boxes, moved)
+        {
+            top.follow(scene, &frame, boxes, moved)?;
+        } else {
+            let device = match &self.device {
+                Some(there) => there.device(),
+                None => new_device(scene, asked.threads)?,
+            };
+            last = Some(Top::build(scene, device, asked, frame, boxes, Some(self))?.into());
+            self.tops += 1;
+        }
+        self.top.clone_from(&last);
+        last.ok_or_else(|| Error::failed("no Embree scene was built"))
     }
 }
 
@@ -251,8 +236,9 @@ fn flags() -> RTCSceneFlags {
     RTCSceneFlags::ROBUST | RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS
 }
 
-fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<()> {
-    top.attach_geometry(geometry).map(|_| ()).map_err(failed)
+/// Attaches a geometry, and says by which number Embree knows it.
+fn attach(top: &embree4_rs::Scene, geometry: &dyn Geometry) -> Result<u32> {
+    top.attach_geometry(geometry).map_err(failed)
 }
 
 /// Whether a mesh cannot be traced in its own space: f32 vertices reach 3e38, but Embree passes
@@ -294,7 +280,7 @@ impl Intersector for Embree<'_> {
     }
 
     fn version(&self) -> String {
-        self.version.clone()
+        self.top.version.clone()
     }
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {

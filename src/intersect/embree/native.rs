@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::mesh_geometry::MeshGeometry;
-use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry};
+use crate::intersect::embree::raw::{DeviceHandle, InnerScene, InstanceGeometry, move_instance};
 use crate::intersect::embree::{attach, flags, is_outsized, uses};
 use crate::intersect::kept::Kept;
 use crate::scene::{Instance, Mesh, Scene};
@@ -41,8 +41,9 @@ impl Own {
 
 /// Attaches every instance: a mesh that stands once as its own triangles in world space, one that
 /// stands several times through Embree's instances, unless it is outsized in its own space. Where
-/// frames share their meshes in `kept`, all stand through instances but the outsized ones. Says
-/// which instance each geometry is. `bounds` are those of the meshes, which Embree goes on reading.
+/// `all_instanced`, as for frames that share their meshes in `kept`, all stand through instances but
+/// the outsized ones. Says which instance each geometry is, and how many are Embree's instances.
+/// `bounds` are those of the meshes, which Embree goes on reading.
 pub fn attach_meshes(
     scene: &Scene,
     bounds: &[Bounds],
@@ -50,10 +51,10 @@ pub fn attach_meshes(
     device: &DeviceHandle,
     quality: RTCBuildQuality,
     frame: &Frame,
-    mut kept: Option<&mut Kept<Own>>,
-) -> Result<Vec<u32>> {
+    (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
+) -> Result<(Vec<u32>, u64)> {
     let uses = uses(scene);
-    let in_world = |at: usize| (uses[at] == 1 && kept.is_none()) || is_outsized(&bounds[at]);
+    let in_world = |at: usize| (uses[at] == 1 && !all_instanced) || is_outsized(&bounds[at]);
     let is_there = |at: usize| uses[at] > 0 && !scene.meshes[at].triangles.is_empty();
     let has_own: Vec<bool> = (0..uses.len()).map(|at| is_there(at) && !in_world(at)).collect();
     let make = |at: usize| Own::new(&scene.meshes[at], &bounds[at], device, quality);
@@ -76,12 +77,32 @@ pub fn attach_meshes(
         })
     };
     let geometries: Vec<_> = standing.par_iter().map(geometry).collect::<Result<_>>()?;
-    geometries.iter().try_for_each(|geometry| attach(top, &**geometry))?;
+    geometries.iter().try_for_each(|geometry| attach(top, &**geometry).map(|_| ()))?;
     if let Some(kept) = kept {
         let outsized = standing.iter().filter(|(_, i)| own[i.mesh.0 as usize].is_none());
         outsized.for_each(|_| kept.count_one());
     }
-    Ok(standing.iter().map(|&(index, _)| index).collect())
+    let instanced =
+        standing.iter().filter(|(_, i)| own[i.mesh.0 as usize].is_some()).count() as u64;
+    Ok((standing.iter().map(|&(index, _)| index).collect(), instanced))
+}
+
+/// Places again the instances that `moved`, of which none is outsized.
+pub fn follow(
+    scene: &Scene,
+    top: &embree4_rs::Scene,
+    frame: &Frame,
+    boxes: &[Bounds],
+    instance_of: &[u32],
+    moved: &[u32],
+) {
+    for index in moved {
+        // What has no triangles is nowhere.
+        let Ok(id) = instance_of.binary_search(index) else { continue };
+        let instance = &scene.instances[*index as usize];
+        let center = boxes[instance.mesh.0 as usize].center();
+        move_instance(top, id as u32, &columns(instance, center, frame));
+    }
 }
 
 /// The matrix from the mesh's space, recentred on `center`, to the recentred world.

@@ -18,9 +18,11 @@ impl<'a> Packet<'a> {
     /// The packets of a batch, each of `W` rays.
     pub fn all<const W: usize>(rays: &'a Rays) -> impl Iterator<Item = Self> {
         const { assert!(LANES.is_multiple_of(W)) };
-        (0..rays.len())
-            .step_by(W)
-            .map(move |first| Self { rays, first, count: W.min(rays.len() - first) })
+        (0..rays.len()).step_by(W).map(move |first| Self {
+            rays,
+            first,
+            count: W.min(rays.len() - first),
+        })
     }
 
     /// The sixteen that they stand in, and the lane of the first.

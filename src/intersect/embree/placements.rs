@@ -16,9 +16,9 @@ use crate::intersect::embree::raw::InnerScene;
 use crate::intersect::embree::user::{Callbacks, ID, TFAR, Table, callbacks_for, in_order};
 use crate::intersect::embree::width::Width;
 use crate::intersect::entry::Entry;
-use crate::scene::Scene;
+use crate::scene::{Instance, Scene};
 
-/// The instances that stand there as such.
+/// The instances that stand there as such, by ascending index.
 pub struct Placements {
     frame: Frame,
     placements: Vec<Placement>,
@@ -54,6 +54,15 @@ impl Placements {
         let entry = Entry::new(&scene.instances[instance as usize], &bounds);
         let inner = inner.0;
         self.placements.push(Placement { instance, inner, own, entry, bounds });
+    }
+
+    /// Moves the instance with this index, if it is one of them, to where it takes up `bounds`.
+    pub fn replace(&mut self, instance: &Instance, index: u32, bounds: Bounds) {
+        let at = self.placements.binary_search_by_key(&index, |placement| placement.instance);
+        if let Some(placement) = at.ok().and_then(|at| self.placements.get_mut(at)) {
+            placement.entry = Entry::new(instance, &bounds);
+            placement.bounds = bounds;
+        }
     }
 
     pub fn is_empty(&self) -> bool {

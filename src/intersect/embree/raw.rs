@@ -26,6 +26,13 @@ pub fn scene_handle(scene: &embree4_rs::Scene) -> sys::RTCScene {
     unsafe { words.add(if DEVICE == 0 { 1 } else { 0 }).read() }
 }
 
+/// Commits a scene again, of which geometries were changed and committed since.
+pub fn commit_again(scene: &embree4_rs::Scene) -> Result<()> {
+    // SAFETY: the handle is live.
+    unsafe { sys::rtcCommitScene(scene_handle(scene)) };
+    DeviceHandle::of(scene).check("placing what moved")
+}
+
 /// A reference of our own to a scene's device.
 pub struct DeviceHandle(pub sys::RTCDevice);
 
@@ -81,6 +88,17 @@ unsafe impl Send for InnerScene {}
 unsafe impl Sync for InnerScene {}
 // SAFETY: Embree lets any thread attach and release a geometry.
 unsafe impl Send for InstanceGeometry {}
+
+/// Moves the instance that a scene knows by `id`; the scene is to be committed again then.
+pub fn move_instance(scene: &embree4_rs::Scene, id: u32, columns: &[[f32; 3]; 4]) {
+    // SAFETY: the scene is live, and `id` one of its instances, which copies the twelve floats.
+    unsafe {
+        let handle = sys::rtcGetGeometry(scene_handle(scene), id);
+        let format = sys::RTCFormat::FLOAT3X4_COLUMN_MAJOR;
+        sys::rtcSetGeometryTransform(handle, 0, format, columns.as_ptr().cast());
+        sys::rtcCommitGeometry(handle);
+    }
+}
 
 /// A scene to be instanced, on a device that already has one.
 pub struct InnerScene(pub sys::RTCScene);

@@ -34,12 +34,21 @@ pub struct Entry {
 impl SphereTable {
     /// On the heap, since Embree keeps its address.
     pub fn new(scene: &Scene, frame: Frame) -> Box<Self> {
+        let mut table = Box::new(Self { frame, spheres: Vec::new() });
+        table.refresh(scene);
+        table
+    }
+
+    /// Takes over the spheres of a scene. Where they moved, or are more or fewer, Embree must be
+    /// told.
+    pub fn refresh(&mut self, scene: &Scene) {
         let entry = |(i, s): (u32, &crate::scene::Sphere)| Entry {
             center: s.center,
             radius: s.radius,
             blocks_light: scene.blocks_light(PrimitiveId::sphere(i)),
         };
-        Box::new(Self { frame, spheres: (0..).zip(&scene.spheres).map(entry).collect() })
+        self.spheres.clear();
+        self.spheres.extend((0..).zip(&scene.spheres).map(entry));
     }
 }
 

@@ -66,7 +66,8 @@ fn compare(width: Width, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let embree = Embree::with_width(&scene, precision, 1, Some(width), quality, None).unwrap();
+    let asked = Asked { precision, threads: 1, quality, width: Some(width), ..Asked::default() };
+    let embree = Embree::build_as(&scene, asked).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
         let mut hits = vec![None; rays.len()];

@@ -9,7 +9,7 @@ use embree4_sys as sys;
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::intersect::embree::frame::Frame;
-use crate::intersect::embree::raw::DeviceHandle;
+use crate::intersect::embree::raw::{DeviceHandle, scene_handle};
 
 pub type Intersect = unsafe extern "C" fn(*const sys::RTCIntersectFunctionNArguments);
 pub type Occluded = unsafe extern "C" fn(*const sys::RTCOccludedFunctionNArguments);
@@ -82,6 +82,18 @@ pub fn geometry<T: Table>(
     }
     device.check("making a geometry")?;
     Ok(geometry)
+}
+
+/// Tells Embree that primitives of a geometry moved, which the scene knows by `id`: they are as
+/// many as before, and `table` is where it was. The scene is to be committed again then.
+pub fn moved<T: Table>(scene: &embree4_rs::Scene, id: u32, table: &T) {
+    // SAFETY: the scene is live, and `id` one of its geometries; the rest is as in `geometry`. The
+    // address is set again since the one that Embree had does not outlast a change of the table.
+    unsafe {
+        let handle = sys::rtcGetGeometry(scene_handle(scene), id);
+        sys::rtcSetGeometryUserData(handle, std::ptr::from_ref(table).cast_mut().cast());
+        sys::rtcCommitGeometry(handle);
+    }
 }
 
 unsafe extern "C" fn bounds<T: Table>(args: *const sys::RTCBoundsFunctionArguments) {

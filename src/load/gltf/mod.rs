@@ -36,17 +36,18 @@ use crate::load::tally::Tally;
 use crate::scene::animation::Mover;
 use crate::scene::{Instance, MaterialId, MeshId, Scene};
 
-/// Loads a `.gltf` or `.glb` file, with the animation of that name or the first.
+/// Loads a `.gltf` or `.glb` file, with the animation of that name or the first; its pictures are
+/// read where they are `wanted`.
 ///
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
 /// the place in the JSON. When there is no such animation.
-pub fn load(path: &Path, animation: Option<&str>) -> Result<Scene> {
+pub fn load(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene> {
     let bytes = super::read(path)?;
-    import(path, &bytes, animation).map_err(|e| e.at(path))
+    import(path, &bytes, animation, wanted).map_err(|e| e.at(path))
 }
 
-fn import(path: &Path, bytes: &[u8], animation: Option<&str>) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], animation: Option<&str>, wanted: bool) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
     let root = document::parse(json)?;
     let mut tally = Tally::default();
@@ -58,7 +59,7 @@ fn import(path: &Path, bytes: &[u8], animation: Option<&str>) -> Result<Scene> {
     let mut importer = Importer {
         root: &root,
         accessors,
-        materials: Materials::new(&root, Textures::new(&root, &buffers)),
+        materials: Materials::new(&root, Textures::new(&root, &buffers, wanted)),
         meshes: HashMap::new(),
         scene: Scene::default(),
         clip,

@@ -58,15 +58,17 @@ impl UvMap {
 pub struct Textures<'a> {
     root: &'a json::Root,
     buffers: &'a Buffers<'a>,
+    /// Whether anything shows the pictures; otherwise they are only named.
+    wanted: bool,
     images: HashMap<usize, Arc<Image>>,
     /// Pictures that name the same file are decoded once.
     by_uri: HashMap<&'a str, Arc<Image>>,
 }
 
 impl<'a> Textures<'a> {
-    /// The textures of a file.
-    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, buffers, images: HashMap::new(), by_uri: HashMap::new() }
+    /// The textures of a file, whose pictures are read where they are `wanted`.
+    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>, wanted: bool) -> Self {
+        Self { root, buffers, wanted, images: HashMap::new(), by_uri: HashMap::new() }
     }
 
     /// A texture, its picture decoded. A picture that cannot be had is a warning, and a
@@ -127,13 +129,13 @@ impl<'a> Textures<'a> {
         let at = format!("images[{index}]");
         let read = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.buffers.resolve(uri) {
-                Ok(Target::Data(bytes)) => picture::decode(&bytes, &at),
-                Ok(Target::File(path)) => picture::read(&path),
+                Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, self.wanted),
+                Ok(Target::File(path)) => picture::read(&path, self.wanted),
                 Err(error) => Err(error),
             },
             (None, Some(view)) => {
                 let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"))?;
-                picture::decode(bytes, &at)
+                picture::decode(bytes, &at, self.wanted)
             }
             (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
         };

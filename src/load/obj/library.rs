@@ -24,15 +24,18 @@ const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 /// The materials that an OBJ file can name, each made when a face first uses it.
 #[derive(Default)]
 pub struct Library {
+    /// Whether anything shows the pictures; otherwise they are only named.
+    wanted: bool,
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     made: HashMap<String, MaterialId>,
     textures: HashMap<(PathBuf, bool), TextureId>,
 }
 
 impl Library {
-    /// Reads the files that an OBJ file's `mtllib` lines name, beside it in `folder`.
-    pub fn read(names: &[String], folder: &Path, tally: &mut Tally) -> Self {
-        let mut library = Self::default();
+    /// Reads the files that an OBJ file's `mtllib` lines name, beside it in `folder`; pictures are
+    /// read where they are `wanted`.
+    pub fn read(names: &[String], folder: &Path, wanted: bool, tally: &mut Tally) -> Self {
+        let mut library = Self { wanted, ..Self::default() };
         for name in names {
             let files = names_of_line(name).into_iter().map(|n| find(folder, &n));
             // A name may hold spaces, and a line several names.
@@ -156,7 +159,7 @@ impl Library {
         if let Some(&id) = self.textures.get(&key) {
             return Some(id);
         }
-        let image = picture::read(&key.0).unwrap_or_else(|error| {
+        let image = picture::read(&key.0, self.wanted).unwrap_or_else(|error| {
             tally.say(format!("{error}; a magenta checker takes its place"));
             picture::placeholder(map.file)
         });

@@ -23,22 +23,22 @@ use crate::load::repair::repair;
 use crate::load::tally::Tally;
 use crate::scene::{Instance, Mesh, Scene, Transfer};
 
-/// Loads an `.obj` file.
+/// Loads an `.obj` file; its pictures are read where they are `wanted`.
 ///
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(path: &Path) -> Result<Scene> {
+pub fn load(path: &Path, wanted: bool) -> Result<Scene> {
     let bytes = super::read(path)?;
-    import(path, &bytes).map_err(|e| e.at(path))
+    import(path, &bytes, wanted).map_err(|e| e.at(path))
 }
 
-fn import(path: &Path, bytes: &[u8]) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
     let mut tally = Tally::default();
     let text = lines::decode(bytes)?;
     let made = rewrite::rewrite(&text, &mut tally)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut library = Library::read(&made.libraries, folder, &mut tally);
+    let mut library = Library::read(&made.libraries, folder, wanted, &mut tally);
     let mut scene = Scene::default();
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     // No `mtllib` is left in the text.

@@ -16,6 +16,7 @@ mod names;
 mod report;
 mod resolve;
 mod schema;
+mod shown;
 mod source;
 mod spanned;
 mod suggest;
@@ -30,17 +31,18 @@ use crate::scene::Scene;
 
 pub use schema::schema;
 
-/// Loads a scene file, with the models and pictures that it names.
+/// Loads a scene file, with the models that it names, and `all` pictures or those that something
+/// shows.
 ///
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(path: &Path) -> Result<Scene> {
+pub fn load(path: &Path, all: bool) -> Result<Scene> {
     let bytes = super::read(path)?;
     let text = utf8(&bytes).map_err(|e| e.at(path))?;
     let source = source::Source::new(path, text);
     let tables = toml::from_str(text).map_err(|e| report::error(&source, e))?;
-    resolve::scene(&source, tables)
+    resolve::scene(&source, tables, all)
 }
 
 /// The text of a file, without the byte order mark that some editors put first.

@@ -28,7 +28,8 @@ impl Models {
         let part = match self.0.entry((same, animation.clone())) {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
-                let mut model = load::model(&path, animation.as_deref())?;
+                let wanted = resolver.shown.model(&path);
+                let mut model = load::model(&path, animation.as_deref(), wanted)?;
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
                 let is_still = resolver.scene.animation.is_none();

@@ -14,6 +14,7 @@ use super::light;
 use super::model::Models;
 use super::mover;
 use super::names::Names;
+use super::shown::Shown;
 use super::source::{Source, Span};
 use super::spanned::{At, Table};
 use super::suggest;
@@ -29,8 +30,8 @@ use crate::scene::{
     Transfer, Wrap,
 };
 
-/// The scene that the tables of a file describe.
-pub fn scene(source: &Source<'_>, tables: SceneTable) -> Result<Scene> {
+/// The scene that the tables of a file describe, with `all` pictures or those that something shows.
+pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -43,6 +44,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable) -> Result<Scene> {
     let mut resolver = Resolver {
         source,
         names: &names,
+        shown: Shown::of(source, &tables, all),
         rigs: &rigs,
         scene: Scene { film, animation, ..Scene::default() },
         materials: HashMap::new(),
@@ -83,6 +85,8 @@ fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
 pub struct Resolver<'a> {
     /// The file.
     pub source: &'a Source<'a>,
+    /// Which pictures something shows.
+    pub shown: Shown,
     /// Its objects with names.
     pub names: &'a Names,
     /// How they move.
@@ -93,8 +97,8 @@ pub struct Resolver<'a> {
     materials: HashMap<String, (MaterialId, Span)>,
     /// The material of what names none, once there is such a thing.
     plain: Option<MaterialId>,
-    /// The pictures read so far, by their canonical paths.
-    pictures: HashMap<PathBuf, TextureId>,
+    /// The pictures so far, by their canonical paths and whether they were read.
+    pictures: HashMap<(PathBuf, bool), TextureId>,
 }
 
 impl Resolver<'_> {
@@ -136,14 +140,15 @@ impl Resolver<'_> {
         let table = &table.value.0;
         let At { span, value: name } = &table.name;
         let default = Material::default();
+        let wanted = self.shown.material(name);
         let material = Material {
             name: name.clone(),
             diffuse: self.color(table.diffuse.as_ref().map(|c| c.value), default.diffuse),
-            diffuse_map: self.picture(table.diffuse_map.as_ref())?,
+            diffuse_map: self.picture(table.diffuse_map.as_ref(), wanted)?,
             specular: self.color(table.specular, default.specular),
             shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
             emission: self.color(table.emission, default.emission),
-            emission_map: self.picture(table.emission_map.as_ref())?,
+            emission_map: self.picture(table.emission_map.as_ref(), wanted)?,
             reflect: self.color(table.reflect.as_ref().map(|c| c.value), default.reflect),
             transmit: self.color(table.transmit.as_ref().map(|c| c.value), default.transmit),
             ior: table.ior.map_or(default.ior, |ior| ior.0),
@@ -180,17 +185,18 @@ impl Resolver<'_> {
         }
     }
 
-    /// The texture for a picture that a material names; a picture named twice is read once.
-    fn picture(&mut self, file: Option<&At<String>>) -> Result<Option<TextureId>> {
+    /// The texture for a picture that a material names; a picture named twice is read once, if it is
+    /// `wanted`.
+    fn picture(&mut self, file: Option<&At<String>>, wanted: bool) -> Result<Option<TextureId>> {
         let Some(At { span, value: name }) = file else {
             return Ok(None);
         };
         let path = self.source.file(name);
-        let same = path.canonicalize().unwrap_or_else(|_| path.clone());
+        let same = (path.canonicalize().unwrap_or_else(|_| path.clone()), wanted);
         if let Some(&texture) = self.pictures.get(&same) {
             return Ok(Some(texture));
         }
-        let image = picture::read(&path).map_err(|e| {
+        let image = picture::read(&path, wanted).map_err(|e| {
             let message = format!("the picture {}: {}", path.display(), e.message());
             self.source.error(span, message).help("a path is relative to the scene file's folder")
         })?;

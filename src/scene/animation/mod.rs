@@ -3,14 +3,17 @@
 mod check;
 mod curve;
 mod node;
+mod poses;
 
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, LightKind, Scene};
+use crate::geometry::Bounds;
+use crate::scene::{Camera, Light, Scene};
 
 pub use curve::{Curve, Interpolation, Value};
 pub use node::{Anchor, Keys, Motion, Node, NodeId, Orbit, Rotation};
+pub use poses::Poses;
 
 /// The most frames that an animation can have: eleven hours at 24 a second.
 pub const MAX_FRAMES: u32 = 1_000_000;
@@ -153,84 +156,25 @@ impl Scene {
     /// # Panics
     /// When the animation was not [checked](Scene::check).
     pub fn at(&self, time: f64) -> Result<Scene> {
-        let mut scene = self.clone();
-        let Some(animation) = scene.animation.take() else { return Ok(scene) };
-        let worlds = node::worlds(&animation.nodes, time);
-        let world = |node: &Option<NodeId>| {
-            node.map_or(DAffine3::IDENTITY, |NodeId(node)| worlds[node as usize])
-        };
-        let mut any_flat = false;
-        for mover in &animation.movers {
-            match mover {
-                Mover::Sphere { sphere, node, center, radius } => {
-                    let sphere = &mut scene.spheres[*sphere];
-                    sphere.center = world(node).transform_point3(*center);
-                    if let Some(radius) = radius {
-                        sphere.radius = radius.at(time);
-                    }
-                }
-                Mover::Instance { instance, node, transform } => {
-                    let instance = &mut scene.instances[*instance];
-                    instance.transform = world(&Some(*node)) * *transform;
-                    any_flat |= instance.is_flat();
-                }
-                Mover::Light { light, node, rest, direction: way, intensity } => {
-                    let mut rest = rest.clone();
-                    if let (
-                        LightKind::Directional { direction } | LightKind::Spot { direction, .. },
-                        Some(way),
-                    ) = (&mut rest.kind, way)
-                    {
-                        // Halfway between opposite directions there is none.
-                        *direction = way.at(time).try_normalize().unwrap_or(*direction);
-                    }
-                    if let Some(intensity) = intensity {
-                        rest.intensity *= intensity.at(time) as f32;
-                    }
-                    scene.lights[*light] = rest.placed(&world(node));
-                }
-                Mover::Camera { camera, node, rest, aim, lens } => {
-                    let posed = pose_camera(&world(node), rest, aim.as_ref(), &worlds, time)
-                        .map_err(|e| {
-                            let name = match &*rest.name {
-                                "" => camera.to_string(),
-                                name => format!("`{name}`"),
-                            };
-                            naming(&format!("at {time:.3} s, camera {name}"), &e)
-                        })?;
-                    let kind = lens.as_ref().map_or(rest.lens, |v| rest.lens.with(v.at(time)));
-                    scene.cameras[*camera] = Camera { lens: kind, ..posed };
-                }
-            }
-        }
-        if any_flat {
-            scene.instances.retain(|instance| !instance.is_flat());
-        }
-        Ok(scene)
+        let mut poses = Poses::new(self);
+        poses.pose(time)?;
+        Ok(poses.into_scene())
     }
-}
 
-fn pose_camera(
-    world: &DAffine3,
-    rest: &Camera,
-    aim: Option<&Aim>,
-    worlds: &[DAffine3],
-    time: f64,
-) -> Result<Camera> {
-    let Some(Aim { toward, up }) = aim else {
-        return rest.placed(world).ok_or_else(|| {
-            Error::input("its transform is too uneven to leave it an upward direction")
-        });
-    };
-    let position = world.transform_point3(rest.position);
-    let forward = match toward {
-        Toward::Anchor(anchor) => anchor.at(worlds) - position,
-        Toward::Points(points) => points.at(time) - position,
-        Toward::Directions(directions) => directions.at(time),
-    };
-    // From the origin, so that a position far out does not round the direction.
-    let posed = Camera::look_at(DVec3::ZERO, forward, *up, rest.lens)?;
-    Ok(Camera { name: rest.name.clone(), position, ..posed })
+    /// The box around the scene wherever it moves, as seen at some moments of its animation.
+    ///
+    /// # Panics
+    /// When the animation was not [checked](Scene::check).
+    pub fn bounds_over_time(&self) -> Bounds {
+        /// At how many times an animation is looked at.
+        const MOMENTS: u32 = 24;
+        let boxes = self.mesh_bounds();
+        let Some(animation) = &self.animation else { return self.bounds_with(&boxes) };
+        let moment = |i: u32| animation.seconds() * f64::from(i) / f64::from(MOMENTS);
+        let mut poses = Poses::new(self);
+        let mut bounds = |i| Some(poses.pose(moment(i)).ok()?.bounds_with(&boxes));
+        (0..=MOMENTS).filter_map(&mut bounds).fold(Bounds::EMPTY, Bounds::union)
+    }
 }
 
 /// The same error, with what it is about before it.

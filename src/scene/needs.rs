@@ -1,0 +1,306 @@
+//! What work a scene needs, and why the rest can be left out.
+
+use glam::Vec3;
+
+use crate::error::{Error, Result};
+use crate::scene::{Image, Material, Scene};
+
+/// A kind of work that not every scene needs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[repr(u8)]
+pub enum Work {
+    /// A geometry of spheres, which every ray is tried against.
+    Spheres,
+    /// Spaces of their own for meshes.
+    Instances,
+    /// Planes, which every ray is tried against.
+    Planes,
+    /// Reading and decoding pictures.
+    Pictures,
+    /// Texture coordinates.
+    Uv,
+    /// Checkers on planes.
+    Checkers,
+    /// Colours of vertices.
+    VertexColors,
+    /// Normals of vertices.
+    SmoothNormals,
+    /// Phong's highlights.
+    Highlights,
+    /// Rays to lights.
+    Shadows,
+    /// Rays off mirrors and glass.
+    Reflection,
+    /// Rays through glass, and the bodies that they are in.
+    Refraction,
+}
+
+impl Work {
+    /// All kinds, in the order in which they are listed.
+    pub const ALL: [Self; 12] = [
+        Self::Spheres,
+        Self::Instances,
+        Self::Planes,
+        Self::Pictures,
+        Self::Uv,
+        Self::Checkers,
+        Self::VertexColors,
+        Self::SmoothNormals,
+        Self::Highlights,
+        Self::Shadows,
+        Self::Reflection,
+        Self::Refraction,
+    ];
+
+    /// What it is called in flags and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Spheres => "spheres",
+            Self::Instances => "instances",
+            Self::Planes => "planes",
+            Self::Pictures => "pictures",
+            Self::Uv => "uv",
+            Self::Checkers => "checkers",
+            Self::VertexColors => "vertex-colors",
+            Self::SmoothNormals => "smooth-normals",
+            Self::Highlights => "highlights",
+            Self::Shadows => "shadows",
+            Self::Reflection => "reflection",
+            Self::Refraction => "refraction",
+        }
+    }
+}
+
+/// Which kinds of work are left out where a scene has no need of them: all of them, by default.
+///
+/// Without one the picture is the same in precision `certified`, bit for bit, and takes longer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Skips {
+    /// A bit for each kind.
+    off: u16,
+}
+
+impl Default for Skips {
+    /// All.
+    fn default() -> Self {
+        Self { off: 0 }
+    }
+}
+
+impl Skips {
+    /// None: all work is done, whether a scene needs it or not.
+    pub const NONE: Self = Self { off: u16::MAX };
+
+    /// All but those with these names; `all` names each.
+    ///
+    /// # Errors
+    /// When a name is none of them.
+    pub fn without(names: &[impl AsRef<str>]) -> Result<Self> {
+        names.iter().try_fold(Self::default(), |skips, name| match name.as_ref() {
+            "all" => Ok(Self::NONE),
+            name => match Work::ALL.into_iter().find(|work| work.name() == name) {
+                Some(work) => Ok(Self { off: skips.off | 1 << work as u8 }),
+                None => {
+                    let names: Vec<&str> = Work::ALL.into_iter().map(Work::name).collect();
+                    Err(Error::input(format!("no kind of work is called `{name}`"))
+                        .help(format!("they are {}, and all", names.join(", "))))
+                }
+            },
+        })
+    }
+
+    /// Whether a kind of work is done where there is, or is no, need of it.
+    pub fn does(self, work: Work, needed: bool) -> bool {
+        needed || !self.has(work)
+    }
+
+    /// Whether a kind of work is left out where there is no need of it.
+    pub fn has(self, work: Work) -> bool {
+        self.off & 1 << work as u8 == 0
+    }
+}
+
+/// What of the work a scene needs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// For each kind of work, how many things need it, and of how many.
+    counts: [(u64, u64); Work::ALL.len()],
+    skips: Skips,
+}
+
+impl Needs {
+    /// What a checked scene needs, where `skips` may be left out.
+    pub fn of(scene: &Scene, skips: Skips) -> Self {
+        let materials: Vec<&Material> = scene.materials_in_use().collect();
+        let mut uses = vec![0u64; scene.meshes.len()];
+        scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
+        let standing = || scene.meshes.iter().zip(&uses).filter(|(_, uses)| **uses > 0);
+        let shown = pictures(scene, materials.iter().copied()).len() as u64;
+        let made_of = |is: fn(&Material) -> bool| {
+            (materials.iter().filter(|m| is(m)).count() as u64, materials.len() as u64)
+        };
+        let count = |n: usize| (n as u64, n as u64);
+        let among = |some: usize, all: usize| (some as u64, all as u64);
+        let meshes = standing().count();
+        let counts = Work::ALL.map(|work| match work {
+            Work::Spheres => count(scene.spheres.len()),
+            Work::Instances => among(uses.iter().filter(|&&n| n > 1).count(), meshes),
+            Work::Planes => count(scene.planes.len()),
+            Work::Pictures => (shown, pictures(scene, scene.materials.iter()).len() as u64),
+            Work::Uv => made_of(Material::is_textured),
+            Work::Checkers => {
+                let checkers = scene.planes.iter().filter(|p| p.checker.is_some());
+                among(checkers.count(), scene.planes.len())
+            }
+            Work::VertexColors => {
+                among(standing().filter(|(mesh, _)| !mesh.colors.is_empty()).count(), meshes)
+            }
+            Work::SmoothNormals => {
+                among(standing().filter(|(mesh, _)| !mesh.normals.is_empty()).count(), meshes)
+            }
+            Work::Highlights => made_of(|m| m.specular != Vec3::ZERO),
+            Work::Shadows => {
+                let casting = scene.lights.iter().filter(|light| light.casts_shadow());
+                among(casting.count(), scene.lights.len())
+            }
+            Work::Reflection => made_of(Material::is_followed),
+            Work::Refraction => made_of(|m| m.transmit != Vec3::ZERO),
+        });
+        Self { counts, skips }
+    }
+
+    /// Whether work must be done: the scene needs it, or it is not to be left out.
+    pub fn must(&self, work: Work) -> bool {
+        self.skips.does(work, self.counts[work as usize].0 > 0)
+    }
+
+    /// The work that is done though the scene may have no need of it, with what it is done for.
+    pub fn done(&self) -> impl Iterator<Item = (Work, String)> {
+        self.filtered(true)
+    }
+
+    /// The work that is left out, with why it may be.
+    pub fn skipped(&self) -> impl Iterator<Item = (Work, String)> {
+        self.filtered(false)
+    }
+
+    fn filtered(&self, done: bool) -> impl Iterator<Item = (Work, String)> {
+        let chosen = Work::ALL.into_iter().filter(move |&work| self.must(work) == done);
+        chosen.map(|work| (work, self.reason(work)))
+    }
+
+    /// How many things of the scene need it.
+    fn reason(&self, work: Work) -> String {
+        let (some, all) = self.counts[work as usize];
+        let of = |what: &str, does: &str| match all {
+            0 => format!("there are no {what}"),
+            _ => format!("{some} of {all} {what} {does}"),
+        };
+        match work {
+            Work::Spheres => of("spheres", "are user geometry"),
+            Work::Instances => of("meshes", "stand more than once"),
+            Work::Planes => of("planes", "are tried"),
+            Work::Pictures => of("pictures", "are on a material in use"),
+            Work::Uv => of("materials in use", "have a picture"),
+            Work::Checkers => of("planes", "have a checker"),
+            Work::VertexColors => of("meshes", "have colours"),
+            Work::SmoothNormals => of("meshes", "have normals"),
+            Work::Highlights => of("materials in use", "have a highlight"),
+            Work::Shadows => of("lights", "cast shadows"),
+            Work::Reflection => of("materials in use", "are mirrors or glass"),
+            Work::Refraction => of("materials in use", "let light through"),
+        }
+    }
+}
+
+/// The pictures that materials show, each once.
+pub(in crate::scene) fn pictures<'a>(
+    scene: &'a Scene,
+    materials: impl Iterator<Item = &'a Material>,
+) -> Vec<&'a Image> {
+    let maps = materials.flat_map(|m| [m.diffuse_map, m.emission_map]).flatten();
+    let mut found: Vec<&Image> = maps.map(|map| &*scene.textures[map.0 as usize].image).collect();
+    found.sort_by_key(|image| std::ptr::from_ref(*image));
+    found.dedup_by_key(|image| std::ptr::from_ref(*image));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Instance, Mesh, Plane, Sphere};
+    use glam::{DAffine3, DVec3};
+
+    fn skipped(scene: &Scene, skips: Skips) -> Vec<&'static str> {
+        Needs::of(scene, skips).skipped().map(|(work, _)| work.name()).collect()
+    }
+
+    fn ball() -> Scene {
+        let mut scene = Scene::default();
+        let material = scene.add_material(Material::default());
+        scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, material));
+        scene
+    }
+
+    #[test]
+    fn each_kind_has_its_own_bit_and_name() {
+        for (i, work) in Work::ALL.into_iter().enumerate() {
+            assert_eq!(work as usize, i);
+            let skips = Skips::without(&[work.name()]).unwrap();
+            let off: Vec<Work> = Work::ALL.into_iter().filter(|&w| !skips.has(w)).collect();
+            assert_eq!(off, [work]);
+        }
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_refused_with_those_that_are() {
+        let error = Skips::without(&["sphere"]).unwrap_err();
+        assert!(error.message().contains("`sphere`"), "{error}");
+        assert!(error.advice().is_some_and(|help| help.contains("vertex-colors, smooth-normals")));
+    }
+
+    #[test]
+    fn an_empty_scene_needs_nothing() {
+        assert_eq!(Needs::of(&Scene::default(), Skips::default()).done().count(), 0);
+    }
+
+    #[test]
+    fn a_ball_needs_user_geometry_and_no_more() {
+        let needs = Needs::of(&ball(), Skips::default());
+        let done: Vec<_> = needs.done().collect();
+        assert_eq!(done, [(Work::Spheres, "1 of 1 spheres are user geometry".to_owned())]);
+    }
+
+    #[test]
+    fn what_is_not_to_be_skipped_is_done() {
+        let skips = Skips::without(&["uv", "planes"]).unwrap();
+        let all = skipped(&ball(), Skips::default());
+        let rest: Vec<_> =
+            all.into_iter().filter(|name| !["uv", "planes"].contains(name)).collect();
+        assert_eq!(skipped(&ball(), skips), rest);
+        assert_eq!(skipped(&ball(), Skips::NONE), [""; 0]);
+    }
+
+    #[test]
+    fn materials_that_nothing_is_made_of_need_nothing() {
+        let mut scene = ball();
+        let glass = Material { transmit: Vec3::ONE, specular: Vec3::ONE, ..Material::default() };
+        let glass = scene.add_material(glass);
+        assert!(skipped(&scene, Skips::default()).contains(&"refraction"));
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
+        for name in ["refraction", "reflection", "highlights", "planes"] {
+            assert!(!skipped(&scene, Skips::default()).contains(&name), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_that_stands_twice_needs_an_instance_level() {
+        let mut scene = ball();
+        let mesh = scene.add_mesh(Mesh::default());
+        let material = scene.spheres[0].material;
+        for expected in [true, false] {
+            scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+            assert_eq!(skipped(&scene, Skips::default()).contains(&"instances"), expected);
+        }
+    }
+}
