@@ -203,6 +203,10 @@ pub struct Info {
 }
 
 #[derive(Args)]
+#[command(after_help = "\
+FLIP (Andersson et al. 2020) says how far the pictures differ to somebody who flips between them, from \
+0 to 1, on a screen with 67 pixels in a degree of the view. An EXR is shown clamped to [0, 1], as \
+sRGB; views other than beauty have none.")]
 pub struct Diff {
     /// A picture, .png or .exr
     pub a: PathBuf,
