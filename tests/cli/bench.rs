@@ -159,6 +159,26 @@ fn bench_leaves_out_what_has_no_time_and_says_why() {
     assert!(html.contains("<h2>Left out</h2>"));
 }
 
+/// Of two floors in one plane Embree's f32 rays find either.
+#[test]
+#[cfg(feature = "embree")]
+fn bench_counts_hits_that_are_not_the_certified_ones() {
+    let folder = Folder::new();
+    folder.write("floor.obj", "v -9 0 9\nv 9 0 9\nv 9 0 -9\nv -9 0 -9\nf 1 2 3 4\n");
+    let scene = "[camera]\nposition = [0, 3, 5]\nlook_at = [0, 0, 0]\n\
+                 [[model]]\nfile = \"floor.obj\"\n\
+                 [[model]]\nfile = \"floor.obj\"\nrotate = [0, 33, 0]\n";
+    folder.write("floors.toml", scene);
+    folder.run("bench floors.toml --out out --quick --runs 1 --size 100x50").good();
+    let report = json(&folder);
+    let wrong = |setup: [&str; 2]| {
+        let row = rows(&report).iter().find(|r| setup == [&r["backend"], &r["precision"]]).unwrap();
+        row["hits_wrong"].as_u64().unwrap()
+    };
+    assert!(wrong(["embree", "fast"]) > 100);
+    assert_eq!(wrong(["embree", "certified"]) + wrong(["rust", "certified"]), 0);
+}
+
 #[test]
 fn bench_tries_only_the_backend_asked_for() {
     let report = json(&benched(SPHERE, "--quick --backend rust"));

@@ -12,6 +12,7 @@ mod page;
 mod plot;
 mod reference;
 mod report;
+mod table;
 mod trial;
 
 use std::cell::Cell;

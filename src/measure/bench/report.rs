@@ -1,6 +1,5 @@
-//! What a bench found: rows, pictures, and the table of them.
+//! What a bench found: rows and pictures.
 
-use std::fmt;
 use std::time::Duration;
 
 use serde::Serialize;
@@ -147,7 +146,7 @@ impl Report {
         let (mut modes, mut left_out) = (Vec::new(), Vec::new());
         for trial in trials {
             for attempt in &trial.modes {
-                match Row::new(attempt, &trial.builds, trial.wrong_hits) {
+                match Row::new(attempt, &trial) {
                     Some(row) => modes.push(row),
                     None => left_out.push(LeftOut {
                         mode: attempt.mode.name(),
@@ -181,31 +180,6 @@ impl Report {
             plates,
         }
     }
-
-    /// The rows as comma-separated values, with a line of names first.
-    pub fn csv(&self) -> String {
-        let mut text = "backend,precision,spp,runs,build_ms,render_ms,total_ms,rmse,max,flip,\
-                        hits_wrong,standing\n"
-            .to_owned();
-        for r in &self.modes {
-            text += &format!(
-                "{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                r.backend,
-                r.precision,
-                r.spp,
-                r.runs,
-                r.build_ms,
-                r.render_ms,
-                r.total_ms,
-                r.rmse,
-                r.max,
-                r.flip,
-                r.hits_wrong,
-                r.standing.name()
-            );
-        }
-        text
-    }
 }
 
 impl Row {
@@ -215,10 +189,10 @@ impl Row {
     }
 
     /// None where the mode was not run.
-    fn new(attempt: &Attempt, builds: &[Duration], hits_wrong: u64) -> Option<Self> {
+    fn new(attempt: &Attempt, trial: &Trial) -> Option<Self> {
         let distance = attempt.distance.as_ref()?;
         let Mode { setup: Setup { backend, precision }, spp } = attempt.mode;
-        let (build_ms, render_ms) = (median(builds), median(&attempt.renders));
+        let (build_ms, render_ms) = (median(&trial.builds), median(&attempt.renders));
         Some(Self {
             mode: attempt.mode.name(),
             backend: backend.name(),
@@ -227,11 +201,11 @@ impl Row {
             runs: attempt.renders.len(),
             build_ms,
             render_ms,
-            total_ms: build_ms + render_ms,
+            total_ms: whole_nanoseconds(build_ms + render_ms),
             rmse: distance.radiance.rmse,
             max: distance.radiance.max,
             flip: distance.flip.mean,
-            hits_wrong,
+            hits_wrong: trial.wrong_hits?,
             standing: Standing::Front,
             dominated_by: None,
         })
@@ -256,7 +230,12 @@ fn judge(rows: &mut [Row]) {
 }
 
 fn milliseconds(time: Duration) -> f64 {
-    time.as_secs_f64() * 1e3
+    whole_nanoseconds(time.as_secs_f64() * 1e3)
+}
+
+/// Milliseconds without digits that no clock gave.
+fn whole_nanoseconds(milliseconds: f64) -> f64 {
+    (milliseconds * 1e6).round() / 1e6
 }
 
 /// The median in milliseconds, of an even number of times the mean of the two in the middle; 0 of
@@ -267,42 +246,6 @@ fn median(times: &[Duration]) -> f64 {
     let middle = times.len().saturating_sub(1) / 2..times.len() / 2 + 1;
     let middle = times.get(middle).unwrap_or_default();
     middle.iter().sum::<f64>() / middle.len().max(1) as f64
-}
-
-/// The rows for a person.
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "mode                      runs   build ms  render ms   RMSE      max       FLIP      wrong  \
-             standing"
-        )?;
-        for r in &self.modes {
-            write!(
-                f,
-                "{:24} {:5} {:10.1} {:10.1}   {:.2e}  {:.2e}  {:.6} {:7}  {}",
-                r.mode,
-                r.runs,
-                r.build_ms,
-                r.render_ms,
-                r.rmse,
-                r.max,
-                r.flip,
-                r.hits_wrong,
-                r.standing.name()
-            )?;
-            match &r.dominated_by {
-                Some(by) => writeln!(f, " by {by}")?,
-                None => writeln!(f)?,
-            }
-        }
-        for LeftOut { mode, reason } in &self.left_out {
-            writeln!(f, "{mode:24} left out: {reason}")?;
-        }
-        let Stated { mode, build_ms, render_ms, .. } = &self.reference;
-        let seconds = (build_ms + render_ms) * 1e-3;
-        writeln!(f, "reference: {mode}, in {seconds:.2} s")
-    }
 }
 
 #[cfg(test)]

@@ -23,8 +23,8 @@ pub struct Trial<'a> {
     pub builds: Vec<Duration>,
     /// How long one sample of every pixel takes, as far as is known.
     pace: Duration,
-    /// Pixels whose ray hits something else than the reference's.
-    pub wrong_hits: u64,
+    /// Pixels whose ray hits something else than the reference's, once a mode was run.
+    pub wrong_hits: Option<u64>,
     /// In the order of the samples.
     pub modes: Vec<Attempt>,
 }
@@ -51,7 +51,7 @@ impl<'a> Trial<'a> {
         };
         let modes = options.spp.iter().map(attempt).collect();
         let (builds, pace) = (Vec::new(), Duration::ZERO);
-        Self { scene, options, setup, builds, pace, wrong_hits: 0, modes }
+        Self { scene, options, setup, builds, pace, wrong_hits: None, modes }
     }
 
     /// Builds the setup, and runs each of its modes once that still has time.
@@ -62,7 +62,7 @@ impl<'a> Trial<'a> {
             let build = start.elapsed();
             self.builds.push(build);
             if self.builds.len() == 1 {
-                self.look_ahead(&*intersector, build, reference);
+                self.look_ahead(&*intersector);
             }
             for i in 0..self.modes.len() {
                 if self.has_time(&self.modes[i], build) {
@@ -76,8 +76,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    /// In the first round: how long a sample takes, from a small picture, and what the rays hit.
-    fn look_ahead(&mut self, by: &dyn Intersector, build: Duration, reference: &Reference) {
+    /// Finds out from a small picture how long a sample takes.
+    fn look_ahead(&mut self, by: &dyn Intersector) {
         let size = self.scene.film.size.map(|n| n.div_ceil(PROBE));
         let [whole, part] = [self.scene.film.size, size].map(|[w, h]| f64::from(w) * f64::from(h));
         let mut small = self.scene.clone();
@@ -85,9 +85,6 @@ impl<'a> Trial<'a> {
         // Once to warm up.
         let [_, (_, time)] = [(); 2].map(|()| self.render(&small, by));
         self.pace = time.mul_f64(whole / part);
-        if self.modes.iter().any(|attempt| self.has_time(attempt, build)) {
-            self.wrong_hits = reference.wrong_hits(self.scene, self.options.camera, by);
-        }
     }
 
     fn run(
@@ -101,6 +98,8 @@ impl<'a> Trial<'a> {
         let scene = Scene { film: mode.film(&self.scene.film), ..self.scene.clone() };
         let (film, time) = self.render(&scene, by);
         self.pace = time / mode.samples();
+        let (whole, camera) = (self.scene, self.options.camera);
+        self.wrong_hits.get_or_insert_with(|| reference.wrong_hits(whole, camera, by));
         let attempt = &mut self.modes[index];
         attempt.renders.push(time);
         attempt.spent += build + time;
