@@ -102,7 +102,7 @@ fn bare_criterion<const W: usize>(c: &mut Criterion, case: &Case) {
         (packets::<W>(&case.primary, center), packets::<W>(&case.shadow, center));
     let mut group = c.benchmark_group(format!("{} primary", case.name));
     group.throughput(Throughput::Elements(case.primary.len() as u64));
-    group.bench_function(&name, |b| b.iter(|| black_box(bare.closest(&primary))));
+    group.bench_function(&name, |b| b.iter(|| black_box(bare.closest(&primary, true))));
     group.finish();
     let mut group = c.benchmark_group(format!("{} shadow", case.name));
     group.throughput(Throughput::Elements(case.shadow.len() as u64));
@@ -124,7 +124,7 @@ fn ratios<const W: usize>(case: &Case) {
         W,
         case.primary.len(),
         || closest(&embree, &case.primary, &mut hits),
-        || _ = black_box(bare.closest(&primary)),
+        || _ = black_box(bare.closest(&primary, true)),
     );
     report(
         &format!("{} shadow", case.name),
@@ -137,7 +137,7 @@ fn ratios<const W: usize>(case: &Case) {
     let blocked = blocked.iter().filter(|&&b| b).count();
     println!(
         "  hits: ours {found}, bare {}; blocked: ours {blocked}, bare {}",
-        bare.closest(&primary),
+        bare.closest(&primary, true),
         bare.occluded(&shadow)
     );
 }

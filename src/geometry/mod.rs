@@ -13,6 +13,7 @@ mod exact;
 mod hit;
 pub mod plane;
 mod ray;
+mod rays;
 pub mod sphere;
 pub mod triangle;
 
@@ -20,3 +21,4 @@ pub use bounds::Bounds;
 pub use estimate::Estimate;
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use ray::{Departure, Passage, Ray, Side};
+pub use rays::{Found, Hits, LANES, Lanes, Lines, Rays};

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Departure, Hit, Ray, Side};
+use crate::geometry::{Departure, Hit, Hits, Ray, Rays, Side};
 use crate::integrator::bodies::{Around, Interiors};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
@@ -48,16 +48,11 @@ impl Integrator<'_> {
     /// middle, whatever else is traced with them.
     pub(super) fn follow(&self, scratch: &mut Scratch, counts: &mut Counts) {
         let Scratch { wave, sample, next, .. } = scratch;
-        sample.clear();
-        sample.resize(wave.rays.len(), Vec3::ZERO);
-        wave.paths.clear();
-        wave.paths.extend((0..).zip(&wave.rays).map(|(sample, ray)| {
-            let inside = match &self.eye {
-                Some(inside) => inside.clone(),
-                None => self.bodies.holding(ray.origin, self.scene, self.intersector),
-            };
-            Path { sample, depth: 0, throughput: DVec3::ONE, inside }
-        }));
+        if self.may_pass_first {
+            wave.paths = (0..wave.rays.len()).map(|i| self.path(wave, i)).collect();
+            sample.clear();
+            sample.resize(wave.rays.len(), Vec3::ZERO);
+        }
         next.clear();
         self.finish(scratch, counts);
         let mut waiting = vec![std::mem::take(&mut scratch.next)];
@@ -76,7 +71,7 @@ impl Integrator<'_> {
                     false => &mut counts.rays.reflection,
                 };
                 *of_kind += 1;
-                wave.rays.push(next.ray);
+                wave.rays.push(&next.ray);
                 wave.paths.push(next.path);
             }
             if wave.rays.is_empty() {
@@ -90,14 +85,32 @@ impl Integrator<'_> {
         }
     }
 
+    /// Where ray `i` of a wave comes from, and what it is worth.
+    pub(super) fn path(&self, wave: &Wave, i: usize) -> Path {
+        if let Some(path) = wave.paths.get(i) {
+            return path.clone();
+        }
+        let inside = match &self.eye {
+            Some(inside) => inside.clone(),
+            None => {
+                let origin = wave.rays.ray(i).origin;
+                self.bodies.holding(origin, self.scene, self.intersector)
+            }
+        };
+        Path { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside }
+    }
+
     /// Adds what the rays of a wave bring back to their samples, and sends on what goes on from
     /// there, to `scratch.next`.
     fn finish(&self, scratch: &mut Scratch, counts: &mut Counts) {
         let Scratch { wave, light, sample, next, .. } = scratch;
-        if self.transmits {
+        if self.transmits && !wave.paths.is_empty() {
             self.pass_clear(wave, counts);
         }
         self.shade(wave, light, counts);
+        if wave.paths.is_empty() {
+            light.take_samples(sample, counts);
+        }
         for (radiance, path) in light.radiance.iter().zip(&wave.paths) {
             let to = &mut sample[path.sample as usize];
             if !to.is_nan() && !radiance.is_nan() {
@@ -111,10 +124,11 @@ impl Integrator<'_> {
                 *to = Vec3::NAN;
             }
         }
-        for (i, surface) in &light.bounces {
-            let i = *i as usize;
-            if let Some(hit) = &wave.hits[i] {
-                self.send_on(&wave.rays[i], hit, surface, &wave.paths[i], next);
+        for &i in &light.bounces {
+            let (i, ray) = (i as usize, wave.rays.ray(i as usize));
+            if let Some(hit) = &wave.hits.get(i) {
+                let surface = Surface::new(self.scene, &ray, hit);
+                self.send_on(&ray, hit, &surface, &self.path(wave, i), next);
             }
         }
     }
@@ -123,36 +137,35 @@ impl Integrator<'_> {
     /// way. They go on in the same wave, so that nothing tells that something was there.
     fn pass_clear(&self, wave: &mut Wave, counts: &mut Counts) {
         let Wave { rays, hits, paths } = wave;
-        let (mut passed, mut ahead, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut passed, mut ahead, mut found) = (Vec::new(), Rays::default(), Hits::default());
         let mut open: Vec<u32> = (0..rays.len() as u32).collect();
         while !open.is_empty() {
             passed.clear();
             ahead.clear();
             for &i in &open {
                 let at = i as usize;
-                let (ray, path) = (&mut rays[at], &mut paths[at]);
-                let end = hits[at].map_or(f64::INFINITY, |hit| hit.t);
-                path.throughput *= self.absorbed(ray, end, &path.inside);
-                let Some(hit) = &hits[at] else { continue };
+                let (ray, path, hit) = (rays.ray(at), &mut paths[at], hits.get(at));
+                let end = hit.map_or(f64::INFINITY, |hit| hit.t);
+                path.throughput *= self.absorbed(&ray, end, &path.inside);
+                let Some(hit) = &hit else { continue };
                 let material = &self.scene.materials[self.scene.material_of(hit.id).0 as usize];
                 if material.transmit == Vec3::ZERO {
                     continue;
                 }
-                let surface = Surface::new(self.scene, ray, hit);
+                let surface = Surface::new(self.scene, &ray, hit);
                 let around = self.bodies.around(hit.id, surface.side, &path.inside);
                 if self.is_clear(material, &around) {
-                    *ray = ray.beyond(hit, surface.side.opposite());
+                    let beyond = ray.beyond(hit, surface.side.opposite());
+                    rays.set(at, &beyond);
                     path.inside = around.behind;
                     passed.push(i);
-                    ahead.push(*ray);
+                    ahead.push(&beyond);
                 }
             }
-            found.clear();
-            found.resize(ahead.len(), None);
-            self.intersector.closest(&ahead, Coherence::Incoherent, &mut found);
+            self.intersector.closest_of(&ahead, Coherence::Incoherent, &mut found);
             counts.rays.refraction += ahead.len() as u64;
-            for (&i, &hit) in passed.iter().zip(&found) {
-                hits[i as usize] = hit;
+            for (&i, hit) in passed.iter().zip(found.iter()) {
+                hits.set(i as usize, hit);
             }
             std::mem::swap(&mut open, &mut passed);
         }

@@ -7,8 +7,10 @@
 //! order, whatever the tiles and threads.
 
 mod bodies;
+mod clearance;
 mod counts;
 mod follow;
+mod look;
 #[cfg(test)]
 mod reversal;
 mod samples;
@@ -20,13 +22,15 @@ mod tiling;
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{Geometry, Hit, Ray};
+use crate::geometry::{Geometry, Hit, Hits, LANES, Lanes, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{Camera, FilmSettings, RayMaker, Scene};
+use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
 use crate::surface::Surface;
 use bodies::{Bodies, Interiors};
+use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts};
 use follow::{Next, Path};
+use look::{Look, has_detail};
 pub use samples::sample_positions;
 use shade::Light;
 pub use tiling::Tiling;
@@ -44,15 +48,27 @@ pub struct Integrator<'a> {
     follows: bool,
     /// Whether any surface lets light through.
     transmits: bool,
+    /// Whether textures, checkers or vertex colours are asked for anywhere.
+    has_detail: bool,
+    /// How each material looks.
+    looks: Vec<Look>,
+    /// What the processor can do at once.
+    arch: pulp::Arch,
     bodies: Bodies,
     /// The bodies that the eye is in, if it is one point.
     eye: Option<Interiors>,
+    /// Whether rays from the eye may be absorbed, or meet what is no surface for them.
+    may_pass_first: bool,
+    /// Where light may go through anything on its way to a surface.
+    clearance: Clearance,
 }
 
 /// Memory that a thread uses again and again.
 #[derive(Default)]
 pub struct Scratch {
     at: Vec<u32>,
+    /// Columns and rows of the same pixels.
+    places: Vec<[Lanes<f64>; 2]>,
     wave: Wave,
     light: Light,
     next: Vec<Next>,
@@ -62,9 +78,10 @@ pub struct Scratch {
 /// Rays that go through the intersector together, and what they hit.
 #[derive(Default)]
 struct Wave {
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    /// Where each ray comes from and what it is worth; empty where no ray is followed.
+    rays: Rays,
+    hits: Hits,
+    /// Where each ray comes from and what it is worth; empty where all are whole samples, from an
+    /// eye that is one point.
     paths: Vec<Path>,
 }
 
@@ -88,7 +105,30 @@ impl<'a> Integrator<'a> {
             true => Some(Interiors::default()),
             false => rays.eye().map(|eye| bodies.holding(eye, scene, intersector)),
         };
-        Self { scene, intersector, rays, view, tiling, samples, follows, transmits, bodies, eye }
+        Self {
+            scene,
+            intersector,
+            rays,
+            view,
+            tiling,
+            samples,
+            follows,
+            transmits,
+            has_detail: has_detail(scene),
+            looks: scene.materials.iter().map(Look::of).collect(),
+            arch: pulp::Arch::new(),
+            may_pass_first: match &eye {
+                Some(eye) => {
+                    // In empty space nothing hides a surface.
+                    let is_clear = |m: &Material| m.is_clear_in(1.0);
+                    *eye != Interiors::default() || scene.materials_in_use().any(is_clear)
+                }
+                None => true,
+            },
+            clearance: Clearance::of(scene),
+            bodies,
+            eye,
+        }
     }
 
     /// Makes the rows of the strip that begins at row `first`; `pixels` are whole rows.
@@ -108,8 +148,9 @@ impl<'a> Integrator<'a> {
                     }
                 }
             }
+            scratch.find_places(width, first);
             for sample in &self.samples {
-                self.sample(*sample, first, pixels, scratch, &mut counts);
+                self.sample(*sample, pixels, scratch, &mut counts);
             }
         }
         if self.view == View::Beauty {
@@ -123,24 +164,20 @@ impl<'a> Integrator<'a> {
     fn sample(
         &self,
         [dx, dy]: [f64; 2],
-        first: usize,
         pixels: &mut [Pixel],
         scratch: &mut Scratch,
         counts: &mut Counts,
     ) {
-        let width = self.scene.film.size[0] as usize;
-        let Scratch { at, wave, .. } = scratch;
-        wave.rays.clear();
-        wave.rays.extend(at.iter().map(|&at| {
-            let (x, y) = (at as usize % width, first + at as usize / width);
-            self.rays.through(x as f64 + dx, y as f64 + dy)
-        }));
+        let Scratch { at, places, wave, .. } = scratch;
+        self.arch.dispatch(Aim { at: &self.rays, places, offset: [dx, dy], rays: &mut wave.rays });
+        wave.rays.truncate(at.len());
+        wave.paths.clear();
         wave.trace(self.intersector, Coherence::Coherent);
         counts.rays.primary += wave.rays.len() as u64;
-        counts.hits += wave.hits.iter().flatten().count() as u64;
+        counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
-            for ((&at, ray), hit) in at.iter().zip(&wave.rays).zip(&wave.hits) {
-                pixels[at as usize] = self.debug(ray, hit.as_ref());
+            for (i, &at) in at.iter().enumerate() {
+                pixels[at as usize] = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
             }
             return;
         }
@@ -149,8 +186,7 @@ impl<'a> Integrator<'a> {
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
-            std::mem::swap(sample, &mut light.radiance);
-            light.spoilt.drain(..).for_each(|(_, cause)| cause.count(counts));
+            light.take_samples(sample, counts);
         }
         for (&at, &radiance) in scratch.at.iter().zip(&scratch.sample) {
             let sum = Vec3::from(pixels[at as usize]) + radiance;
@@ -186,11 +222,50 @@ impl<'a> Integrator<'a> {
     }
 }
 
+/// The rays from the eye through some pixels.
+struct Aim<'a> {
+    at: &'a RayMaker,
+    places: &'a [[Lanes<f64>; 2]],
+    offset: [f64; 2],
+    rays: &'a mut Rays,
+}
+
+impl pulp::WithSimd for Aim<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let [dx, dy] = self.offset;
+        let all = self.rays.fill(self.places.len());
+        for (lines, [columns, rows]) in all.iter_mut().zip(self.places) {
+            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                x[i] = columns[i] + dx;
+                y[i] = rows[i] + dy;
+            }
+            self.at.through_all(&x, &y, lines);
+        }
+    }
+}
+
+impl Scratch {
+    /// Works out columns and rows of the pixels in `at`, of a strip whose first row is `first`.
+    fn find_places(&mut self, width: usize, first: usize) {
+        self.places.clear();
+        self.places.extend(self.at.chunks(LANES).map(|at| {
+            let mut places = [[0.0; LANES]; 2];
+            for (i, &at) in at.iter().enumerate() {
+                places[0][i] = (at as usize % width) as f64;
+                places[1][i] = (first + at as usize / width) as f64;
+            }
+            places
+        }));
+    }
+}
+
 impl Wave {
     /// Finds what the rays hit.
     fn trace(&mut self, intersector: &dyn Intersector, coherence: Coherence) {
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        intersector.closest(&self.rays, coherence, &mut self.hits);
+        intersector.closest_of(&self.rays, coherence, &mut self.hits);
     }
 }

@@ -5,9 +5,10 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `canary` proves at start that the library agrees.
 
-use crate::geometry::{Departure, Geometry, Ray, Side};
+use crate::geometry::{Departure, Found, Geometry, PrimitiveId, Side};
 use crate::intersect::embree::exact::{Clip, Exact};
 use crate::intersect::embree::nearest::Nearest;
+use crate::intersect::embree::packet::Packet;
 pub use crate::intersect::embree::raw::INVALID;
 use crate::intersect::leaving::greatest_slack;
 use crate::scene::Scene;
@@ -74,7 +75,7 @@ pub struct Context<'a, const W: usize> {
     pub embree: [u32; 16],
     pub scene: &'a Scene,
     /// The rays of the packet as they were asked; fewer than `W` in the last one.
-    pub rays: &'a [Ray],
+    pub rays: Packet<'a>,
     /// The same, side by side.
     pub exact: &'a Exact<W>,
     /// Where on the exact rays the f32 rays lie that are being traced; within an instance they
@@ -104,20 +105,22 @@ pub struct Context<'a, const W: usize> {
 impl<'a, const W: usize> Context<'a, W> {
     pub fn new(
         scene: &'a Scene,
-        rays: &'a [Ray],
+        rays: Packet<'a>,
         exact: &'a Exact<W>,
         instance_of: &'a [u32],
         doubt: f32,
         reach: f64,
     ) -> Self {
-        let goes_on = rays.iter().any(|ray| ray.past.is_some());
-        let leaves = goes_on || rays.iter().any(|ray| ray.from.is_some());
+        let goes_on = !rays.is_unbroken();
+        let leaves = !rays.is_fresh();
         let (mut outward, mut inward, mut slack) = ([INVALID; W], [INVALID; W], 0.0);
         if leaves {
             let mut farthest = reach;
-            for (i, ray) in rays.iter().enumerate() {
-                farthest = farthest.max(ray.origin.abs().max_element());
-                match ray.from {
+            for i in 0..W {
+                farthest = farthest.max(exact.line(i).0.abs().max_element());
+            }
+            for i in 0..rays.count {
+                match rays.from(i) {
                     Some(from) if from.id.geometry != Geometry::Spheres => {}
                     Some(Departure { id, side: Side::Front }) => outward[i] = id.primitive,
                     Some(Departure { id, side: Side::Back }) => inward[i] = id.primitive,
@@ -141,6 +144,28 @@ impl<'a, const W: usize> Context<'a, W> {
             outward,
             inward,
             slack,
+        }
+    }
+
+    /// Merges the spheres that the callbacks of precision `fast` found into the hits of the
+    /// packet, from lane `at` on.
+    #[inline(always)]
+    pub fn merge_spheres(&self, found: &mut Found, at: usize) {
+        let mut any = false;
+        for i in 0..W {
+            any |= self.nearest.primitive[i] != INVALID;
+        }
+        if !any {
+            return;
+        }
+        for i in 0..self.rays.count {
+            let (t, primitive) = (self.nearest.t[i], self.nearest.primitive[i]);
+            // Of two at the same distance the sphere counts.
+            if primitive != INVALID && t <= found.t[at + i] {
+                found.t[at + i] = t;
+                (found.u[at + i], found.v[at + i]) = (0.0, 0.0);
+                found.id[at + i] = Some(PrimitiveId::sphere(primitive));
+            }
         }
     }
 
