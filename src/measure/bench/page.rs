@@ -13,6 +13,9 @@ use crate::error::{Error, Result};
 /// Everything that looks like something: for paper in the light, and for the dark.
 const STYLE: &str = include_str!("page.css");
 
+/// How wide a picture is shown, about, in pixels.
+const HALF_A_PAGE: u32 = 570;
+
 const HOW_TO_READ: &str = "\
 The plot has a mark for each mode: how long building and rendering take, the median of the runs, \
 which took turns; and how far its picture is from the reference. Farther left is faster, farther \
@@ -59,6 +62,7 @@ pub fn page(report: &Report, svg: &str) -> Result<String> {
 <title>{name}: run time against error</title>
 <style>
 {STYLE}.flip {{ background-image: url({picture}); }}
+img, .flip {{ image-rendering: {rendering}; }}
 </style>
 </head>
 <body>
@@ -95,6 +99,8 @@ samples are finite in number, so a mode with nearly as many looks better than it
         camera = report.camera,
         threads = report.threads,
         picture = images[0].0,
+        // Shown smaller, a picture must not gain jags that it has not; shown larger, not lose any.
+        rendering = if *width > HALF_A_PAGE { "auto" } else { "pixelated" },
         table = table(&report.modes),
         left_out = left_out(report),
         reference_name = escape(&reference.mode),

@@ -82,7 +82,7 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
         chart.draw_series(of(Standing::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
         chart.draw_series(of(Standing::Hits).map(|p| Circle::new(p, RADIUS, ring)))?;
         chart.draw_series(of(Standing::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
-        let above = text(13).pos(Pos::new(HPos::Left, VPos::Bottom));
+        let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
         let label = |row: &Row| match row.rmse > 0.0 {
             true => row.spp.to_string(),
             false => format!("{}, no error", row.spp),
@@ -157,7 +157,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
 
 /// A number of an axis.
 fn short(x: f64) -> String {
-    if (0.01..1e5).contains(&x) {
+    if (1e-4..1e5).contains(&x) {
         format!("{}", (x * 1e6).round() / 1e6)
     } else {
         format!("{x:.0e}")
