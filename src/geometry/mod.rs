@@ -10,6 +10,7 @@ mod double;
 mod dyadic;
 mod estimate;
 mod exact;
+mod found;
 mod hit;
 pub mod plane;
 mod ray;
@@ -19,6 +20,7 @@ pub mod triangle;
 
 pub use bounds::Bounds;
 pub use estimate::Estimate;
+pub use found::{Found, Hits, Ids};
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use ray::{Departure, Passage, Ray, Side};
-pub use rays::{Found, Hits, LANES, Lanes, Lines, Rays};
+pub use rays::{LANES, Lanes, Left, Lines, Rays};

@@ -1,8 +1,8 @@
-//! Many rays and what they hit, sixteen side by side: as processors and packet tracers want them.
+//! Many rays, sixteen side by side: as processors and packet tracers want them.
 
 use glam::DVec3;
 
-use crate::geometry::{Departure, Hit, Passage, PrimitiveId, Ray};
+use crate::geometry::{Departure, Ids, Passage, Ray, Side};
 
 /// How many rays stand side by side: a multiple of every packet width there is.
 pub const LANES: usize = 16;
@@ -34,15 +34,35 @@ impl Lines {
     }
 }
 
+/// What sixteen rays left; see [`Departure`].
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub struct Left {
+    /// The primitives.
+    pub id: Ids,
+    /// Whether each went to the side that the geometric normal does not point to.
+    pub is_back: Lanes<bool>,
+}
+
+impl Left {
+    const NOTHING: Self = Self { id: Ids::NOTHING, is_back: [false; LANES] };
+
+    fn set(&mut self, i: usize, from: Option<Departure>) {
+        self.id.set(i, from.map(|from| from.id));
+        self.is_back[i] = from.is_some_and(|from| from.side == Side::Back);
+    }
+}
+
 /// A batch of rays. Its memory is kept when it is cleared.
 ///
-/// In the last sixteen the lanes beyond the batch's end hold any numbers.
+/// In the last sixteen the lanes beyond the batch's end hold any numbers. A ray whose `tmax` is not
+/// above 0 only holds its place: it meets nothing, and its other numbers may be any.
 #[derive(Clone, Debug, Default)]
 pub struct Rays {
     lines: Vec<Lines>,
     len: usize,
     /// What each left; empty while none left anything.
-    from: Vec<Option<Departure>>,
+    from: Vec<Left>,
     /// How far each has come; empty while none went through anything.
     past: Vec<Option<Passage>>,
 }
@@ -76,7 +96,7 @@ impl Rays {
     /// Forgets all but the first `count`.
     pub fn truncate(&mut self, count: usize) {
         self.len = self.len.min(count);
-        self.from.truncate(count);
+        self.from.truncate(count.div_ceil(LANES));
         self.past.truncate(count);
     }
 
@@ -92,44 +112,30 @@ impl Rays {
         let i = self.len;
         self.reserve(i / LANES + 1);
         self.len += 1;
-        if ray.from.is_some() && self.from.len() < i {
-            self.from.resize(i, None);
-        }
         if ray.from.is_some() || !self.from.is_empty() {
-            self.from.push(ray.from);
-        }
-        if ray.past.is_some() && self.past.len() < i {
-            self.past.resize(i, None);
+            self.from.resize(i / LANES + 1, Left::NOTHING);
+            self.from[i / LANES].set(i % LANES, ray.from);
         }
         if ray.past.is_some() || !self.past.is_empty() {
+            self.past.resize(i, None);
             self.past.push(ray.past);
         }
         self.set_line(i, ray);
     }
 
-    /// Adds a ray that left a surface, and went through none.
+    /// Adds sixteen rays that left surfaces, and went through none, to be set to whatever they are.
     ///
     /// # Panics
-    /// When there are rays that left none, or went through one.
+    /// When the sixteens before are not full, or are rays of another kind.
     #[inline(always)]
-    pub fn push_spawned(
-        &mut self,
-        origin: DVec3,
-        direction: DVec3,
-        tmax: f64,
-        from: Departure,
-    ) {
-        let (block, lane) = (self.len / LANES, self.len % LANES);
-        assert!(self.from.len() == self.len && self.past.is_empty(), "rays of another kind");
+    pub fn push_sixteen(&mut self) -> (&mut Lines, &mut Left) {
+        let block = self.len / LANES;
+        let alike = self.len % LANES == 0 && self.from.len() == block && self.past.is_empty();
+        assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        let lines = &mut self.lines[block];
-        for axis in 0..3 {
-            lines.origin[axis][lane] = origin[axis];
-            lines.direction[axis][lane] = direction[axis];
-        }
-        lines.tmax[lane] = tmax;
-        self.from.push(Some(from));
-        self.len += 1;
+        self.from.push(Left::NOTHING);
+        self.len += LANES;
+        (&mut self.lines[block], &mut self.from[block])
     }
 
     /// Puts another ray in the place of ray `i`.
@@ -139,10 +145,10 @@ impl Rays {
     pub fn set(&mut self, i: usize, ray: &Ray) {
         assert!(i < self.len, "ray {i} of {}", self.len);
         if ray.from.is_some() && self.from.is_empty() {
-            self.from.resize(self.len, None);
+            self.from.resize(self.len.div_ceil(LANES), Left::NOTHING);
         }
-        if let Some(from) = self.from.get_mut(i) {
-            *from = ray.from;
+        if let Some(left) = self.from.get_mut(i / LANES) {
+            left.set(i % LANES, ray.from);
         }
         if ray.past.is_some() && self.past.is_empty() {
             self.past.resize(self.len, None);
@@ -189,7 +195,15 @@ impl Rays {
     /// What ray `i` left, if anything.
     #[inline(always)]
     pub fn from(&self, i: usize) -> Option<Departure> {
-        self.from.get(i).copied().flatten()
+        let left = self.from.get(i / LANES)?;
+        let side = if left.is_back[i % LANES] { Side::Back } else { Side::Front };
+        left.id.get(i % LANES).map(|id| Departure { id, side })
+    }
+
+    /// What the rays left, sixteen by sixteen; nothing where none left anything.
+    #[inline(always)]
+    pub fn left(&self) -> &[Left] {
+        &self.from
     }
 
     /// How far ray `i` has come, if it went through anything.
@@ -217,125 +231,10 @@ impl<'a> Extend<&'a Ray> for Rays {
     }
 }
 
-/// What sixteen rays hit; see [`Hit`].
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-pub struct Found {
-    /// Distances; infinite where nothing is hit.
-    pub t: Lanes<f64>,
-    /// Weights of triangles' second vertices; any number where nothing is hit.
-    pub u: Lanes<f64>,
-    /// Weights of triangles' third vertices; any number where nothing is hit.
-    pub v: Lanes<f64>,
-    /// What is hit.
-    pub id: Lanes<Option<PrimitiveId>>,
-}
-
-impl Found {
-    const NOTHING: Self = Self {
-        t: [f64::INFINITY; LANES],
-        u: [0.0; LANES],
-        v: [0.0; LANES],
-        id: [None; LANES],
-    };
-
-    /// The hit in lane `i`.
-    #[inline(always)]
-    pub fn hit(&self, i: usize) -> Option<Hit> {
-        self.id[i].map(|id| Hit { t: self.t[i], u: self.u[i], v: self.v[i], id })
-    }
-
-    /// Sets lane `i`.
-    #[inline(always)]
-    pub fn set(&mut self, i: usize, hit: Option<Hit>) {
-        self.id[i] = hit.map(|hit| hit.id);
-        self.t[i] = hit.map_or(f64::INFINITY, |hit| hit.t);
-        self.u[i] = hit.map_or(0.0, |hit| hit.u);
-        self.v[i] = hit.map_or(0.0, |hit| hit.v);
-    }
-}
-
-/// What a batch of rays hits. In the last sixteen the lanes beyond its end hit nothing.
-#[derive(Clone, Debug, Default)]
-pub struct Hits {
-    found: Vec<Found>,
-    len: usize,
-}
-
-impl Hits {
-    /// Makes it `count` hits on nothing.
-    pub fn reset(&mut self, count: usize) {
-        let blocks = count.div_ceil(LANES);
-        if self.found.len() < blocks {
-            self.found.resize(blocks, Found::NOTHING);
-        }
-        self.len = count;
-        for found in &mut self.found[..blocks] {
-            found.t = [f64::INFINITY; LANES];
-            found.id = [None; LANES];
-        }
-    }
-
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// What ray `i` hits.
-    ///
-    /// # Panics
-    /// When there is no ray `i`.
-    #[inline]
-    pub fn get(&self, i: usize) -> Option<Hit> {
-        assert!(i < self.len, "hit {i} of {}", self.len);
-        self.found[i / LANES].hit(i % LANES)
-    }
-
-    /// Sets what ray `i` hits.
-    ///
-    /// # Panics
-    /// When there is no ray `i`.
-    #[inline]
-    pub fn set(&mut self, i: usize, hit: Option<Hit>) {
-        assert!(i < self.len, "hit {i} of {}", self.len);
-        self.found[i / LANES].set(i % LANES, hit);
-    }
-
-    /// How many rays hit anything.
-    pub fn count(&self) -> usize {
-        let hits = |found: &Found| -> usize {
-            found.t.iter().map(|&t| usize::from(t < f64::INFINITY)).sum()
-        };
-        self.found().iter().map(hits).sum()
-    }
-
-    /// All hits.
-    pub fn iter(&self) -> impl Iterator<Item = Option<Hit>> {
-        (0..self.len).map(|i| self.get(i))
-    }
-
-    /// The sixteens, of which the last may be partly filled.
-    #[inline(always)]
-    pub fn found(&self) -> &[Found] {
-        &self.found[..self.len.div_ceil(LANES)]
-    }
-
-    /// The sixteens, to be set.
-    #[inline(always)]
-    pub fn found_mut(&mut self) -> &mut [Found] {
-        &mut self.found[..self.len.div_ceil(LANES)]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Side;
+    use crate::geometry::PrimitiveId;
 
     fn ray(i: usize) -> Ray {
         let id = PrimitiveId::sphere(i as u32);
@@ -377,16 +276,5 @@ mod tests {
         rays.fill(1)[0].tmax = [1.0; LANES];
         rays.set(4, &ray(13));
         assert_eq!((rays.ray(4), rays.ray(3).from, rays.ray(3).past), (ray(13), None, None));
-    }
-
-    #[test]
-    fn hits_are_nothing_until_they_are_set() {
-        let mut hits = Hits::default();
-        hits.reset(18);
-        let hit = Hit { t: 2.0, u: 0.5, v: 0.25, id: PrimitiveId::plane(1) };
-        hits.set(17, Some(hit));
-        assert_eq!((hits.get(17), hits.get(16)), (Some(hit), None));
-        hits.reset(18);
-        assert!(hits.iter().all(|hit| hit.is_none()));
     }
 }

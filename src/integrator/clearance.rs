@@ -1,6 +1,6 @@
 //! Where light may go through anything on its way to a surface.
 
-use crate::geometry::{Bounds, Ray};
+use crate::geometry::{Bounds, LANES, Lanes, Lines, Rays};
 use crate::scene::{MaterialId, Scene};
 
 /// More boxes than these are taken as one.
@@ -32,33 +32,67 @@ impl Clearance {
         Self { boxes, everywhere: scene.planes.iter().any(|plane| transmits(plane.material)) }
     }
 
-    /// Whether a ray certainly comes into none of the boxes before it ends.
-    ///
+    /// Whether each ray certainly comes into none of the boxes before it ends; the last sixteen may
+    /// be filled up with any answers.
+    pub fn of_all(&self, rays: &Rays, arch: pulp::Arch, clear: &mut Vec<bool>) {
+        clear.clear();
+        arch.dispatch(Ask { clearance: self, rays, clear });
+    }
+
     /// Each quotient is right to a few ulp, and so, along the ray, is the place where it enters or
     /// leaves: the boxes are widened by a thousand times that.
-    pub fn is_clear(&self, ray: &Ray) -> bool {
-        if self.everywhere {
-            return false;
+    #[inline(always)]
+    fn of_sixteen(&self, lines: &Lines) -> Lanes<bool> {
+        let mut clear = [!self.everywhere; LANES];
+        for bounds in &self.boxes {
+            let reach = bounds.max_abs();
+            for i in 0..LANES {
+                let (origin, direction) = lines.line(i);
+                let pad = 1e-12 * (reach + origin.abs().max_element());
+                let a = (bounds.lower - pad - origin) / direction;
+                let b = (bounds.upper + pad - origin) / direction;
+                // `min` and `max` pass over the NaN of 0/0.
+                let enters = a.min(b).max_element().max(0.0);
+                let leaves = a.max(b).min_element().min(lines.tmax[i]);
+                clear[i] &= enters > leaves;
+            }
         }
-        let reach = ray.origin.abs().max_element();
-        self.boxes.iter().all(|bounds| {
-            let bounds = bounds.padded(1e-12 * (reach + bounds.max_abs()));
-            let a = (bounds.lower - ray.origin) / ray.direction;
-            let b = (bounds.upper - ray.origin) / ray.direction;
-            // `min` and `max` pass over the NaN of 0/0.
-            let enters = a.min(b).max_element().max(0.0);
-            let leaves = a.max(b).min_element().min(ray.tmax);
-            enters > leaves
-        })
+        clear
+    }
+}
+
+/// [`Clearance::of_all`], compiled for what the processor can do at once.
+struct Ask<'a> {
+    clearance: &'a Clearance,
+    rays: &'a Rays,
+    clear: &'a mut Vec<bool>,
+}
+
+impl pulp::WithSimd for Ask<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for lines in self.rays.lines() {
+            self.clear.extend_from_slice(&self.clearance.of_sixteen(lines));
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Ray;
     use crate::scene::{Material, Plane, Sphere};
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
+
+    fn is_clear(clearance: &Clearance, ray: &Ray) -> bool {
+        let (mut rays, mut clear) = (Rays::default(), Vec::new());
+        rays.push(ray);
+        clearance.of_all(&rays, pulp::Arch::new(), &mut clear);
+        clear[0]
+    }
 
     fn glass(scene: &mut Scene) -> MaterialId {
         scene.add_material(Material { transmit: Vec3::ONE, ..Material::default() })
@@ -79,7 +113,7 @@ mod tests {
             let target = scene.spheres[0].center + DVec3::from(inside);
             let ray = Ray::between(DVec3::from(origin), target);
             let ray = Ray { direction: ray.direction * ends, ..ray };
-            prop_assert!(!Clearance::of(&scene).is_clear(&ray));
+            prop_assert!(!is_clear(&Clearance::of(&scene), &ray));
         }
     }
 
@@ -89,7 +123,7 @@ mod tests {
         let glass = glass(&mut scene);
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glass));
         let clearance = Clearance::of(&scene);
-        let clear = |from: DVec3, to: DVec3| clearance.is_clear(&Ray::between(from, to));
+        let clear = |from: DVec3, to: DVec3| is_clear(&clearance, &Ray::between(from, to));
         assert!(clear(DVec3::new(2.0, -5.0, 0.0), DVec3::new(2.0, 5.0, 0.0)));
         assert!(clear(DVec3::Y * 5.0, DVec3::Y * 1.5));
         assert!(!clear(DVec3::Y * 5.0, DVec3::Y * 0.5));
@@ -101,6 +135,6 @@ mod tests {
         let glass = glass(&mut scene);
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
         let ray = Ray::between(DVec3::Y, DVec3::Y * 2.0);
-        assert!(!Clearance::of(&scene).is_clear(&ray));
+        assert!(!is_clear(&Clearance::of(&scene), &ray));
     }
 }

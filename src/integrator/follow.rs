@@ -47,41 +47,29 @@ impl Integrator<'_> {
     /// between samples, which do not depend on each other, or, if all are of one sample, in the
     /// middle, whatever else is traced with them.
     pub(super) fn follow(&self, scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { wave, sample, next, .. } = scratch;
+        let Scratch { wave, sample, .. } = scratch;
         if self.may_pass_first {
             wave.paths = (0..wave.rays.len()).map(|i| self.path(wave, i)).collect();
             sample.clear();
             sample.resize(wave.rays.len(), Vec3::ZERO);
         }
-        next.clear();
         self.finish(scratch, counts);
         let mut waiting = vec![std::mem::take(&mut scratch.next)];
-        while let Some(mut rays) = waiting.pop() {
-            if rays.len() > WAVE {
-                let second = rays.split_off(middle(&rays));
-                waiting.extend([second, rays]);
+        while let Some(mut wave) = waiting.pop() {
+            if wave.rays.len() > WAVE {
+                let second = wave.split_off(middle(&wave.paths));
+                waiting.extend([second, wave]);
                 continue;
             }
-            let wave = &mut scratch.wave;
-            wave.rays.clear();
-            wave.paths.clear();
-            for next in rays.drain(..) {
-                let of_kind = match next.is_refracted {
-                    true => &mut counts.rays.refraction,
-                    false => &mut counts.rays.reflection,
-                };
-                *of_kind += 1;
-                wave.rays.push(&next.ray);
-                wave.paths.push(next.path);
-            }
             if wave.rays.is_empty() {
-                scratch.next = rays; // Its memory serves the next tile.
+                scratch.next = wave; // Its memory serves the next tile.
                 continue;
             }
             wave.trace(self.intersector, Coherence::Incoherent);
+            let before = std::mem::replace(&mut scratch.wave, wave);
+            scratch.next.clear();
             self.finish(scratch, counts);
-            let sent = std::mem::replace(&mut scratch.next, rays);
-            waiting.push(sent);
+            waiting.push(std::mem::replace(&mut scratch.next, before));
         }
     }
 
@@ -109,9 +97,10 @@ impl Integrator<'_> {
         }
         self.shade(wave, light, counts);
         if wave.paths.is_empty() {
-            light.take_samples(sample, counts);
+            light.take_samples(wave.rays.len(), sample, counts);
         }
-        for (radiance, path) in light.radiance.iter().zip(&wave.paths) {
+        for (i, path) in wave.paths.iter().enumerate() {
+            let radiance = light.radiance(i);
             let to = &mut sample[path.sample as usize];
             if !to.is_nan() && !radiance.is_nan() {
                 *to += (path.throughput * radiance.as_dvec3()).as_vec3();
@@ -124,11 +113,18 @@ impl Integrator<'_> {
                 *to = Vec3::NAN;
             }
         }
-        for &i in &light.bounces {
-            let (i, ray) = (i as usize, wave.rays.ray(i as usize));
+        for (i, surface) in &light.bounces {
+            let (i, ray) = (*i as usize, wave.rays.ray(*i as usize));
             if let Some(hit) = &wave.hits.get(i) {
-                let surface = Surface::new(self.scene, &ray, hit);
-                self.send_on(&ray, hit, &surface, &self.path(wave, i), next);
+                self.send_on(&ray, hit, surface, &self.path(wave, i), &mut |sent| {
+                    let of_kind = match sent.is_refracted {
+                        true => &mut counts.rays.refraction,
+                        false => &mut counts.rays.reflection,
+                    };
+                    *of_kind += 1;
+                    next.rays.push(&sent.ray);
+                    next.paths.push(sent.path);
+                });
             }
         }
     }
@@ -187,7 +183,7 @@ impl Integrator<'_> {
         hit: &Hit,
         surface: &Surface,
         path: &Path,
-        next: &mut Vec<Next>,
+        next: &mut impl FnMut(Next),
     ) {
         if path.depth >= self.scene.film.max_depth {
             return;
@@ -200,7 +196,7 @@ impl Integrator<'_> {
             if throughput.max_element() > self.scene.film.cutoff.max(NOTHING) {
                 let (sample, depth) = (path.sample, path.depth + 1);
                 let path = Path { sample, depth, throughput, inside };
-                next.push(Next { ray, is_refracted, path });
+                next(Next { ray, is_refracted, path });
             }
         };
         let spawn = |direction: DVec3, side: Side| Ray {
@@ -219,11 +215,11 @@ impl Integrator<'_> {
 }
 
 /// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.
-fn middle(rays: &[Next]) -> usize {
-    let sample = |i: usize| rays[i].path.sample;
-    let half = rays.len() / 2;
+fn middle(paths: &[Path]) -> usize {
+    let sample = |i: usize| paths[i].sample;
+    let half = paths.len() / 2;
     let changes = |&i: &usize| sample(i - 1) != sample(i);
-    let up = (half..rays.len()).find(changes);
+    let up = (half..paths.len()).find(changes);
     let down = (1..half).rev().find(changes);
     match (down, up) {
         (Some(down), Some(up)) if half - down < up - half => down,
@@ -237,13 +233,14 @@ fn middle(rays: &[Next]) -> usize {
 mod tests {
     use super::*;
 
-    fn wave(samples: &[u32]) -> Vec<Next> {
-        let next = |&sample: &u32| Next {
-            ray: Ray::new(DVec3::ZERO, DVec3::Z),
-            is_refracted: false,
-            path: Path { sample, depth: 1, throughput: DVec3::ONE, inside: Interiors::default() },
+    fn wave(samples: &[u32]) -> Vec<Path> {
+        let path = |&sample: &u32| Path {
+            sample,
+            depth: 1,
+            throughput: DVec3::ONE,
+            inside: Interiors::default(),
         };
-        samples.iter().map(next).collect()
+        samples.iter().map(path).collect()
     }
 
     #[test]

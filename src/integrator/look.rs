@@ -16,6 +16,8 @@ pub(super) struct Look {
     pub emission: Vec3,
     /// The share that is neither reflected nor let through.
     rest: Vec3,
+    /// Whether all of it is finite.
+    pub is_finite: bool,
     /// Whether a texture has a part in it.
     pub is_textured: bool,
     /// Whether rays are followed from it.
@@ -35,7 +37,8 @@ impl Look {
             shininess: material.shininess,
         };
         let (emission, is_textured) = (material.emission, material.is_textured());
-        Self { reflectance, emission, rest, is_textured, is_followed }
+        let is_finite = emission.is_finite() && reflectance.diffuse.is_finite();
+        Self { reflectance, emission, rest, is_finite, is_textured, is_followed }
     }
 
     /// Emission and diffuse reflectance with the detail of a point.

@@ -22,17 +22,18 @@ mod tiling;
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{Geometry, Hit, Hits, LANES, Lanes, Ray, Rays};
+use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
 use crate::surface::Surface;
 use bodies::{Bodies, Interiors};
 use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts};
-use follow::{Next, Path};
+use follow::Path;
 use look::{Look, has_detail};
 pub use samples::sample_positions;
 use shade::Light;
+use tiling::Tile;
 pub use tiling::Tiling;
 
 /// Makes the pixels of one picture.
@@ -66,13 +67,13 @@ pub struct Integrator<'a> {
 /// Memory that a thread uses again and again.
 #[derive(Default)]
 pub struct Scratch {
-    at: Vec<u32>,
-    /// Columns and rows of the same pixels.
-    places: Vec<[Lanes<f64>; 2]>,
+    tile: Tile,
     wave: Wave,
     light: Light,
-    next: Vec<Next>,
+    next: Wave,
+    /// The radiance of the tile's pixels: of one sample, and the sum of all.
     sample: Vec<Vec3>,
+    sum: Vec<Pixel>,
 }
 
 /// Rays that go through the intersector together, and what they hit.
@@ -139,45 +140,49 @@ impl<'a> Integrator<'a> {
         let mut counts = Counts::default();
         for left in (0..width).step_by(widest) {
             let columns = widest.min(width - left);
-            scratch.at.clear();
-            for y in (0..rows).step_by(block) {
-                for x in (left..left + columns).step_by(block) {
-                    for row in y..(y + block).min(rows) {
-                        let end = (x + block).min(left + columns);
-                        scratch.at.extend((x..end).map(|column| (row * width + column) as u32));
-                    }
-                }
+            scratch.tile.set([left, first], [columns, rows], block);
+            self.tile(scratch, &mut counts);
+            let mut rest = &scratch.sum[..];
+            for &[x, y, length] in &scratch.tile.runs {
+                let (run, after) = rest.split_at(length as usize);
+                let at = y as usize * width + left + x as usize;
+                pixels[at..at + run.len()].copy_from_slice(run);
+                rest = after;
             }
-            scratch.find_places(width, first);
-            for sample in &self.samples {
-                self.sample(*sample, pixels, scratch, &mut counts);
-            }
-        }
-        if self.view == View::Beauty {
-            let share = 1.0 / self.samples.len() as f32;
-            pixels.iter_mut().flatten().for_each(|value| *value *= share);
         }
         counts
+    }
+
+    /// Works out the pixels of a tile.
+    fn tile(&self, scratch: &mut Scratch, counts: &mut Counts) {
+        scratch.sum.clear();
+        scratch.sum.resize(scratch.tile.count, [0.0; 3]);
+        for sample in &self.samples {
+            self.sample(*sample, scratch, counts);
+        }
+        if self.samples.len() > 1 {
+            let share = 1.0 / self.samples.len() as f32;
+            scratch.sum.iter_mut().flatten().for_each(|value| *value *= share);
+        }
     }
 
     /// Adds one sample of each pixel of a tile.
     fn sample(
         &self,
-        [dx, dy]: [f64; 2],
-        pixels: &mut [Pixel],
+        offset: [f64; 2],
         scratch: &mut Scratch,
         counts: &mut Counts,
     ) {
-        let Scratch { at, places, wave, .. } = scratch;
-        self.arch.dispatch(Aim { at: &self.rays, places, offset: [dx, dy], rays: &mut wave.rays });
-        wave.rays.truncate(at.len());
+        let Scratch { tile, wave, sum, .. } = scratch;
+        self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
+        wave.rays.truncate(tile.count);
         wave.paths.clear();
         wave.trace(self.intersector, Coherence::Coherent);
         counts.rays.primary += wave.rays.len() as u64;
         counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
-            for (i, &at) in at.iter().enumerate() {
-                pixels[at as usize] = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
+            for (i, sum) in sum.iter_mut().enumerate() {
+                *sum = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
             }
             return;
         }
@@ -186,12 +191,12 @@ impl<'a> Integrator<'a> {
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
-            light.take_samples(sample, counts);
+            light.take_samples(wave.rays.len(), sample, counts);
         }
-        for (&at, &radiance) in scratch.at.iter().zip(&scratch.sample) {
-            let sum = Vec3::from(pixels[at as usize]) + radiance;
+        for (to, &radiance) in scratch.sum.iter_mut().zip(&scratch.sample) {
+            let sum = Vec3::from(*to) + radiance;
             if sum.is_finite() {
-                pixels[at as usize] = sum.to_array();
+                *to = sum.to_array();
             } else if !radiance.is_nan() {
                 counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
             }
@@ -225,7 +230,8 @@ impl<'a> Integrator<'a> {
 /// The rays from the eye through some pixels.
 struct Aim<'a> {
     at: &'a RayMaker,
-    places: &'a [[Lanes<f64>; 2]],
+    tile: &'a Tile,
+    /// Where in each pixel.
     offset: [f64; 2],
     rays: &'a mut Rays,
 }
@@ -235,35 +241,34 @@ impl pulp::WithSimd for Aim<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let [dx, dy] = self.offset;
-        let all = self.rays.fill(self.places.len());
-        for (lines, [columns, rows]) in all.iter_mut().zip(self.places) {
+        let ([dx, dy], [left, top]) = (self.offset, self.tile.place);
+        let all = self.rays.fill(self.tile.places.len());
+        for (lines, [columns, rows]) in all.iter_mut().zip(&self.tile.places) {
             let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
-                x[i] = columns[i] + dx;
-                y[i] = rows[i] + dy;
+                // The first sum is exact, so that the tiling does not matter.
+                x[i] = (columns[i] + left) + dx;
+                y[i] = (rows[i] + top) + dy;
             }
             self.at.through_all(&x, &y, lines);
         }
     }
 }
 
-impl Scratch {
-    /// Works out columns and rows of the pixels in `at`, of a strip whose first row is `first`.
-    fn find_places(&mut self, width: usize, first: usize) {
-        self.places.clear();
-        self.places.extend(self.at.chunks(LANES).map(|at| {
-            let mut places = [[0.0; LANES]; 2];
-            for (i, &at) in at.iter().enumerate() {
-                places[0][i] = (at as usize % width) as f64;
-                places[1][i] = (first + at as usize / width) as f64;
-            }
-            places
-        }));
-    }
-}
-
 impl Wave {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+    }
+
+    /// Takes off the rays from the one at `at` on.
+    fn split_off(&mut self, at: usize) -> Self {
+        let mut second = Self { paths: self.paths.split_off(at), ..Self::default() };
+        (at..self.rays.len()).for_each(|i| second.rays.push(&self.rays.ray(i)));
+        self.rays.truncate(at);
+        second
+    }
+
     /// Finds what the rays hit.
     fn trace(&mut self, intersector: &dyn Intersector, coherence: Coherence) {
         intersector.closest_of(&self.rays, coherence, &mut self.hits);

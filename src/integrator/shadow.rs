@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Hit, Hits, Ray, Rays, Side};
+use crate::geometry::{Hit, Hits, LANES, Ray, Rays, Side};
 use crate::integrator::bodies::Interiors;
 use crate::integrator::shade::Shadows;
 use crate::integrator::{Counts, Integrator, Wave};
@@ -18,6 +18,8 @@ use crate::surface::Surface;
 /// Room for shadow rays that may go through glass.
 #[derive(Default)]
 pub(super) struct Through {
+    /// Whether each certainly meets none.
+    clear: Vec<bool>,
     beams: Vec<Beam>,
     ahead: Rays,
     traced: Rays,
@@ -52,23 +54,22 @@ impl Integrator<'_> {
         counts: &mut Counts,
     ) {
         let Shadows { rays, waiting, blocked, left, through } = shadows;
-        let Through { beams, ahead, traced, hits } = through;
+        let Through { clear, beams, ahead, traced, hits } = through;
+        self.clearance.of_all(rays, self.arch, clear);
         left.clear();
         beams.clear();
         ahead.clear();
-        for (at, &blocked) in blocked.iter().enumerate() {
-            if blocked {
-                left.push(DVec3::ZERO);
+        for (at, blocked) in blocked.iter_mut().enumerate() {
+            if *blocked || clear[at] {
                 continue;
             }
             let ray = rays.ray(at);
-            if self.clearance.is_clear(&ray) {
-                left.push(DVec3::ONE);
+            if ray.tmax <= 0.0 {
                 continue;
             }
-            left.push(DVec3::ZERO);
-            let inside = self.starts_in(&ray, wave, waiting[at].0 as usize);
-            beams.push(Beam { at, inside, left: DVec3::ONE });
+            *blocked = true; // What is left of it is added by itself.
+            let met = waiting[at / LANES].block * LANES + at % LANES;
+            beams.push(Beam { at, inside: self.starts_in(&ray, wave, met), left: DVec3::ONE });
             ahead.push(&ray);
         }
         while !beams.is_empty() {
@@ -82,7 +83,7 @@ impl Integrator<'_> {
                 let end = hit.map_or(ray.tmax, |hit| hit.t);
                 beam.left *= self.absorbed(&ray, end, &beam.inside);
                 let Some(hit) = hit else {
-                    left[beam.at] = beam.left;
+                    left.push((beam.at, beam.left));
                     return false;
                 };
                 let side = self.pass(&ray, &hit, beam);
@@ -97,9 +98,7 @@ impl Integrator<'_> {
             });
         }
         if shadow == Shadow::Opaque {
-            left.iter_mut()
-                .filter(|left| **left != DVec3::ONE)
-                .for_each(|left| *left = DVec3::ZERO);
+            left.retain(|(_, left)| *left == DVec3::ONE);
         }
     }
 

@@ -59,20 +59,27 @@ pub trait Intersector: Send + Sync {
 
     /// As [`Intersector::closest`], of rays that stand side by side.
     fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
-        let all: Vec<Ray> = rays.iter().collect();
+        let (places, all) = in_use(rays);
         let mut found = vec![None; all.len()];
         self.closest(&all, coherence, &mut found);
-        hits.reset(all.len());
-        found.into_iter().enumerate().for_each(|(i, hit)| hits.set(i, hit));
+        hits.reset(rays.len());
+        places.into_iter().zip(found).for_each(|(i, hit)| hits.set(i, hit));
     }
 
     /// As [`Intersector::occluded`], of rays that stand side by side.
     fn occluded_of(&self, rays: &Rays, coherence: Coherence, blocked: &mut Vec<bool>) {
-        let all: Vec<Ray> = rays.iter().collect();
+        let (places, all) = in_use(rays);
+        let mut found = vec![false; all.len()];
+        self.occluded(&all, coherence, &mut found);
         blocked.clear();
-        blocked.resize(all.len(), false);
-        self.occluded(&all, coherence, blocked);
+        blocked.resize(rays.len(), false);
+        places.into_iter().zip(found).for_each(|(i, found)| blocked[i] = found);
     }
+}
+
+/// The rays of a batch that may meet anything, and their places.
+fn in_use(rays: &Rays) -> (Vec<usize>, Vec<Ray>) {
+    rays.iter().enumerate().filter(|(_, ray)| ray.tmax > 0.0).unzip()
 }
 
 /// How far a hit can be trusted.

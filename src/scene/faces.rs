@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, PrimitiveId};
+use crate::geometry::Ids;
 use crate::scene::Scene;
 
 /// The corners of `W` triangles in world space: corner, axis, lane. Where there is no triangle they
@@ -11,25 +11,32 @@ use crate::scene::Scene;
 pub struct Faces<const W: usize>([[[f64; W]; 3]; 3]);
 
 impl<const W: usize> Faces<W> {
-    /// The triangles among `ids`; `None` where there is none.
+    /// The triangles among what these codes of [`Ids`] name; `None` where there is none.
     ///
     /// # Panics
     /// When one is not in the scene.
     #[inline(always)]
-    pub fn of(scene: &Scene, ids: &[Option<PrimitiveId>; W]) -> Option<Self> {
+    pub fn of(
+        scene: &Scene,
+        geometry: &[u32; W],
+        primitive: &[u32; W],
+        instance: &[u32; W],
+    ) -> Option<Self> {
         let mut local = [[[0.0f32; W]; 3]; 3];
         let mut first = None;
         let mut alike = true;
         for i in 0..W {
-            let Some(id) = ids[i] else { continue };
-            let Geometry::Mesh(mesh) = id.geometry else { continue };
-            let corners = scene.meshes[mesh as usize].corners(id.primitive);
+            if geometry[i] < Ids::MESHES {
+                continue;
+            }
+            let mesh = &scene.meshes[(geometry[i] - Ids::MESHES) as usize];
+            let corners = mesh.corners(primitive[i]);
             for (to, p) in local.iter_mut().zip(corners) {
                 for axis in 0..3 {
                     to[axis][i] = p[axis];
                 }
             }
-            alike &= *first.get_or_insert(id.instance) == id.instance;
+            alike &= *first.get_or_insert(instance[i]) == instance[i];
         }
         let first = first?;
         let mut world = [[[0.0; W]; 3]; 3];
@@ -45,9 +52,10 @@ impl<const W: usize> Faces<W> {
         }
         if !alike {
             for i in 0..W {
-                let Some(id) = ids[i] else { continue };
-                let Geometry::Mesh(_) = id.geometry else { continue };
-                let placed = &scene.instances[id.instance as usize];
+                if geometry[i] < Ids::MESHES {
+                    continue;
+                }
+                let placed = &scene.instances[instance[i] as usize];
                 for (to, from) in world.iter_mut().zip(&local) {
                     let p = placed.bake([from[0][i], from[1][i], from[2][i]]);
                     for axis in 0..3 {
@@ -70,6 +78,7 @@ impl<const W: usize> Faces<W> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::PrimitiveId;
     use crate::scene::{Instance, MaterialId, Mesh};
     use glam::DAffine3;
 
@@ -88,21 +97,27 @@ mod tests {
         scene
     }
 
+    /// The codes of three triangles and, third, of nothing.
+    fn faces(instances: [u32; 4], triangles: [u32; 4]) -> Option<Faces<4>> {
+        let geometry = [Ids::MESHES, Ids::MESHES, Ids::NONE, Ids::MESHES];
+        Faces::of(&scene(), &geometry, &triangles, &instances)
+    }
+
     #[test]
     fn corners_are_those_of_the_scene_whatever_the_instances() {
-        let scene = scene();
-        let face = |t, i| Some(PrimitiveId::triangle(0, t, i));
-        for ids in [[face(0, 1), None, face(2, 1), face(1, 1)], [face(0, 0), None, face(2, 1), face(1, 0)]] {
-            let faces = Faces::of(&scene, &ids).unwrap();
-            for (i, id) in ids.iter().enumerate().filter_map(|(i, id)| Some((i, (*id)?))) {
-                assert_eq!(faces.corners(i), scene.triangle(id));
+        for instances in [[1, 1, 0, 1], [0, 1, 0, 0]] {
+            let triangles = [2, 0, 0, 1];
+            let faces = faces(instances, triangles).unwrap();
+            for i in [0, 1, 3] {
+                let id = PrimitiveId::triangle(0, triangles[i], instances[i]);
+                assert_eq!(faces.corners(i), scene().triangle(id));
             }
         }
     }
 
     #[test]
     fn without_triangles_there_are_no_faces() {
-        let ids = [None, Some(PrimitiveId::sphere(0)), Some(PrimitiveId::plane(0)), None];
-        assert!(Faces::of(&scene(), &ids).is_none());
+        let geometry = [Ids::NONE, Ids::SPHERES, Ids::PLANES, Ids::NONE];
+        assert!(Faces::of(&scene(), &geometry, &[0; 4], &[0; 4]).is_none());
     }
 }

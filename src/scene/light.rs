@@ -97,6 +97,12 @@ impl Light {
         self.shadow != Shadow::None && self.kind != LightKind::Ambient
     }
 
+    /// Whether its light comes from somewhere, rather than from infinitely far.
+    #[inline]
+    pub fn is_bounded(&self) -> bool {
+        matches!(self.kind, LightKind::Point { .. } | LightKind::Spot { .. })
+    }
+
     /// Whether it is a point that sends the same light everywhere: without falloff, range or cone.
     #[inline]
     pub fn is_steady(&self) -> bool {

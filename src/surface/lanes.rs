@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::{flat_face, normal_of_sphere, on_the_plane, smooth_normal};
-use crate::geometry::{Departure, Found, Geometry, LANES, Lanes, Lines, PrimitiveId, Rays, Side};
-use crate::scene::{Faces, MaterialId, Scene};
+use super::{Surface, flat_face, normal_of_sphere, on_the_plane, smooth_normal};
+use crate::geometry::{Found, Ids, LANES, Lanes, Lines, PrimitiveId, Rays, Side};
+use crate::scene::{Faces, MaterialId, Plane, Scene, Sphere};
 
 /// The points of surfaces that sixteen rays hit; any numbers where a ray hit nothing. The fields
-/// are those of [`Surface`](super::Surface).
+/// are those of [`Surface`].
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Surfaces {
@@ -39,14 +39,12 @@ pub struct Kinds {
 impl Kinds {
     /// Those among `ids`.
     #[inline(always)]
-    fn of(ids: &Lanes<Option<PrimitiveId>>) -> Self {
+    fn of(ids: &Ids) -> Self {
         let mut kinds = Self::default();
-        for id in ids.iter().flatten() {
-            match id.geometry {
-                Geometry::Spheres => kinds.spheres = true,
-                Geometry::Planes => kinds.planes = true,
-                Geometry::Mesh(_) => kinds.triangles = true,
-            }
+        for i in 0..LANES {
+            kinds.spheres |= ids.geometry[i] == Ids::SPHERES;
+            kinds.planes |= ids.geometry[i] == Ids::PLANES;
+            kinds.triangles |= ids.geometry[i] >= Ids::MESHES;
         }
         kinds
     }
@@ -87,7 +85,6 @@ impl Surfaces {
         if self.kinds.planes {
             self.set_planes(scene, lines, found);
         }
-        self.normal = self.geometric_normal;
         if self.kinds.triangles {
             self.set_triangles(scene, found);
         }
@@ -99,88 +96,76 @@ impl Surfaces {
         for axis in 0..3 {
             self.position[axis][i] = position[axis];
             self.geometric_normal[axis][i] = normal[axis];
+            self.normal[axis][i] = normal[axis];
         }
     }
 
     #[inline(always)]
     fn set_spheres(&mut self, scene: &Scene, lines: &Lines, found: &Found) {
-        let mut center = [[0.0; LANES]; 3];
-        let mut radius = [0.0; LANES];
-        let mut here = [false; LANES];
-        for i in 0..LANES {
-            let Some(id) = found.id[i] else { continue };
-            if id.geometry == Geometry::Spheres {
-                let sphere = &scene.spheres[id.primitive as usize];
-                for axis in 0..3 {
-                    center[axis][i] = sphere.center[axis];
-                }
-                radius[i] = sphere.radius;
-                self.material[i] = sphere.material;
-                here[i] = true;
-            }
-        }
+        // Lanes that hit no sphere take the first, so that all are computed alike.
+        let is_sphere = |i: usize| found.id.geometry[i] == Ids::SPHERES;
+        let of = |i| if is_sphere(i) { found.id.primitive[i] } else { 0 };
+        let spheres: Lanes<&Sphere> = std::array::from_fn(|i| &scene.spheres[of(i) as usize]);
+        let center: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| spheres[i].center[axis]));
+        let radius: Lanes<f64> = std::array::from_fn(|i| spheres[i].radius);
         for i in 0..LANES {
             let (origin, direction) = lines.line(i);
             let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
             let normal = normal_of_sphere(center, origin + direction * found.t[i]);
             let position = center + normal * radius[i];
-            if here[i] {
+            if is_sphere(i) {
                 self.put(i, position, normal);
             }
+        }
+        for i in 0..LANES {
+            self.material[i] = if is_sphere(i) { spheres[i].material } else { self.material[i] };
         }
     }
 
     #[inline(always)]
     fn set_planes(&mut self, scene: &Scene, lines: &Lines, found: &Found) {
-        let mut point = [[0.0; LANES]; 3];
-        let mut normal = [[0.0; LANES]; 3];
-        let mut here = [false; LANES];
-        for i in 0..LANES {
-            let Some(id) = found.id[i] else { continue };
-            if id.geometry == Geometry::Planes {
-                let plane = &scene.planes[id.primitive as usize];
-                for axis in 0..3 {
-                    point[axis][i] = plane.point[axis];
-                    normal[axis][i] = plane.normal[axis];
-                }
-                self.material[i] = plane.material;
-                here[i] = true;
-            }
-        }
+        let is_plane = |i: usize| found.id.geometry[i] == Ids::PLANES;
+        let of = |i| if is_plane(i) { found.id.primitive[i] } else { 0 };
+        let planes: Lanes<&Plane> = std::array::from_fn(|i| &scene.planes[of(i) as usize]);
+        let point: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].point[axis]));
+        let normal: [Lanes<f64>; 3] =
+            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].normal[axis]));
         for i in 0..LANES {
             let (origin, direction) = lines.line(i);
             let point = DVec3::new(point[0][i], point[1][i], point[2][i]);
             let normal = DVec3::new(normal[0][i], normal[1][i], normal[2][i]);
             let position = on_the_plane(point, normal, origin + direction * found.t[i]);
-            if here[i] {
+            if is_plane(i) {
                 self.put(i, position, normal);
             }
+        }
+        for i in 0..LANES {
+            self.material[i] = if is_plane(i) { planes[i].material } else { self.material[i] };
         }
     }
 
     #[inline(always)]
     fn set_triangles(&mut self, scene: &Scene, found: &Found) {
-        let Some(faces) = Faces::of(scene, &found.id) else { return };
-        let mut here = [false; LANES];
-        for i in 0..LANES {
-            let Some(id) = found.id[i] else { continue };
-            if let Geometry::Mesh(_) = id.geometry {
-                self.material[i] = scene.instances[id.instance as usize].material;
-                here[i] = true;
-            }
-        }
+        let Ids { geometry, primitive, instance } = &found.id;
+        let Some(faces) = Faces::of(scene, geometry, primitive, instance) else { return };
+        let is_face = |i: usize| geometry[i] >= Ids::MESHES;
         for i in 0..LANES {
             let (position, normal) = flat_face(faces.corners(i), found.u[i], found.v[i]);
-            if here[i] {
+            if is_face(i) {
                 self.put(i, position, normal);
-                for axis in 0..3 {
-                    self.normal[axis][i] = normal[axis];
-                }
             }
         }
-        for i in (0..LANES).filter(|&i| here[i]) {
-            let Some(hit) = found.hit(i) else { continue };
-            if let Some(normal) = smooth_normal(scene, &hit, self.geometric_normal(i)) {
+        for i in (0..LANES).filter(|&i| is_face(i)) {
+            self.material[i] = scene.instances[instance[i] as usize].material;
+            let mesh = (geometry[i] - Ids::MESHES) as usize;
+            if scene.meshes[mesh].normals.is_empty() {
+                continue;
+            }
+            let smooth =
+                found.hit(i).and_then(|hit| smooth_normal(scene, &hit, self.geometric_normal(i)));
+            if let Some(normal) = smooth {
                 for axis in 0..3 {
                     self.normal[axis][i] = normal[axis];
                 }
@@ -196,23 +181,40 @@ impl Surfaces {
             let away = self.geometric_normal(i).dot(lines.line(i).1);
             self.is_back[i] = away > 0.0;
         }
-        let mut turns = [true; LANES];
-        if self.kinds.spheres {
+        if !rays.are_unbroken() {
             for i in 0..LANES {
-                let Some(id) = found.id[i] else { continue };
-                if id.geometry == Geometry::Spheres {
-                    turns[i] = scene.materials[self.material[i].0 as usize].double_sided;
-                    let left = Departure { id, side: Side::Back };
-                    let past = if rays.are_unbroken() { None } else { rays.past(block * LANES + i) };
-                    self.is_back[i] |= past.is_some_and(|past| past.through == left);
-                }
+                let past = rays.past(block * LANES + i);
+                let left = past.filter(|past| past.through.side == Side::Back);
+                let is_left = left.is_some_and(|past| Some(past.through.id) == found.id.get(i));
+                self.is_back[i] |= is_left & (found.id.geometry[i] == Ids::SPHERES);
+            }
+        }
+        if !self.is_back.contains(&true) {
+            return;
+        }
+        let mut turns = self.is_back;
+        if self.kinds.spheres {
+            for i in (0..LANES).filter(|&i| found.id.geometry[i] == Ids::SPHERES) {
+                turns[i] &= scene.materials[self.material[i].0 as usize].double_sided;
             }
         }
         for axis in 0..3 {
             for i in 0..LANES {
                 let n = self.normal[axis][i];
-                self.normal[axis][i] = if self.is_back[i] & turns[i] { -n } else { n };
+                self.normal[axis][i] = if turns[i] { -n } else { n };
             }
+        }
+    }
+
+    /// The surface in lane `i`, where `id` was hit.
+    pub fn surface(&self, i: usize, id: PrimitiveId) -> Surface {
+        Surface {
+            position: self.position(i),
+            geometric_normal: self.geometric_normal(i),
+            normal: self.normal(i),
+            side: self.side(i),
+            material: self.material[i],
+            id,
         }
     }
 

@@ -50,7 +50,7 @@ impl<const W: usize> Clip<W> {
 }
 
 /// Which rays of a packet to trace.
-pub struct Lanes<const W: usize> {
+pub struct Entered<const W: usize> {
     /// Those that come into the box at all.
     pub inside: [bool; W],
     /// Those that no f32 ray can stand for: they start too far away, or their direction is so
@@ -107,7 +107,6 @@ impl<const W: usize> Exact<W> {
     }
 
     /// Sets up the f32 rays: where they start, how long their directions are, where they end.
-    ///
     #[inline(always)]
     pub fn set_up(
         &mut self,
@@ -115,14 +114,17 @@ impl<const W: usize> Exact<W> {
         org: &mut [[f32; W]; 3],
         dir: &mut [[f32; W]; 3],
         tfar: &mut [f32; W],
-    ) -> Lanes<W> {
-        let mut lanes = Lanes { inside: [true; W], astray: [false; W], any_astray: false };
+    ) -> Entered<W> {
+        let mut lanes = Entered { inside: [true; W], astray: [false; W], any_astray: false };
+        for i in 0..W {
+            lanes.inside[i] = self.tmax[i] > 0.0;
+        }
         let mut far = false;
         for i in 0..W {
             let (o, d) = self.line(i);
             let p = (o - frame.center).abs();
-            far |= p.max_element() > REACH * frame.extent;
-            far |= is_extreme(o, d);
+            let away = (p.max_element() > REACH * frame.extent) | is_extreme(o, d);
+            far |= away & (self.tmax[i] > 0.0);
         }
         self.clip.start = [0.0; W];
         if far {
@@ -132,10 +134,10 @@ impl<const W: usize> Exact<W> {
                 let (start, enters) = self.enter(i, frame);
                 // Where one that starts far away passes the box is certain even so.
                 let lost = (distance > FAR * frame.extent) & enters;
-                lanes.astray[i] = lost | is_extreme(o, d);
+                lanes.astray[i] = (lost | is_extreme(o, d)) & lanes.inside[i];
                 lanes.any_astray |= lanes.astray[i];
                 self.clip.start[i] = start;
-                lanes.inside[i] = enters & !lanes.astray[i];
+                lanes.inside[i] &= enters & !lanes.astray[i];
             }
         }
         for i in 0..W {

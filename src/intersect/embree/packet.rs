@@ -1,6 +1,7 @@
 //! A packet's share of a batch.
 
-use crate::geometry::{Departure, LANES, Lines, Ray, Rays};
+use crate::geometry::{Departure, Ids, LANES, Lines, Ray, Rays};
+use crate::intersect::embree::raw::INVALID;
 
 /// Neighbouring rays of a batch that are traced together: as many as a packet is wide, or fewer
 /// at the batch's end. They never stand in two sixteens.
@@ -47,6 +48,24 @@ impl<'a> Packet<'a> {
     #[inline(always)]
     pub fn from(&self, lane: usize) -> Option<Departure> {
         self.rays.from(self.first + lane)
+    }
+
+    /// The sphere that each ray left toward its outside, and toward its inside; [`INVALID`] where
+    /// there is none.
+    #[inline(always)]
+    pub fn spheres_left<const W: usize>(&self) -> ([u32; W], [u32; W]) {
+        let (mut outward, mut inward) = ([INVALID; W], [INVALID; W]);
+        let Some(left) = self.rays.left().get(self.first / LANES) else {
+            return (outward, inward);
+        };
+        let at = self.first % LANES;
+        for i in 0..W {
+            let is_sphere = left.id.geometry[at + i] == Ids::SPHERES;
+            let primitive = if is_sphere { left.id.primitive[at + i] } else { INVALID };
+            outward[i] = if left.is_back[at + i] { INVALID } else { primitive };
+            inward[i] = if left.is_back[at + i] { primitive } else { INVALID };
+        }
+        (outward, inward)
     }
 
     /// Whether none left a surface, nor went through one.

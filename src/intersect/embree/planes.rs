@@ -1,7 +1,7 @@
 //! The infinite planes beside a packet: they stand in no tree, since nothing infinite can be
 //! bounded.
 
-use crate::geometry::{Found, Hit, LANES, PrimitiveId, plane};
+use crate::geometry::{Found, LANES, PrimitiveId, plane};
 use crate::intersect::Precision;
 use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::packet::Packet;
@@ -22,18 +22,15 @@ impl Primitives<'_> {
         let mut limits = [f64::INFINITY; W];
         for (index, plane) in (0..).zip(&self.scene.planes) {
             limits.copy_from_slice(&found.t[at..at + W]);
-            let Some(ts) = self.ahead(plane, exact, &limits) else { continue };
-            let id = PrimitiveId::plane(index);
-            let formula = self.precision == Precision::Fast && packet.is_fresh();
-            for i in 0..packet.count {
-                if ts[i].is_nan() {
-                    continue;
-                }
-                let hit = match formula {
-                    true => Some(Hit { t: ts[i], u: 0.0, v: 0.0, id }),
-                    false => self.plane(index, &packet.ray(i)),
-                };
+            let Some(mut ts) = self.ahead(plane, exact, &limits) else { continue };
+            (packet.count..W).for_each(|i| ts[i] = f64::NAN);
+            if self.precision == Precision::Fast && packet.is_fresh() {
+                found.offer_plane(index, &ts, at);
+                continue;
+            }
+            for i in (0..packet.count).filter(|&i| !ts[i].is_nan()) {
                 let best = found.hit(at + i);
+                let hit = self.plane(index, &packet.ray(i));
                 if let Some(hit) = hit.filter(|hit| best.is_none_or(|best| hit.is_before(&best))) {
                     found.set(at + i, Some(hit));
                 }
@@ -55,7 +52,7 @@ impl Primitives<'_> {
             }
             let Some(ts) = self.ahead(plane, exact, &exact.tmax) else { continue };
             for (i, blocked) in blocked.iter_mut().enumerate() {
-                if !ts[i].is_nan() && !*blocked {
+                if !ts[i].is_nan() && !*blocked && exact.tmax[i] > 0.0 {
                     *blocked = self.plane(index, &packet.ray(i)).is_some();
                 }
             }

@@ -4,7 +4,6 @@
 use embree4_sys as sys;
 
 use crate::geometry::{Found, Hits, LANES, Rays};
-use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::filter::filter;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
@@ -35,13 +34,8 @@ impl Target<'_> {
         Primitives { scene: self.scene, precision: self.precision }
     }
 
-    #[inline(always)]
-    fn context<'a, const W: usize>(
-        &'a self,
-        rays: Packet<'a>,
-        exact: &'a Exact<W>,
-    ) -> Context<'a, W> {
-        Context::new(self.scene, rays, exact, self.instance_of, self.frame.doubt(), self.reach)
+    fn context<'a, const W: usize>(&'a self, rays: Packet<'a>) -> Context<'a, W> {
+        Context::new(self.scene, rays, self.instance_of, self.frame.doubt(), self.reach)
     }
 
     /// What rays are left to that no f32 ray can stand for.
@@ -127,7 +121,8 @@ fn closest<const W: usize>(
     coherence: Coherence,
     hits: &mut Hits,
 ) {
-    let mut room = Room { exact: Exact::<W>::new(), record: RayHit::new() };
+    let Some(first) = Packet::all::<W>(rays).next() else { return };
+    let mut room = Room { context: target.context::<W>(first), record: RayHit::new() };
     for packet in Packet::all::<W>(rays) {
         let found = &mut hits.found_mut()[packet.first / LANES];
         if !closest_in_packet(target, packet, coherence, &mut room, found) {
@@ -141,33 +136,32 @@ fn closest<const W: usize>(
 }
 
 /// What a packet is traced with.
-struct Room<const W: usize> {
-    exact: Exact<W>,
+struct Room<'a, const W: usize> {
+    context: Context<'a, W>,
     record: RayHit<W>,
 }
 
 /// Writes the closest hits of a packet; says whether all lie within their rays' segments, or else
 /// are the best that there are.
 #[inline(always)]
-fn closest_in_packet<const W: usize>(
+fn closest_in_packet<'a, const W: usize>(
     target: &Target<'_>,
-    packet: Packet<'_>,
+    packet: Packet<'a>,
     coherence: Coherence,
-    Room { exact, record }: &mut Room<W>,
+    Room { context, record }: &mut Room<'a, W>,
     found: &mut Found,
 ) -> bool {
     let at = packet.first % LANES;
-    exact.load(&packet);
-    let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+    let RayHit { org, dir, tfar, .. } = record;
+    let entry = context.take_up(packet, target.frame, org, dir, tfar);
     record.geom = [INVALID; W];
     record.inst = [INVALID; W];
     let valid = lanes(packet.count, &entry.inside);
-    let mut context = target.context(packet, exact);
     let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
     let mut args = sys::RTCIntersectArguments {
         flags: query_flags(coherence, filtered),
         feature_mask: ALL_FEATURES,
-        context: std::ptr::from_mut(&mut context).cast(),
+        context: std::ptr::from_mut(context).cast(),
         filter: if filtered { Some(filter::<W, false>) } else { None },
         intersect: None,
     };
@@ -190,6 +184,7 @@ fn closest_in_packet<const W: usize>(
     match target.precision {
         Precision::Fast => {
             let (scene, instance_of) = (target.scene, target.instance_of);
+            let exact = &context.exact;
             let within = refine(scene, instance_of, exact, record, packet.count, found, at);
             if !within && !filtered {
                 return false;
@@ -204,7 +199,7 @@ fn closest_in_packet<const W: usize>(
         }
     }
     if !target.scene.planes.is_empty() {
-        target.primitives().merge_planes_into(&packet, exact, found, at);
+        target.primitives().merge_planes_into(&packet, &context.exact, found, at);
     }
     true
 }
@@ -216,13 +211,12 @@ fn occluded<const W: usize>(
     coherence: Coherence,
     blocked: &mut [bool],
 ) {
-    let mut exact = Exact::<W>::new();
-    let mut record = RayHit::<W>::new();
+    let Some(first) = Packet::all::<W>(rays).next() else { return };
+    let (mut context, mut record) = (target.context::<W>(first), RayHit::<W>::new());
     for (packet, blocked) in Packet::all::<W>(rays).zip(blocked.chunks_mut(W)) {
-        exact.load(&packet);
-        let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
+        let RayHit { org, dir, tfar, .. } = &mut record;
+        let entry = context.take_up(packet, target.frame, org, dir, tfar);
         let valid = lanes(packet.count, &entry.inside);
-        let mut context = target.context(packet, &exact);
         let filtered = target.precision == Precision::Fast;
         let mut args = sys::RTCOccludedArguments {
             flags: query_flags(coherence, filtered),
@@ -263,7 +257,7 @@ fn occluded<const W: usize>(
             }
         }
         if !target.scene.planes.is_empty() {
-            target.primitives().planes_block(&packet, &exact, blocked);
+            target.primitives().planes_block(&packet, &context.exact, blocked);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The f64 hits of the triangles that Embree found.
 
-use crate::geometry::{Found, PrimitiveId, triangle};
+use crate::geometry::{Found, Ids, triangle};
 use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::layout::{INVALID, RayHit};
 use crate::scene::{Faces, Scene};
@@ -23,17 +23,17 @@ pub fn refine<const W: usize>(
     found: &mut Found,
     at: usize,
 ) -> bool {
-    let mut ids = [None; W];
+    let (mut geometry, mut instances) = ([Ids::NONE; W], [0; W]);
+    let primitives = &record.prim;
     for i in 0..count {
         if record.geom[i] == INVALID {
             continue;
         }
         let attached = if record.inst[i] == INVALID { record.geom[i] } else { record.inst[i] };
-        let instance = instance_of[attached as usize];
-        let mesh = scene.instances[instance as usize].mesh.0;
-        ids[i] = Some(PrimitiveId::triangle(mesh, record.prim[i], instance));
+        instances[i] = instance_of[attached as usize];
+        geometry[i] = Ids::MESHES + scene.instances[instances[i] as usize].mesh.0;
     }
-    let Some(faces) = Faces::of(scene, &ids) else { return true };
+    let Some(faces) = Faces::of(scene, &geometry, primitives, &instances) else { return true };
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
@@ -45,7 +45,7 @@ pub fn refine<const W: usize>(
         ts[i] = edges.t;
         flat[i] = edges.flat;
     }
-    for i in (0..W).filter(|&i| flat[i] && ids[i].is_some()) {
+    for i in (0..W).filter(|&i| flat[i] && geometry[i] != Ids::NONE) {
         let (origin, direction) = exact.line(i);
         ts[i] = triangle::certified::round(faces.corners(i), origin, direction).t;
     }
@@ -57,7 +57,7 @@ pub fn refine<const W: usize>(
         any_odd |= odd[i];
     }
     if any_odd {
-        for i in (0..W).filter(|&i| odd[i] && ids[i].is_some()) {
+        for i in (0..W).filter(|&i| odd[i] && geometry[i] != Ids::NONE) {
             if !(ts[i] > 0.0 && ts[i] < exact.tmax[i]) {
                 all_within = false;
                 let last = exact.tmax[i].next_down();
@@ -69,10 +69,12 @@ pub fn refine<const W: usize>(
         }
     }
     for i in 0..W {
-        found.t[at + i] = if ids[i].is_some() { ts[i] } else { f64::INFINITY };
+        found.t[at + i] = if geometry[i] != Ids::NONE { ts[i] } else { f64::INFINITY };
         found.u[at + i] = us[i];
         found.v[at + i] = vs[i];
-        found.id[at + i] = ids[i];
     }
+    found.id.geometry[at..at + W].copy_from_slice(&geometry);
+    found.id.primitive[at..at + W].copy_from_slice(primitives);
+    found.id.instance[at..at + W].copy_from_slice(&instances);
     all_within
 }
