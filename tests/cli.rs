@@ -2,6 +2,8 @@
 
 #[path = "cli/asked.rs"]
 mod asked;
+#[path = "cli/bench.rs"]
+mod bench;
 #[path = "cli/frames.rs"]
 mod frames;
 #[path = "cli/inputs.rs"]

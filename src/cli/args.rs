@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::cli::bench::Bench;
 use crate::cli::files;
 use crate::cli::range::Range;
 use crate::cli::values::{
@@ -34,6 +35,7 @@ Examples:
   envers render scene.toml -o out.png -o out.exr --spp 16
   envers validate scene.toml
   envers stress --quick
+  envers bench scene.toml --out out/bench
   envers diff a.exr b.exr --tolerance 0.004
 
 Exit status: 0 done, 1 a check or the work failed, 2 the command line or the input is wrong.";
@@ -46,6 +48,8 @@ pub enum Command {
     Validate(Validate),
     /// Try every promise about precision where numbers are at their worst
     Stress(Stress),
+    /// Hold run time against error, mode by mode
+    Bench(Bench),
     /// Say what is in a scene, and what will be skipped
     Info(Info),
     /// Compare two pictures: exit status 0 when they are equal, 1 when they differ
@@ -212,6 +216,10 @@ pub struct Info {
 }
 
 #[derive(Args)]
+#[command(after_help = "\
+FLIP (Andersson et al. 2020) says how far the pictures differ to somebody who flips between them, from \
+0 to 1, on a screen with 67 pixels in a degree of the view. An EXR is shown clamped to [0, 1], as \
+sRGB; views other than beauty have none.")]
 pub struct Diff {
     /// A picture, .png or .exr
     pub a: PathBuf,

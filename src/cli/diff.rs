@@ -1,12 +1,24 @@
 //! `envers diff`.
 
+use serde::Serialize;
+
 use crate::cli::args::Diff;
 use crate::cli::{Outcome, Verdict, files, output};
 use crate::error::Error;
 use crate::film::{Film, View};
-use crate::measure::{Picture, compare};
+use crate::measure::flip::Seen;
+use crate::measure::{Comparison, Picture, compare};
 use crate::scene::Transfer;
 use crate::write::{self, Format, Settings};
+
+/// `diff --json`.
+#[derive(Serialize)]
+struct Found {
+    #[serde(flatten)]
+    compared: Comparison,
+    /// Mean FLIP of what a screen shows; null where the pictures have no R, G and B.
+    flip: Option<f64>,
+}
 
 pub fn run(arguments: &Diff) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
@@ -19,21 +31,27 @@ pub fn run(arguments: &Diff) -> Outcome {
                 .help("choose another name"));
         }
     }
-    if Format::of(&arguments.a)? != Format::of(&arguments.b)? {
+    let format = Format::of(&arguments.a)?;
+    if format != Format::of(&arguments.b)? {
         return Err(Error::input("a PNG and an EXR cannot be compared")
             .at(&arguments.b)
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
     let (a, b) = (Picture::read(&arguments.a)?, Picture::read(&arguments.b)?);
     let found = compare(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
+    let transfer = if format == Format::Png { Transfer::Srgb } else { Transfer::None };
+    let seen = Seen::of(&a, transfer).zip(Seen::of(&b, transfer));
+    let flip = seen.map(|(a, b)| a.flip(&b).mean);
     if output::stdout_is_free(arguments.json.as_ref()) {
+        let shown = flip.map_or(String::new(), |mean| format!(", FLIP {mean:.6}"));
         output::print(&format!(
-            "RMSE {:.6e}, PSNR {:.2} dB, largest difference {:.6e}, {} pixels differ by more than {}\n",
+            "RMSE {:.6e}, PSNR {:.2} dB{shown}, largest difference {:.6e}, {} pixels differ by more \
+             than {}\n",
             found.rmse, found.psnr, found.max, found.pixels_differing, arguments.tolerance
         ))?;
     }
     if let Some(path) = &arguments.json {
-        output::write_json(path, &found)?;
+        output::write_json(path, &Found { compared: found, flip })?;
     }
     if let Some(path) = &arguments.heatmap {
         let settings = Settings { transfer: Transfer::None, ..Settings::default() };

@@ -1,6 +1,7 @@
 //! The command, on the public API alone.
 
 mod args;
+mod bench;
 mod diff;
 mod files;
 mod frames;
@@ -38,6 +39,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
     })

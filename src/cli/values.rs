@@ -1,5 +1,7 @@
 //! The values that flags take.
 
+use std::time::Duration;
+
 use clap::ValueEnum;
 
 #[cfg(not(feature = "embree"))]
@@ -119,6 +121,12 @@ pub fn goal(text: &str) -> std::result::Result<Goal, String> {
 pub fn seconds(text: &str) -> std::result::Result<f64, String> {
     let in_range = |x: &f64| (0.0..=1e15).contains(x);
     text.parse().ok().filter(in_range).ok_or("expected seconds, from 0 to 1e15".to_owned())
+}
+
+pub fn wait(text: &str) -> std::result::Result<Duration, String> {
+    let in_range = |x: &f64| (1e-3..=1e6).contains(x);
+    let seconds: Option<f64> = text.parse().ok().filter(in_range);
+    seconds.map(Duration::from_secs_f64).ok_or("expected seconds, from 0.001 to 1e6".to_owned())
 }
 
 pub fn finite(text: &str) -> std::result::Result<f64, String> {

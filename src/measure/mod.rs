@@ -1,8 +1,10 @@
 //! What measures the renderer: one backend against the other ([`validate`](fn@validate)), all of
-//! them on one ray ([`replay`](fn@replay)), one picture against another ([`compare`]), and every
-//! hit against exact integers ([`oracle`], [`stress`]).
+//! them on one ray ([`replay`](fn@replay)), one picture against another ([`compare`], [`flip`]),
+//! every hit against exact integers ([`oracle`], [`stress`]), and run time against error ([`bench`]).
 
+pub mod bench;
 mod dispute;
+pub mod flip;
 pub mod oracle;
 mod picture;
 mod replay;

@@ -27,14 +27,14 @@ fn help_tells_the_exit_statuses() {
 #[test]
 fn help_names_every_subcommand() {
     let stdout = Folder::new().run("--help").good().stdout;
-    for command in ["render", "validate", "stress", "info", "diff"] {
+    for command in ["render", "validate", "stress", "bench", "info", "diff"] {
         assert!(stdout.contains(&format!("\n  {command} ")), "{command} in {stdout}");
     }
 }
 
 #[test]
 fn every_subcommand_has_help() {
-    for command in ["render", "validate", "stress", "info", "diff"] {
+    for command in ["render", "validate", "stress", "bench", "info", "diff"] {
         let stdout = Folder::new().run(&format!("{command} --help")).good().stdout;
         assert!(stdout.contains(&format!("Usage: envers {command} ")), "{stdout}");
     }

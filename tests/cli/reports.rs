@@ -279,6 +279,7 @@ fn diff_json_has_every_field() {
             ("psnr", Value::is_f64),
             ("max", Value::is_f64),
             ("pixels_differing", Value::is_u64),
+            ("flip", Value::is_f64),
         ],
     );
     assert_eq!(run.status, Some(1));
@@ -291,6 +292,34 @@ fn diff_json_has_every_field() {
 #[test]
 fn diff_psnr_of_equal_pictures_is_null() {
     assert!(two_pictures().run("diff a.png a.png --json -").good().json()["psnr"].is_null());
+}
+
+#[test]
+fn diff_of_black_and_white_is_as_far_as_flip_puts_them() {
+    let folder = Folder::new();
+    for (name, byte) in [("black.png", 0), ("white.png", 255)] {
+        folder.write(name, import_common::png(&[[byte, byte, byte, 255]; 8]));
+    }
+    let run = folder.run("diff black.png white.png");
+    assert!(run.stdout.contains(", FLIP 0.9673"), "{}", run.stdout);
+}
+
+#[test]
+fn diff_of_exrs_has_the_flip_of_their_pngs_but_for_rounding() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.png -o a.exr").good();
+    folder.run("render scene.toml -o b.png -o b.exr --spp 16").good();
+    let flip = |arguments: &str| folder.run(arguments).json()["flip"].as_f64().unwrap();
+    let (png, exr) = (flip("diff a.png b.png --json -"), flip("diff a.exr b.exr --json -"));
+    assert!(png > 0.001 && (png - exr).abs() < 0.001, "{png} {exr}");
+}
+
+#[test]
+fn diff_of_views_has_no_flip() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -o a.exr --view normal").good();
+    assert!(folder.run("diff a.exr a.exr --json -").good().json()["flip"].is_null());
+    assert!(!folder.run("diff a.exr a.exr").good().stdout.contains("FLIP"));
 }
 
 #[test]

@@ -1,0 +1,66 @@
+//! The machine that was measured.
+
+use serde::Serialize;
+use sysinfo::{CpuRefreshKind, RefreshKind, System};
+
+/// The machine that was measured, as far as it tells.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Machine {
+    /// The processor's own name.
+    pub processor: String,
+    /// Cores, without what hyper-threading adds; null where the system does not tell.
+    pub cores: Option<usize>,
+    /// Threads that this process may run at once.
+    pub threads: usize,
+    /// Instruction sets that matter to a tracer, the widest last.
+    pub features: Vec<&'static str>,
+    /// The system's name, version and architecture.
+    pub system: String,
+    /// The version of envers.
+    pub envers: &'static str,
+    /// The version of Embree; null where it is not built in.
+    pub embree: Option<String>,
+}
+
+impl Machine {
+    /// This one.
+    pub fn here() -> Self {
+        let what = RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing());
+        let system = System::new_with_specifics(what);
+        let processor = system.cpus().first().map(|cpu| cpu.brand().trim().to_owned());
+        let name = System::long_os_version().unwrap_or(std::env::consts::OS.to_owned());
+        let kernel = System::kernel_version().unwrap_or_default();
+        #[cfg(feature = "embree")]
+        let embree = crate::intersect::embree_version().ok();
+        #[cfg(not(feature = "embree"))]
+        let embree = None;
+        Self {
+            processor: processor.filter(|name| !name.is_empty()).unwrap_or("unknown".to_owned()),
+            cores: System::physical_core_count(),
+            threads: std::thread::available_parallelism().map_or(1, usize::from),
+            features: features(),
+            system: format!("{name}, {kernel}, {}", std::env::consts::ARCH),
+            envers: env!("CARGO_PKG_VERSION"),
+            embree,
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+fn features() -> Vec<&'static str> {
+    [
+        ("SSE4.2", is_x86_feature_detected!("sse4.2")),
+        ("AVX", is_x86_feature_detected!("avx")),
+        ("FMA", is_x86_feature_detected!("fma")),
+        ("AVX2", is_x86_feature_detected!("avx2")),
+        ("AVX-512", is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")),
+    ]
+    .into_iter()
+    .filter_map(|(name, there)| there.then_some(name))
+    .collect()
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn features() -> Vec<&'static str> {
+    if cfg!(target_feature = "neon") { vec!["NEON"] } else { Vec::new() }
+}

@@ -1,0 +1,165 @@
+//! The plot of run time against error.
+
+use std::ops::Range;
+
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::report::{Report, Row, Standing};
+use crate::error::{Error, Result};
+
+const SIZE: (u32, u32) = (900, 600);
+/// A colour for each setup.
+const COLORS: [RGBColor; 8] = [
+    RGBColor(0x2f, 0x6d, 0xb5),
+    RGBColor(0x2e, 0x8b, 0x57),
+    RGBColor(0xd9, 0x9a, 0x2b),
+    RGBColor(0xc4, 0x4e, 0x32),
+    RGBColor(0x8a, 0x5a, 0xb5),
+    RGBColor(0x2a, 0x9d, 0xa5),
+    RGBColor(0xb5, 0x4a, 0x86),
+    RGBColor(0x6b, 0x6b, 0x33),
+];
+const DARK: RGBColor = RGBColor(0x33, 0x33, 0x33);
+const FRONT: RGBColor = RGBColor(0xb8, 0xb8, 0xb8);
+const RADIUS: i32 = 6;
+
+type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// An SVG: each mode by the time that building and rendering take and its RMSE, both on
+/// logarithmic scales, with the front drawn as stairs and dominated modes marked by crosses. A mode
+/// without error stands on the lower border.
+///
+/// # Errors
+/// When the plot cannot be drawn.
+pub fn plot(report: &Report) -> Result<String> {
+    let mut svg = String::new();
+    draw(&mut svg, report).map_err(|e| Error::failed(format!("the plot cannot be drawn: {e}")))?;
+    Ok(svg)
+}
+
+fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
+    let rows = &report.modes;
+    let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
+    area.fill(&WHITE)?;
+    let text = |size: u32| ("sans-serif", size).into_font().color(&DARK);
+    let times = range(rows.iter().map(|r| r.total_ms));
+    let errors = range(rows.iter().map(|r| r.rmse));
+    let at = |row: &Row| (row.total_ms, row.rmse.max(errors.start));
+    let mut chart = ChartBuilder::on(&area)
+        .margin(16)
+        .margin_right(28)
+        .caption(format!("{}: run time against error", report.scene), text(22))
+        .x_label_area_size(52)
+        .y_label_area_size(84)
+        .build_cartesian_2d(times.clone().log_scale(), errors.clone().log_scale())?;
+    chart
+        .configure_mesh()
+        .x_desc("building and rendering, milliseconds (median)")
+        .y_desc(format!("RMSE against {}", report.reference.mode))
+        .x_labels(12)
+        .y_labels(10)
+        .x_label_formatter(&|x| short(*x))
+        .y_label_formatter(&|y| short(*y))
+        .label_style(text(15))
+        .axis_desc_style(text(16))
+        .bold_line_style(RGBColor(0xe2, 0xe2, 0xe2))
+        .light_line_style(TRANSPARENT)
+        .axis_style(RGBColor(0x88, 0x88, 0x88))
+        .draw()?;
+    chart
+        .draw_series(LineSeries::new(stairs(rows, &at, &times, &errors), FRONT.stroke_width(5)))?
+        .label("front")
+        .legend(|(x, y)| PathElement::new([(x, y), (x + 24, y)], FRONT.stroke_width(5)));
+    for (setup, color) in rows.chunk_by(|a, b| a.setup() == b.setup()).zip(COLORS.iter().cycle()) {
+        let color = *color;
+        chart
+            .draw_series(LineSeries::new(setup.iter().map(at), color.stroke_width(1)))?
+            .label(setup[0].setup())
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
+        let of = |standing| setup.iter().filter(move |r| r.standing == standing).map(at);
+        let (disc, ring) = (color.filled(), color.stroke_width(2));
+        chart.draw_series(of(Standing::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
+        chart.draw_series(of(Standing::Hits).map(|p| Circle::new(p, RADIUS, ring)))?;
+        chart.draw_series(of(Standing::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
+        let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
+        let label = |row: &Row| match row.rmse > 0.0 {
+            true => row.spp.to_string(),
+            false => format!("{}, no error", row.spp),
+        };
+        chart.draw_series(setup.iter().map(|row| {
+            EmptyElement::at(at(row)) + Text::new(label(row), (6, -6), above.clone())
+        }))?;
+    }
+    let none = || std::iter::empty::<Circle<(f64, f64), i32>>();
+    chart
+        .draw_series(none())?
+        .label("on the front")
+        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.filled()));
+    chart
+        .draw_series(none())?
+        .label("behind it, with fewer wrong hits")
+        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
+    chart
+        .draw_series(none())?
+        .label("dominated")
+        .legend(|(x, y)| Cross::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerLeft)
+        .label_font(text(15))
+        .legend_area_size(34)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(0xbb, 0xbb, 0xbb))
+        .margin(12)
+        .draw()?;
+    area.present()?;
+    Ok(())
+}
+
+/// The front as stairs, from the upper border to the right one: what lies on them or beyond is to
+/// be had.
+fn stairs(
+    rows: &[Row],
+    at: &dyn Fn(&Row) -> (f64, f64),
+    times: &Range<f64>,
+    errors: &Range<f64>,
+) -> Vec<(f64, f64)> {
+    let on_front = rows.iter().filter(|row| row.standing == Standing::Front);
+    let mut corners: Vec<(f64, f64)> = on_front.map(at).collect();
+    corners.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut error = errors.end;
+    let mut line = Vec::new();
+    for (x, y) in corners {
+        line.extend([(x, error), (x, y)]);
+        error = y;
+    }
+    line.push((times.end, error));
+    line
+}
+
+/// What an axis spans: what is above 0, and some room.
+fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
+    let positive = || values.clone().filter(|x| *x > 0.0 && x.is_finite());
+    let (least, most) = (positive().fold(f64::MAX, f64::min), positive().fold(0.0, f64::max));
+    let (least, most) = if most > 0.0 { (least, most) } else { (1e-3, 1.0) };
+    let (mut start, mut end) = (least / 4.0, most * 2.0);
+    if values.clone().any(|x| x == 0.0) {
+        start /= 5.0;
+    }
+    // Powers of ten lie within, so that the axis has labels.
+    if end.log10().floor() - start.log10().ceil() < 1.0 {
+        start = 10f64.powf(start.log10().floor());
+        end = 10f64.powf(end.log10().ceil());
+    }
+    start..end
+}
+
+/// A number of an axis.
+fn short(x: f64) -> String {
+    if (1e-4..1e5).contains(&x) {
+        format!("{}", (x * 1e6).round() / 1e6)
+    } else {
+        format!("{x:.0e}")
+    }
+}
