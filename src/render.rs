@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, Scratch, Tiling};
+use crate::integrator::{Counts, Integrator, Scratch, Seen, Tiling};
 use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
 use crate::scene::animation::Poses;
 use crate::scene::{Scene, Skips};
@@ -236,20 +236,33 @@ pub fn with_intersector(
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
     let integrator = Integrator::new(scene, intersector, camera, options.view, options.tiling);
-    let strip = size[0] as usize * options.tiling.rows;
-    let total = film.pixels.len().div_ceil(strip);
+    let rows = options.tiling.rows;
+    let strip = size[0] as usize * rows;
+    let strips = film.pixels.len().div_ceil(strip);
+    let passes = if integrator.is_adaptive() { 2 } else { 1 };
     let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));
+    let tell = |here: Counts| {
+        // A poisoned lock still holds the counts; the panic that caused it is reported anyway.
+        *counts.lock().unwrap_or_else(|e| e.into_inner()) += here;
+        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+        progress(done as f32 / (passes * strips) as f32);
+    };
     let start = Instant::now();
-    film.pixels.par_chunks_mut(strip).enumerate().for_each_init(
-        Scratch::default,
-        |scratch, (i, pixels)| {
-            let here = integrator.strip(i * options.tiling.rows, pixels, scratch);
-            // A poisoned lock still holds the counts; the panic that caused it is reported anyway.
-            *counts.lock().unwrap_or_else(|e| e.into_inner()) += here;
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            progress(done as f32 / total as f32);
-        },
-    );
+    let mut seen = vec![Seen::default(); if passes == 2 { film.pixels.len() } else { 0 }];
+    let mut of_strips: Vec<&mut [Seen]> = seen.chunks_mut(strip).collect();
+    of_strips.resize_with(strips, Default::default);
+    let first_pass = film.pixels.par_chunks_mut(strip).zip(of_strips).enumerate();
+    first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, seen))| {
+        tell(integrator.strip(i * rows, pixels, seen, scratch));
+    });
+    if passes == 2 {
+        let doubtful = integrator.doubtful(&film.pixels, &seen);
+        let pixels = film.pixels.par_chunks_mut(strip).enumerate();
+        let parts = pixels.zip(seen.par_chunks(strip).zip(doubtful.par_chunks(strip)));
+        parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (seen, doubtful))| {
+            tell(integrator.refine(i * rows, (pixels, seen, doubtful), scratch));
+        });
+    }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
     (film, counts, start.elapsed())
 }

@@ -1,5 +1,7 @@
 //! The `envers` command, run as its users run it.
 
+#[path = "cli/adaptive.rs"]
+mod adaptive;
 #[path = "cli/asked.rs"]
 mod asked;
 #[path = "cli/bench.rs"]

@@ -8,8 +8,8 @@ use crate::cli::bench::Bench;
 use crate::cli::files;
 use crate::cli::range::Range;
 use crate::cli::values::{
-    BackendName, BvhName, PrecisionName, ToneName, ViewName, finite, goal, not_negative, seconds,
-    size,
+    BackendName, BvhName, PrecisionName, SampleRange, ToneName, ViewName, finite, goal,
+    not_negative, sample_range, seconds, share, size,
 };
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
@@ -93,6 +93,7 @@ pub struct Tracing {
 Examples:
   envers render model.glb -o out.png
   envers render scene.toml -o out.png -o out.exr --size 1920x1080 --spp 16
+  envers render scene.toml -o out.png --adaptive 1..25
   envers render scene.toml -o depth.exr --view depth --stats -
   envers render orbit.toml -o orbit.gif
   envers render orbit.toml --frames 1-120x2 -o out/frame-####.png --skip-existing")]
@@ -107,6 +108,14 @@ pub struct Render {
     /// .gif, .apng and ####, otherwise the first]
     #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time", allow_negative_numbers = true)]
     pub frames: Option<Range>,
+    /// From MIN to MAX samples per pixel: more than MIN where neighbouring ones disagree in what they
+    /// hit, in its normal or in colour. 1..25 suits most pictures
+    #[arg(long, value_name = "MIN..MAX", value_parser = sample_range, conflicts_with = "spp", allow_negative_numbers = true)]
+    pub adaptive: Option<SampleRange>,
+    /// From which difference on colours disagree, from 0 (always) to 1, of about what a PNG shows
+    /// [default: the scene's, else 0.1]
+    #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
+    pub threshold: Option<f32>,
     /// Leave alone what is there already, to go on where a rendering was interrupted
     #[arg(long)]
     pub skip_existing: bool,
@@ -257,7 +266,7 @@ impl Tracing {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let mut scene = crate::load::load_with(&self.scene, self.size, skips)?;
         if let Some(spp) = self.spp {
-            scene.film.spp = spp;
+            (scene.film.spp, scene.film.adaptive) = (spp, None);
         }
         if let Some(depth) = self.max_depth {
             scene.film.max_depth = depth;

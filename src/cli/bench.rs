@@ -6,11 +6,11 @@ use std::time::Duration;
 use clap::Args;
 
 use crate::cli::args::Tracing;
-use crate::cli::values::{BackendName, PrecisionName, size, wait};
+use crate::cli::values::{BackendName, PrecisionName, SampleRange, sample_range, size, wait};
 use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
-use crate::measure::bench::{self, Options, Setup};
+use crate::measure::bench::{self, Options, Samples, Setup};
 use crate::scene::check::MAX_SPP;
 use crate::scene::{Scene, detail};
 use crate::write;
@@ -20,7 +20,7 @@ const QUICK_SIDE: u32 = 320;
 
 #[derive(Args)]
 #[command(after_help = "\
-Every mode (backend, precision, samples per pixel) is run several times, in turns, and its picture held \
+Every mode (backend, precision, quality of Embree's trees, samples per pixel) is run several times, in turns, and its picture held \
 against a reference: certified, with many samples. The folder gets bench.json, bench.csv, \
 time-vs-error.svg and report.html, one page that holds everything.
 
@@ -43,6 +43,10 @@ pub struct Bench {
     /// Samples per pixel, such as 1,4,16 [default: 1,4,16; quick 1,4]
     #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
     pub spp: Vec<u32>,
+    /// Adaptive samples per pixel, such as 1..25,4..36 [default: these; quick 1..9; only what the
+    /// reference has as many of]
+    #[arg(long, value_name = "MIN..MAX,…", value_delimiter = ',', value_parser = sample_range, allow_negative_numbers = true)]
+    pub adaptive: Vec<SampleRange>,
     /// Samples per pixel of the reference [default: 64; quick 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
     pub reference_spp: Option<u32>,
@@ -124,19 +128,31 @@ fn tracing(arguments: &Bench) -> Tracing {
 }
 
 fn options(arguments: &Bench, camera: usize) -> Result<Options> {
-    let (spp, reference_spp, runs) =
-        if arguments.quick { (vec![1, 4], 16, 3) } else { (vec![1, 4, 16], 64, 5) };
+    let (spp, adaptive, reference_spp, runs) = match arguments.quick {
+        true => (&[1, 4][..], &[(1, 9)][..], 16, 3),
+        false => (&[1, 4, 16][..], &[(1, 25), (4, 36)][..], 64, 5),
+    };
+    let reference_spp = arguments.reference_spp.unwrap_or(reference_spp);
+    let mut spp = if arguments.spp.is_empty() { spp.to_vec() } else { arguments.spp.clone() };
+    spp.sort_unstable();
+    spp.dedup();
+    let mut adaptive: Vec<(u32, u32)> = match arguments.adaptive.is_empty() {
+        true => adaptive.iter().copied().filter(|&(_, max)| max <= reference_spp).collect(),
+        false => arguments.adaptive.iter().map(|range| (range.min, range.max)).collect(),
+    };
+    adaptive.sort_unstable();
+    adaptive.dedup();
+    let regular = spp.into_iter().map(Samples::Regular);
+    let adaptive = adaptive.into_iter().map(|(min, max)| Samples::Adaptive(min, max));
     let mut options = Options {
-        spp: if arguments.spp.is_empty() { spp } else { arguments.spp.clone() },
-        reference_spp: arguments.reference_spp.unwrap_or(reference_spp),
+        samples: regular.chain(adaptive).collect(),
+        reference_spp,
         runs: arguments.runs.unwrap_or(runs),
         budget: arguments.budget,
         threads: arguments.threads.map_or(0, usize::from),
         camera,
         setups: Setup::all(),
     };
-    options.spp.sort_unstable();
-    options.spp.dedup();
     if let Some(name) = arguments.backend {
         let backend = name.backend()?;
         options.setups.retain(|setup| setup.backend == backend);

@@ -18,6 +18,8 @@ use crate::scene::{Lens, LightKind, Needs, Scene, Skips, detail};
 struct Summary {
     size: [u32; 2],
     spp: u32,
+    /// The most samples of a pixel, where some get more than others.
+    max_spp: Option<u32>,
     geometry: Geometry,
     /// Stored triangles: each mesh once, however often it stands.
     mesh_triangles: usize,
@@ -117,6 +119,7 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
+        max_spp: scene.film.adaptive.map(|adaptive| adaptive.max),
         geometry: Geometry::of(scene),
         mesh_triangles: scene.meshes.iter().map(|m| m.triangles.len()).sum(),
         meshes: scene.meshes.len(),
@@ -158,7 +161,8 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
         let g = &self.geometry;
-        writeln!(f, "picture    {width}x{height}, {} samples per pixel", self.spp)?;
+        let most = self.max_spp.map_or(String::new(), |max| format!(" to {max}"));
+        writeln!(f, "picture    {width}x{height}, {}{most} samples per pixel", self.spp)?;
         writeln!(f, "spheres    {}", g.spheres)?;
         writeln!(f, "planes     {}", g.planes)?;
         writeln!(

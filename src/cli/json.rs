@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::integrator::{self, Counts, RayCounts};
+use crate::integrator::{self, Counts, RayCounts, sample_steps};
 use crate::intersect::{BuildQuality, Built};
 use crate::render::Statistics;
-use crate::scene::{Needs, Scene, Skips, Work};
+use crate::scene::{self, FilmSettings, Needs, Scene, Skips, Work};
 
 /// `render --stats`.
 #[derive(Serialize)]
@@ -18,6 +18,8 @@ pub struct Stats {
     pub threads: usize,
     pub size: [u32; 2],
     pub spp: u32,
+    /// What of the pixels got more samples; null where all have as many.
+    pub adaptive: Option<Adaptive>,
     /// How many frames were rendered; what is counted and timed is that of all of them.
     pub frames: usize,
     pub geometry: Geometry,
@@ -37,6 +39,27 @@ pub struct Stats {
     /// What of it Embree had, at its own peak; null without Embree.
     pub embree_peak_memory_bytes: Option<u64>,
     pub warnings: Vec<String>,
+}
+
+#[derive(Serialize)]
+pub struct Adaptive {
+    /// The most samples of a pixel.
+    pub max: u32,
+    /// From which difference on colours disagree.
+    pub threshold: f32,
+    /// Samples after each step, the first of which every pixel has.
+    pub steps: Vec<usize>,
+    /// Pixels that went on to each step after the first, of all frames.
+    pub refined: Vec<u64>,
+}
+
+impl Adaptive {
+    fn of(film: &FilmSettings, counts: &Counts) -> Option<Self> {
+        let scene::Adaptive { max, threshold } = film.adaptive?;
+        let steps = sample_steps(film);
+        let refined = counts.refined[..steps.len() - 1].to_vec();
+        Some(Self { max, threshold, steps, refined })
+    }
 }
 
 #[derive(Serialize)]
@@ -160,6 +183,7 @@ impl Stats {
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,
+            adaptive: Adaptive::of(&scene.film, &statistics.counts),
             frames,
             geometry: Geometry::of(scene),
             build: statistics.into(),

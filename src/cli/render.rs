@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::cli::args::Render;
 use crate::cli::frames::Plan;
 use crate::cli::json::Stats;
-use crate::cli::values::ViewName;
+use crate::cli::values::{SampleRange, ViewName};
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
 use crate::film::View;
@@ -14,7 +14,7 @@ use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::animation::Poses;
-use crate::scene::{Scene, Skips, Tone, detail};
+use crate::scene::{Adaptive, FilmSettings, Scene, Skips, Tone, detail};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -27,9 +27,7 @@ pub fn run(arguments: &Render) -> Outcome {
     output::check_json(arguments.stats.as_ref())?;
     let skips = Skips::without(&arguments.no_skip)?;
     let (mut scene, camera) = arguments.tracing.load_animated(skips)?;
-    if arguments.view != ViewName::Beauty {
-        scene.film.spp = 1;
-    }
+    set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
     let plan = Plan::new(arguments, &scene, outputs)?;
@@ -73,6 +71,26 @@ pub fn run(arguments: &Render) -> Outcome {
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)
+}
+
+/// Applies the flags that say how many samples pixels have.
+fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
+    if arguments.view != ViewName::Beauty {
+        (film.spp, film.adaptive) = (1, None);
+    }
+    if let Some(SampleRange { min, max }) = arguments.adaptive {
+        let threshold = film.adaptive.map_or(Adaptive::THRESHOLD, |adaptive| adaptive.threshold);
+        (film.spp, film.adaptive) = (min, Some(Adaptive { max, threshold }));
+    }
+    match (arguments.threshold, &mut film.adaptive) {
+        (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
+        (Some(_), None) => {
+            return Err(Error::input("--threshold is about adaptive samples, and there are none")
+                .help("add `--adaptive 1..25`, or leave --threshold out"));
+        }
+        _ => {}
+    }
+    Ok(())
 }
 
 /// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
@@ -183,6 +201,8 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
             tone,
             ("--half", arguments.half),
             ("--spp", arguments.tracing.spp.is_some()),
+            ("--adaptive", arguments.adaptive.is_some()),
+            ("--threshold", arguments.threshold.is_some()),
             ("--max-depth", arguments.tracing.max_depth.is_some()),
         ];
         if let Some((flag, _)) = flags.iter().find(|(_, given)| *given) {
@@ -263,10 +283,16 @@ fn metadata(
     precision: Precision,
 ) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
-    [
+    let mut entries = vec![
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
+    ];
+    if let Some(Adaptive { max, threshold }) = scene.film.adaptive {
+        entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
+        entries.push(("threshold", threshold.to_string()));
+    }
+    entries.extend([
         ("max_depth", scene.film.max_depth.to_string()),
         ("cutoff", scene.film.cutoff.to_string()),
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
@@ -275,7 +301,6 @@ fn metadata(
         ("png_exposure", scene.film.exposure.to_string()),
         ("png_tone", format!("{:?}", scene.film.tone).to_lowercase()),
         ("png_transfer", format!("{:?}", scene.film.transfer).to_lowercase()),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    ]);
+    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

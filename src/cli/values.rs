@@ -129,6 +129,30 @@ pub fn wait(text: &str) -> std::result::Result<Duration, String> {
     seconds.map(Duration::from_secs_f64).ok_or("expected seconds, from 0.001 to 1e6".to_owned())
 }
 
+/// From how many to how many samples a pixel has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleRange {
+    pub min: u32,
+    pub max: u32,
+}
+
+pub fn sample_range(text: &str) -> std::result::Result<SampleRange, String> {
+    let parse = || {
+        let (min, max) = text.split_once("..")?;
+        Some(SampleRange { min: min.trim().parse().ok()?, max: max.trim().parse().ok()? })
+    };
+    let range = parse().ok_or("expected MIN..MAX samples per pixel, such as 1..25")?;
+    match crate::scene::check::check_samples(range.min, range.max) {
+        Ok(()) => Ok(range),
+        Err(e) => Err(e.message().to_owned()),
+    }
+}
+
+pub fn share(text: &str) -> std::result::Result<f32, String> {
+    let in_range = |x: &f32| (0.0..=1.0).contains(x);
+    text.parse().ok().filter(in_range).ok_or("expected a number from 0 to 1".to_owned())
+}
+
 pub fn finite(text: &str) -> std::result::Result<f64, String> {
     text.parse().ok().filter(|x: &f64| x.is_finite()).ok_or("expected a finite number".to_owned())
 }
@@ -141,6 +165,14 @@ pub fn not_negative(text: &str) -> std::result::Result<f32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_range_of_samples_is_two_numbers_with_two_dots() {
+        assert_eq!(sample_range("4..36"), Ok(SampleRange { min: 4, max: 36 }));
+        for bad in ["4", "4..", "..4", "4-36", "4...36", "0..4", "36..4", "1..65537", "-1..4", ""] {
+            assert!(sample_range(bad).is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn size_is_two_numbers_with_an_x() {

@@ -1,5 +1,7 @@
 //! What is counted while a picture is made.
 
+use super::adaptive::STEPS;
+
 /// How many rays were traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCounts {
@@ -27,6 +29,8 @@ pub struct Counts {
     pub rays: RayCounts,
     /// Primary rays that hit something.
     pub hits: u64,
+    /// Pixels that got more samples, at each step of an adaptive picture.
+    pub refined: [u64; STEPS],
     /// Samples whose radiance was not finite and was left out.
     pub not_finite: NotFinite,
 }
@@ -78,6 +82,7 @@ impl std::ops::AddAssign for Counts {
         self.rays.reflection += other.rays.reflection;
         self.rays.refraction += other.rays.refraction;
         self.hits += other.hits;
+        self.refined.iter_mut().zip(other.refined).for_each(|(to, other)| *to += other);
         self.not_finite.light += other.not_finite.light;
         self.not_finite.surface += other.not_finite.surface;
         self.not_finite.sum += other.not_finite.sum;

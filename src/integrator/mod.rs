@@ -4,8 +4,10 @@
 //! in each tile sample by sample: all primary rays of a sample form a wave; of what they hit, for
 //! each light, all shadow rays go out with the radiance that waits on them (`shade`); and what
 //! mirrors and glass send on forms the next wave (`follow`). A pixel's sum therefore has one
-//! order, whatever the tiles and threads.
+//! order, whatever the tiles and threads. Of an adaptive picture some pixels then get more samples
+//! (`adaptive`).
 
+mod adaptive;
 mod bodies;
 mod clearance;
 mod counts;
@@ -26,12 +28,15 @@ use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
 use crate::surface::Surface;
+use adaptive::{Note, Notes};
+pub use adaptive::{STEPS, Seen};
 use bodies::{Bodies, Interiors};
 use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts};
 use follow::Path;
 use look::{Look, has_detail};
-pub use samples::sample_positions;
+use samples::Series;
+pub use samples::{sample_positions, sample_steps};
 use shade::Light;
 use tiling::Tile;
 pub use tiling::Tiling;
@@ -43,8 +48,10 @@ pub struct Integrator<'a> {
     rays: RayMaker,
     view: View,
     tiling: Tiling,
-    /// Where in a pixel its samples lie, as offsets from its upper left corner.
-    samples: Vec<[f64; 2]>,
+    /// Where in a pixel its samples lie.
+    series: Series,
+    /// From which difference on colours disagree, if any pixels get more samples than others.
+    threshold: Option<f32>,
     /// Whether any surface is a mirror or lets light through: only then are rays followed.
     follows: bool,
     /// Whether any surface lets light through.
@@ -74,6 +81,7 @@ pub struct Scratch {
     /// The radiance of the tile's pixels: of one sample, and the sum of all.
     sample: Vec<Vec3>,
     sum: Vec<Pixel>,
+    notes: Notes,
 }
 
 /// Rays that go through the intersector together, and what they hit.
@@ -96,8 +104,10 @@ impl<'a> Integrator<'a> {
         tiling: Tiling,
     ) -> Self {
         // Debug views are not averages: one sample.
-        let spp = if view == View::Beauty { scene.film.spp } else { 1 };
-        let samples = sample_positions(&FilmSettings { spp, ..scene.film.clone() });
+        let film = match view {
+            View::Beauty => scene.film.clone(),
+            _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
+        };
         let rays = camera.rays(scene.film.size);
         let follows = scene.materials_in_use().any(|m| m.is_followed());
         let transmits = scene.materials_in_use().any(|m| m.transmit != Vec3::ZERO);
@@ -112,7 +122,8 @@ impl<'a> Integrator<'a> {
             rays,
             view,
             tiling,
-            samples,
+            series: Series::of(&film),
+            threshold: film.adaptive.map(|adaptive| adaptive.threshold),
             follows,
             transmits,
             has_detail: has_detail(scene),
@@ -132,43 +143,59 @@ impl<'a> Integrator<'a> {
         }
     }
 
-    /// Makes the rows of the strip that begins at row `first`; `pixels` are whole rows.
-    pub fn strip(&self, first: usize, pixels: &mut [Pixel], scratch: &mut Scratch) -> Counts {
+    /// Makes the rows of the strip that begins at row `first`; `pixels` are whole rows. Of an
+    /// adaptive picture they become the sums of every pixel's first samples, and `seen`, as many,
+    /// what these saw; otherwise `seen` is empty.
+    pub fn strip(
+        &self,
+        first: usize,
+        pixels: &mut [Pixel],
+        seen: &mut [Seen],
+        scratch: &mut Scratch,
+    ) -> Counts {
         let width = self.scene.film.size[0] as usize;
         let rows = pixels.len() / width;
-        let Tiling { columns: widest, block, .. } = self.tiling;
         let mut counts = Counts::default();
-        for left in (0..width).step_by(widest) {
-            let columns = widest.min(width - left);
-            scratch.tile.set([left, first], [columns, rows], block);
+        for (left, columns) in self.tiles(width) {
+            scratch.tile.set([left, first], [columns, rows], self.tiling.block);
             self.tile(scratch, &mut counts);
-            let mut rest = &scratch.sum[..];
-            for &[x, y, length] in &scratch.tile.runs {
-                let (run, after) = rest.split_at(length as usize);
-                let at = y as usize * width + left + x as usize;
-                pixels[at..at + run.len()].copy_from_slice(run);
-                rest = after;
+            let mut done = 0;
+            for [x, y, length] in scratch.tile.runs.iter().map(|run| run.map(|n| n as usize)) {
+                let (at, from) = (y * width + left + x, done..done + length);
+                pixels[at..at + length].copy_from_slice(&scratch.sum[from.clone()]);
+                if self.is_adaptive() {
+                    seen[at..at + length].copy_from_slice(&scratch.notes.seen[from]);
+                }
+                done += length;
             }
         }
         counts
     }
 
-    /// Works out the pixels of a tile.
+    /// The tiles of a strip: where each begins, and how many columns it has.
+    fn tiles(&self, width: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let widest = self.tiling.columns;
+        (0..width).step_by(widest).map(move |left| (left, widest.min(width - left)))
+    }
+
+    /// Works out the pixels of a tile: the first samples of each.
     fn tile(&self, scratch: &mut Scratch, counts: &mut Counts) {
         scratch.sum.clear();
         scratch.sum.resize(scratch.tile.count, [0.0; 3]);
-        for sample in &self.samples {
+        scratch.notes.begin();
+        let samples = self.series.steps[0];
+        for sample in &self.series.offsets[..samples] {
             self.sample(*sample, scratch, counts);
         }
-        if self.samples.len() > 1 {
-            let share = 1.0 / self.samples.len() as f32;
+        if samples > 1 && !self.is_adaptive() {
+            let share = 1.0 / samples as f32;
             scratch.sum.iter_mut().flatten().for_each(|value| *value *= share);
         }
     }
 
     /// Adds one sample of each pixel of a tile.
     fn sample(&self, offset: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { tile, wave, sum, .. } = scratch;
+        let Scratch { tile, wave, sum, notes, .. } = scratch;
         self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
         wave.rays.truncate(tile.count);
         wave.paths.clear();
@@ -181,12 +208,18 @@ impl<'a> Integrator<'a> {
             }
             return;
         }
+        if self.is_adaptive() {
+            self.arch.dispatch(Note { scene: self.scene, wave, notes });
+        }
         if self.follows {
             self.follow(scratch, counts);
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
             light.take_samples(wave.rays.len(), sample, counts);
+        }
+        if let Some(threshold) = self.threshold {
+            scratch.notes.take_colors(&scratch.sample, threshold);
         }
         for (to, &radiance) in scratch.sum.iter_mut().zip(&scratch.sample) {
             let sum = Vec3::from(*to) + radiance;

@@ -1,35 +1,126 @@
-//! Where in a pixel its samples lie.
+//! Where in a pixel its samples lie, and in which order they are taken.
 
 use crate::scene::FilmSettings;
 
-/// Where the samples of a pixel lie, as offsets from its upper left corner.
-pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
-    let offset = film.sample_position.offset();
-    sample_offsets(film.spp).map(|[x, y]| [x + offset, y + offset]).collect()
-}
-
-/// Where the samples of a pixel lie, relative to its sample position; their mean is 0 and they
-/// stay within the pixel's square.
+/// Where the samples of a pixel lie, as offsets from its upper left corner; of an adaptive picture
+/// those that every pixel has.
 ///
 /// A square number of samples forms a regular grid; any other a lattice of points, evenly spaced
 /// along x and by the golden ratio along y.
-fn sample_offsets(spp: u32) -> impl Iterator<Item = [f64; 2]> {
-    let n = f64::from(spp);
+pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
+    placed(film, regular(film.spp).offsets)
+}
+
+/// How many samples a pixel can have, ascending: the first number is that of every pixel; at each of
+/// the others it is seen whether there is need of more.
+pub fn sample_steps(film: &FilmSettings) -> Vec<usize> {
+    Series::of(film).steps
+}
+
+fn placed(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    let corner = film.sample_position.offset();
+    offsets.iter_mut().flatten().for_each(|x| *x += corner);
+    offsets
+}
+
+/// The samples of a pixel in the order in which they are taken.
+pub(super) struct Series {
+    /// Where they lie: at first relative to the pixel's sample position, then to its corner.
+    pub offsets: Vec<[f64; 2]>,
+    /// How many there are after each step, ascending: where one may stop.
+    pub steps: Vec<usize>,
+}
+
+impl Series {
+    /// The samples of a film. The first step is those that every pixel has.
+    pub fn of(film: &FilmSettings) -> Self {
+        let series = match film.adaptive {
+            None => Self { steps: vec![film.spp as usize], ..regular(film.spp) },
+            Some(adaptive) => progressive(film.spp, adaptive.max),
+        };
+        Self { offsets: placed(film, series.offsets), ..series }
+    }
+}
+
+/// Regular samples: their mean is 0, and they stay within the pixel's square. Of a grid the coarser
+/// grids within it come first.
+fn regular(spp: u32) -> Series {
     let side = spp.isqrt();
+    if side * side == spp {
+        let (cells, steps) = grid(side);
+        let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
+        return Series { offsets: cells.into_iter().map(|cell| cell.map(place)).collect(), steps };
+    }
+    let n = f64::from(spp);
     let golden = (5f64.sqrt() - 1.0) / 2.0;
-    let lattice = move |i: u32| (f64::from(i) * golden).fract();
+    let lattice = |i: u32| (f64::from(i) * golden).fract();
     // The lattice's y are not symmetric; their mean is taken out, and the rest drawn together so
     // that no sample leaves the square.
     let mean = (0..spp).map(lattice).sum::<f64>() / n;
     let reach = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
-    (0..spp).map(move |i| {
-        if side * side == spp {
-            let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
-            [place(i % side), place(i / side)]
-        } else {
-            [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / reach)]
+    let place = |i| [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / reach)];
+    Series { offsets: (0..spp).map(place).collect(), steps: vec![spp as usize] }
+}
+
+/// The cells of a square grid, in an order that begins with the coarser grids within it, and how
+/// many cells there are after each step.
+///
+/// A grid whose side is an odd multiple of another's has the centres of the other's cells. After
+/// them come the corners of each such cell, where what the centre missed is found soonest.
+fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
+    let (mut cells, mut steps) = (Vec::new(), Vec::new());
+    if let Some(factor) = (3..=side).step_by(2).find(|factor| side % factor == 0) {
+        let (coarse, within) = grid(side / factor);
+        let (middle, last) = (factor / 2, factor - 1);
+        for [dx, dy] in [[middle, middle], [0, 0], [last, last], [0, last], [last, 0]] {
+            cells.extend(coarse.iter().map(|[x, y]| [x * factor + dx, y * factor + dy]));
         }
-    })
+        steps = within;
+        steps.push(cells.len());
+    }
+    let mut is_there = vec![false; side as usize * side as usize];
+    let index = |[x, y]: [u32; 2]| y as usize * side as usize + x as usize;
+    cells.iter().for_each(|&cell| is_there[index(cell)] = true);
+    let rows = (0..side).flat_map(|y| (0..side).map(move |x| [x, y]));
+    cells.extend(rows.filter(|&cell| !is_there[index(cell)]));
+    if steps.last() != Some(&cells.len()) {
+        steps.push(cells.len());
+    }
+    (cells, steps)
+}
+
+/// Samples that begin with `min` regular ones and end as `max` regular ones.
+///
+/// Where the regular ones of `max` begin with those of `min`, it is exactly these. Otherwise, of
+/// `max` regular ones, those nearest to the `min` are replaced by them, and the next to be taken are
+/// four around each, far from it.
+fn progressive(min: u32, max: u32) -> Series {
+    let (first, all) = (regular(min).offsets, regular(max));
+    if all.offsets.starts_with(&first) {
+        let steps = all.steps.into_iter().filter(|&step| step >= first.len()).collect();
+        return Series { offsets: all.offsets, steps };
+    }
+    let mut rest = all.offsets;
+    let mut take = |[x, y]: [f64; 2]| {
+        let distance = |[a, b]: [f64; 2]| (a - x) * (a - x) + (b - y) * (b - y);
+        let nearest =
+            (0..rest.len()).min_by(|&i, &j| distance(rest[i]).total_cmp(&distance(rest[j])));
+        nearest.map(|i| rest.remove(i))
+    };
+    for &at in &first {
+        take(at);
+    }
+    let (mut offsets, mut steps) = (first.clone(), vec![first.len()]);
+    if max > 5 * min {
+        let reach = 0.5 / f64::from(min).sqrt();
+        for [dx, dy] in [[-reach, -reach], [reach, reach], [-reach, reach], [reach, -reach]] {
+            offsets.extend(first.iter().filter_map(|[x, y]| take([x + dx, y + dy])));
+        }
+        steps.push(offsets.len());
+    }
+    offsets.append(&mut rest);
+    steps.push(offsets.len());
+    Series { offsets, steps }
 }
 
 #[cfg(test)]
@@ -38,24 +129,73 @@ mod tests {
 
     #[test]
     fn one_sample_lies_at_the_sample_position() {
-        assert_eq!(sample_offsets(1).collect::<Vec<_>>(), [[0.0, 0.0]]);
+        assert_eq!(regular(1).offsets, [[0.0, 0.0]]);
     }
 
     #[test]
     fn four_samples_form_a_grid() {
         let expected = [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]];
-        assert_eq!(sample_offsets(4).collect::<Vec<_>>(), expected);
+        assert_eq!(regular(4).offsets, expected);
     }
 
     #[test]
     fn samples_never_shift_the_picture_nor_leave_the_pixel() {
         for spp in 1..100 {
             let mut mean = [0.0; 2];
-            for s in sample_offsets(spp) {
+            for s in regular(spp).offsets {
                 assert!(s.iter().all(|x| x.abs() <= 0.5), "{spp}: {s:?}");
                 mean = [mean[0] + s[0], mean[1] + s[1]];
             }
             assert!(mean.iter().all(|m| m.abs() < 1e-12), "{spp}: {mean:?}");
+        }
+    }
+
+    /// In one order, to be compared as sets.
+    fn sorted(mut samples: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        samples.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
+        samples
+    }
+
+    #[test]
+    fn a_square_number_of_samples_is_every_cell_of_a_grid_once() {
+        for side in [1u32, 2, 3, 5, 6, 7, 9, 15, 22] {
+            let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
+            let rows = (0..side).flat_map(|y| (0..side).map(move |x| [place(x), place(y)]));
+            assert_eq!(sorted(regular(side * side).offsets), rows.collect::<Vec<_>>(), "{side}");
+        }
+    }
+
+    #[test]
+    fn a_grid_begins_with_the_coarser_ones_within_it() {
+        for (coarse, fine) in [(1, 9), (1, 25), (4, 36), (4, 100), (9, 81), (1, 81), (25, 225)] {
+            assert!(regular(fine).offsets.starts_with(&regular(coarse).offsets), "{coarse} {fine}");
+        }
+        assert_eq!(regular(81).steps, [1, 5, 9, 45, 81]);
+        assert_eq!(progressive(9, 81).steps, [9, 45, 81]);
+    }
+
+    #[test]
+    fn adaptive_samples_begin_with_the_regular_ones_and_are_as_many_as_asked_for() {
+        for (min, max) in [(1, 1), (1, 2), (1, 16), (2, 9), (3, 17), (4, 64), (4, 5), (5, 100)] {
+            let Series { offsets, steps } = progressive(min, max);
+            assert!(offsets.starts_with(&regular(min).offsets), "{min} {max}");
+            assert_eq!((offsets.len(), steps[0]), (max as usize, min as usize));
+            assert_eq!(steps.last(), Some(&offsets.len()));
+            assert!(steps.is_sorted_by(|a, b| a < b), "{steps:?}");
+            assert!(offsets.as_flattened().iter().all(|x| x.abs() <= 0.5));
+        }
+    }
+
+    #[test]
+    fn where_a_sample_may_stop_the_mean_is_the_sample_position() {
+        for spp in [9, 25, 36, 49, 81, 100, 225] {
+            let Series { offsets, steps } = regular(spp);
+            for step in steps {
+                for axis in 0..2 {
+                    let sum: f64 = offsets[..step].iter().map(|s| s[axis]).sum();
+                    assert!(sum.abs() < 1e-11, "{spp} {step}: {sum}");
+                }
+            }
         }
     }
 }

@@ -60,6 +60,18 @@ impl Tile {
         }
     }
 
+    /// Makes it of some pixels, by their columns and rows in the picture; it has no runs.
+    pub fn pick(&mut self, pixels: impl Iterator<Item = [usize; 2]>) {
+        *self = Self {
+            places: std::mem::take(&mut self.places),
+            runs: std::mem::take(&mut self.runs),
+            ..Self::default()
+        };
+        self.places.clear();
+        self.runs.clear();
+        pixels.for_each(|[column, row]| self.add(column, row));
+    }
+
     fn add(&mut self, column: usize, row: usize) {
         let lane = self.count % LANES;
         if lane == 0 {

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::scene::{Camera, Lens, LightKind, Mesh, Scene, Texture};
+use crate::scene::{Adaptive, Camera, Lens, LightKind, Mesh, Scene, Texture};
 
 /// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -27,7 +27,14 @@ impl Scene {
     /// The first thing that is not so, with the object's index.
     pub fn check(&self) -> Result<()> {
         check_size(self.film.size)?;
-        check_spp(self.film.spp)?;
+        let Adaptive { max, threshold } = self
+            .film
+            .adaptive
+            .unwrap_or(Adaptive { max: self.film.spp, threshold: Adaptive::THRESHOLD });
+        check_samples(self.film.spp, max)?;
+        require((0.0..=1.0).contains(&threshold), || {
+            format!("the threshold must be from 0 to 1, found {threshold}")
+        })?;
         color(|| "the background".to_owned(), self.film.background)?;
         require(self.film.max_depth <= MAX_DEPTH, || {
             format!("max_depth must be at most {MAX_DEPTH}, found {}", self.film.max_depth)
@@ -147,13 +154,18 @@ pub fn check_size(size: [u32; 2]) -> Result<()> {
     .map_err(|e| e.help(format!("each side at least 1, and at most {MAX_PIXELS} pixels in all")))
 }
 
-/// Checks the samples per pixel.
+/// Checks the fewest and the most samples of a pixel.
 ///
 /// # Errors
-/// When there are none or more than [`MAX_SPP`].
-fn check_spp(spp: u32) -> Result<()> {
-    require((1..=MAX_SPP).contains(&spp), || {
-        format!("samples per pixel must be from 1 to {MAX_SPP}, found {spp}")
+/// When there are none or more than [`MAX_SPP`], or the most are fewer than the fewest.
+pub fn check_samples(min: u32, max: u32) -> Result<()> {
+    for spp in [min, max] {
+        require((1..=MAX_SPP).contains(&spp), || {
+            format!("samples per pixel must be from 1 to {MAX_SPP}, found {spp}")
+        })?;
+    }
+    require(min <= max, || {
+        format!("the most samples per pixel, {max}, are fewer than the fewest, {min}")
     })
 }
 

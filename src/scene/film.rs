@@ -60,6 +60,21 @@ impl SamplePosition {
     }
 }
 
+/// More samples where neighbouring ones disagree: in what they hit, in its normal, or in colour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Adaptive {
+    /// The most samples of a pixel, no fewer than every pixel has.
+    pub max: u32,
+    /// From which difference on two colours disagree, in [0, 1]: in any channel, of the square
+    /// roots of their radiance, which is about what a PNG shows. At 0 all do.
+    pub threshold: f32,
+}
+
+impl Adaptive {
+    /// The threshold where none is asked for.
+    pub const THRESHOLD: f32 = 0.1;
+}
+
 /// What the picture is to be.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmSettings {
@@ -67,6 +82,8 @@ pub struct FilmSettings {
     pub size: [u32; 2],
     /// Samples per pixel, at least 1.
     pub spp: u32,
+    /// Where a pixel gets more than these, if any does.
+    pub adaptive: Option<Adaptive>,
     /// How the PNG encodes what the tone curve leaves.
     pub transfer: Transfer,
     /// The PNG's radiance is multiplied with 2 to the power of this.
@@ -89,6 +106,7 @@ impl Default for FilmSettings {
         Self {
             size: [1280, 720],
             spp: 1,
+            adaptive: None,
             transfer: Transfer::Srgb,
             exposure: 0.0,
             tone: Tone::None,

@@ -17,7 +17,7 @@ mod tone;
 
 pub use camera::{Camera, Lens, RayMaker};
 pub use faces::Faces;
-pub use film::{FilmSettings, SamplePosition, Transfer};
+pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};
 pub(crate) use mesh::GRAIN;

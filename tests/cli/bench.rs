@@ -4,6 +4,9 @@ use super::*;
 
 const FILES: [&str; 4] = ["bench.csv", "bench.json", "report.html", "time-vs-error.svg"];
 
+/// How many setups there are: Embree's with two kinds of trees.
+const SETUPS: usize = if cfg!(feature = "embree") { 6 } else { 2 };
+
 /// A folder in which `bench` was run with these flags, with what it left in `out`.
 #[track_caller]
 fn benched(scene: &str, flags: &str) -> Folder {
@@ -45,13 +48,15 @@ fn bench_json_has_every_field() {
     }
     assert_eq!(report["reference"]["spp"], 16);
     assert!(report["reference"]["mode"].as_str().unwrap().contains("certified"));
-    let setups = if cfg!(feature = "embree") { 4 } else { 2 };
-    assert_eq!(rows(&report).len(), setups * 2);
+    let samples: Vec<_> =
+        rows(&report).iter().map(|row| row["samples"].as_str().unwrap()).collect();
+    assert_eq!(samples, ["1", "4", "1..9"].repeat(SETUPS));
     for row in rows(&report) {
         for name in ["build_ms", "render_ms", "total_ms", "rmse", "max", "flip"] {
             assert!(row[name].as_f64().is_some_and(|x| x >= 0.0), "{name} in {row}");
         }
-        assert!(row["spp"].is_u64() && row["runs"] == 1 && row["hits_wrong"] == 0, "{row}");
+        assert!(row["runs"] == 1 && row["hits_wrong"] == 0, "{row}");
+        assert_eq!(row["quality"] == "", row["backend"] == "rust", "{row}");
         let dominated = row["standing"] == "dominated";
         assert_eq!(row["dominated_by"].is_string(), dominated, "{row}");
     }
@@ -83,7 +88,7 @@ fn bench_finds_no_error_in_the_reference_itself() {
     let report = json(&benched(SPHERE, "--spp 1,4 --reference-spp 4"));
     for row in rows(&report).iter().filter(|row| row["precision"] == "certified") {
         let errors = ["rmse", "max", "flip"].map(|name| row[name].as_f64().unwrap());
-        let itself = row["spp"] == 4;
+        let itself = row["samples"] == "4";
         assert!(errors.iter().all(|error| (*error == 0.0) == itself), "{row}");
     }
 }
@@ -92,13 +97,13 @@ fn bench_finds_no_error_in_the_reference_itself() {
 fn bench_errors_are_those_that_diff_tells() {
     let folder = Folder::with_everything();
     folder.run("bench scene.toml --out out --runs 1 --spp 1 --reference-spp 4").good();
-    folder.run("render scene.toml -o a.png -o a.exr --spp 1").good();
+    folder.run("render scene.toml -o a.png -o a.exr --spp 1 --bvh medium").good();
     folder.run("render scene.toml -o b.png -o b.exr --spp 4 --precision certified").good();
     let diff = |arguments: &str| folder.run(&format!("diff {arguments} --json -")).json();
     let (exr, png) = (diff("a.exr b.exr"), diff("a.png b.png"));
     let report = json(&folder);
     let row = &rows(&report)[0];
-    assert_eq!((&row["precision"], &row["spp"]), (&"fast".into(), &1.into()));
+    assert_eq!((&row["precision"], &row["samples"]), (&"fast".into(), &"1".into()));
     assert!(row["rmse"].as_f64().unwrap() > 0.0);
     let told = [&exr["rmse"], &exr["max"], &png["flip"]].map(|x| x.as_f64().unwrap());
     let found = [&row["rmse"], &row["max"], &row["flip"]].map(|x| x.as_f64().unwrap());
@@ -140,7 +145,7 @@ fn bench_page_needs_nothing_but_itself() {
 #[test]
 fn bench_page_shows_equal_pictures_once() {
     let html = String::from_utf8(benched(SPHERE, "--quick").read("out/report.html")).unwrap();
-    assert_eq!(html.matches("<figure>").count(), 1 + 2);
+    assert_eq!(html.matches("<figure>").count(), 1 + 3);
 }
 
 /// No processor traces a million rays in a millisecond.
@@ -151,7 +156,7 @@ fn bench_leaves_out_what_has_no_time_and_says_why() {
     let report = json(&folder);
     assert!(rows(&report).is_empty());
     let left_out = report["left_out"].as_array().unwrap();
-    assert_eq!(left_out.len(), if cfg!(feature = "embree") { 4 } else { 2 });
+    assert_eq!(left_out.len(), SETUPS);
     for mode in left_out {
         assert!(mode["reason"].as_str().unwrap().contains("would take about"), "{mode}");
     }
@@ -193,6 +198,8 @@ fn bench_refuses_flags_that_make_no_sense_before_it_makes_anything() {
         ("", "--out"),
         ("--out out --spp 0", "--spp"),
         ("--out out --spp 1,x", "--spp"),
+        ("--out out --adaptive 4", "--adaptive"),
+        ("--out out --adaptive 1..225", "--reference-spp 900"),
         ("--out out --runs 0", "--runs"),
         ("--out out --budget -1", "--budget"),
         ("--out out --camera back", "no camera `back`"),

@@ -228,6 +228,23 @@ fn samples_are_from_1_to_65536() {
 }
 
 #[test]
+fn adaptive_samples_are_a_range_and_alone() {
+    refused_seen("film.adaptive = ¦5\n");
+    refused_seen("film.adaptive = [¦0, 5]\n");
+    refused_seen("film.adaptive = [1, ¦65537]\n");
+    let error = refused_seen("film.adaptive = ¦[9, 4]\n");
+    assert!(error.message().contains("fewer than the fewest"), "{error}");
+    let error = refused_seen("[film]\nspp = 4\nadaptive = ¦[1, 4]\n");
+    assert_says(
+        &error,
+        "`spp` and `adaptive` both say how many samples a pixel has",
+        "leave one of them out",
+    );
+    let error = refused_seen("film.threshold = ¦0.5\n");
+    assert!(advice(&error).contains("adaptive = [1, 25]"), "{error}");
+}
+
+#[test]
 fn a_word_that_is_no_choice_is_at_the_word() {
     for (line, help) in [
         ("film.transfer = ¦\"sRGB\"", "did you mean `srgb`?"),

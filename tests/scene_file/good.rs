@@ -1,8 +1,8 @@
 //! What scene files mean.
 
 use envers::scene::{
-    Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition, Shadow,
-    Sphere, Tone, Transfer,
+    Adaptive, Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition,
+    Shadow, Sphere, Tone, Transfer,
 };
 use glam::{DVec3, Vec3};
 
@@ -29,6 +29,7 @@ fn every_key_of_the_film_is_read() {
     let expected = FilmSettings {
         size: [1000, 500],
         spp: 4,
+        adaptive: None,
         transfer: Transfer::None,
         exposure: -1.5,
         tone: Tone::Aces,
@@ -38,6 +39,14 @@ fn every_key_of_the_film_is_read() {
         cutoff: 0.25,
     };
     assert_eq!(film, expected);
+}
+
+#[test]
+fn adaptive_samples_are_read_with_their_threshold() {
+    let film = seen("film.adaptive = [4, 36]\nfilm.threshold = 0.25\n").film;
+    assert_eq!((film.spp, film.adaptive), (4, Some(Adaptive { max: 36, threshold: 0.25 })));
+    let film = seen("film.adaptive = [1, 25]\n").film;
+    assert_eq!(film.adaptive.map(|a| a.threshold), Some(Adaptive::THRESHOLD));
 }
 
 #[test]

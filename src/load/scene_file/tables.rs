@@ -11,7 +11,7 @@ use super::color::{Color, Pair};
 use super::spanned::{At, OneOrMore, Table, Tables};
 use super::values::{
     Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
-    Priority, Rotation, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
+    Priority, Rotation, SampleRange, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
 };
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
@@ -49,6 +49,12 @@ pub struct FilmTable {
     /// Samples per pixel, from 1 to 65536.
     #[schemars(extend("default" = 1))]
     pub spp: Option<Samples>,
+    /// The fewest and the most samples per pixel, in place of `spp`: more than the fewest where
+    /// neighbouring ones disagree in what they hit, in its normal or in colour.
+    pub adaptive: Option<At<SampleRange>>,
+    /// From which difference on two colours disagree, from 0 (always) to 1; for `adaptive`, where it
+    /// is 0.1 unless it is said.
+    pub threshold: Option<At<Share>>,
     /// How the PNG encodes light, and what hex colours are decoded by: the sRGB curve, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,

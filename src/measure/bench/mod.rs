@@ -21,11 +21,11 @@ use std::time::Duration;
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::render;
-use crate::scene::Scene;
+use crate::scene::{FilmSettings, Scene};
 
 pub use front::dominators;
 pub use machine::Machine;
-pub use mode::{Mode, Setup};
+pub use mode::{Mode, Samples, Setup};
 pub use page::page;
 pub use plot::plot;
 pub use report::{LeftOut, Plate, Report, Row, Standing, Stated};
@@ -38,8 +38,9 @@ use trial::Trial;
 pub struct Options {
     /// What is built; at least one. The reference is made by the backend of the first.
     pub setups: Vec<Setup>,
-    /// Samples per pixel, each tried with every setup; ascending, each at least 1.
-    pub spp: Vec<u32>,
+    /// How many samples a pixel has, each tried with every setup; each at least 1, regular ones
+    /// ascending and first.
+    pub samples: Vec<Samples>,
     /// Samples per pixel of the reference, no fewer than those of any mode.
     pub reference_spp: u32,
     /// Runs of each mode, at least 1.
@@ -57,7 +58,11 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             setups: Setup::all(),
-            spp: vec![1, 4, 16],
+            samples: [1, 4, 16]
+                .map(Samples::Regular)
+                .into_iter()
+                .chain([Samples::Adaptive(1, 25), Samples::Adaptive(4, 36)])
+                .collect(),
             reference_spp: 64,
             runs: 5,
             budget: Duration::from_secs(60),
@@ -81,10 +86,11 @@ impl Options {
         let Some(first) = self.setups.first() else {
             return Err(Error::input("there is nothing to try"));
         };
-        if self.runs == 0 || self.spp.contains(&0) {
+        let none = FilmSettings::default();
+        if self.runs == 0 || self.samples.iter().any(|samples| samples.film(&none).spp == 0) {
             return Err(Error::input("a mode has at least one run, of at least one sample"));
         }
-        let most = self.spp.iter().max().copied().unwrap_or(1);
+        let most = self.samples.iter().map(|samples| samples.most()).max().unwrap_or(1);
         if most > self.reference_spp {
             return Err(Error::input(format!(
                 "the reference has {} samples per pixel, and a mode {most}",
@@ -93,7 +99,7 @@ impl Options {
             .help(format!("give it --reference-spp {}, or more", 4 * most)));
         }
         let setup = Setup { precision: Precision::Certified, ..*first };
-        Ok(Mode { setup, spp: self.reference_spp })
+        Ok(Mode { setup, samples: Samples::Regular(self.reference_spp) })
     }
 }
 
@@ -114,7 +120,7 @@ pub fn bench(
     render::check_camera(scene, options.camera)?;
     let scene = &scene.at(0.0)?;
     render::in_pool(options.threads, || {
-        let of_modes: f64 = options.spp.iter().copied().map(f64::from).sum();
+        let of_modes: f64 = options.samples.iter().map(|samples| f64::from(samples.most())).sum();
         let of_modes = of_modes * options.setups.len() as f64 * f64::from(options.runs);
         let of_reference = f64::from(options.reference_spp);
         let total = of_reference + of_modes;
@@ -124,7 +130,7 @@ pub fn bench(
         let mut trials: Vec<Trial> = trials.collect();
         let done = Cell::new(of_reference);
         let step = |mode: &Mode| {
-            done.set(done.get() + f64::from(mode.samples()));
+            done.set(done.get() + f64::from(mode.samples.most()));
             progress((done.get() / total) as f32);
         };
         for _ in 0..options.runs {

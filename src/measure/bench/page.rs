@@ -20,7 +20,9 @@ const HOW_TO_READ: &str = "\
 The plot has a mark for each mode: how long building and rendering take, the median of the runs, \
 which took turns; and how far its picture is from the reference. Farther left is faster, farther \
 down is nearer to the reference. The grey stairs are the front; they go through the modes that no \
-other beats in time and RMSE together. The number at a mark is that of the samples per pixel.";
+other beats in time and RMSE together. The number at a mark is that of the samples per pixel; two \
+numbers are the fewest and the most, where only some pixels have more. A setup that is called low has \
+Embree's quickly built trees.";
 
 const STANDINGS: &str = "\
 <b>front</b>: no other mode is as fast with as small an RMSE. <b>hits</b>: one is, but with more wrong \

@@ -74,7 +74,7 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
     for (setup, color) in rows.chunk_by(|a, b| a.setup() == b.setup()).zip(COLORS.iter().cycle()) {
         let color = *color;
         chart
-            .draw_series(LineSeries::new(setup.iter().map(at), color.stroke_width(1)))?
+            .draw_series(LineSeries::new(in_order(setup, &at), color.stroke_width(1)))?
             .label(setup[0].setup())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
         let of = |standing| setup.iter().filter(move |r| r.standing == standing).map(at);
@@ -84,8 +84,8 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
         chart.draw_series(of(Standing::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
         let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
         let label = |row: &Row| match row.rmse > 0.0 {
-            true => row.spp.to_string(),
-            false => format!("{}, no error", row.spp),
+            true => row.samples.clone(),
+            false => format!("{}, no error", row.samples),
         };
         chart.draw_series(setup.iter().map(|row| {
             EmptyElement::at(at(row)) + Text::new(label(row), (6, -6), above.clone())
@@ -115,6 +115,13 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
         .draw()?;
     area.present()?;
     Ok(())
+}
+
+/// The modes of a setup from the fastest to the slowest.
+fn in_order(rows: &[Row], at: &dyn Fn(&Row) -> (f64, f64)) -> Vec<(f64, f64)> {
+    let mut points: Vec<_> = rows.iter().map(at).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points
 }
 
 /// The front as stairs, from the upper border to the right one: what lies on them or beyond is to

@@ -46,7 +46,7 @@ impl Reference {
         let start = std::time::Instant::now();
         let intersector = mode.setup.build(scene)?;
         let build = start.elapsed();
-        let of_mode = Scene { film: mode.film(&scene.film), ..scene.clone() };
+        let of_mode = Scene { film: mode.samples.film(&scene.film), ..scene.clone() };
         let options = Options { camera, ..Options::default() };
         let (film, _, render) =
             render::with_intersector(&of_mode, &options, &*intersector, progress);

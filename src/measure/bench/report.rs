@@ -58,8 +58,10 @@ pub struct Row {
     pub backend: &'static str,
     /// How far hits can be trusted.
     pub precision: &'static str,
-    /// Samples per pixel.
-    pub spp: u32,
+    /// How good Embree's trees are; empty where there is no Embree.
+    pub quality: &'static str,
+    /// Samples per pixel, such as `4` or, where they are adaptive, `1..25`.
+    pub samples: String,
     /// How often it was run.
     pub runs: usize,
     /// Median time to build the intersector, in milliseconds.
@@ -137,7 +139,7 @@ impl Report {
     ) -> Self {
         let stated = Stated {
             mode: mode.name(),
-            spp: mode.spp,
+            spp: mode.samples.most(),
             build_ms: milliseconds(reference.build),
             render_ms: milliseconds(reference.render),
         };
@@ -184,20 +186,21 @@ impl Report {
 
 impl Row {
     /// What was built for it, such as `embree fast`.
-    pub fn setup(&self) -> String {
-        format!("{} {}", self.backend, self.precision)
+    pub fn setup(&self) -> &str {
+        self.mode.strip_suffix(&format!(" {} spp", self.samples)).unwrap_or(&self.mode)
     }
 
     /// None where the mode was not run.
     fn new(attempt: &Attempt, trial: &Trial) -> Option<Self> {
         let distance = attempt.distance.as_ref()?;
-        let Mode { setup: Setup { backend, precision }, spp } = attempt.mode;
+        let Mode { setup: Setup { backend, precision, quality }, samples } = attempt.mode;
         let (build_ms, render_ms) = (median(&trial.builds), median(&attempt.renders));
         Some(Self {
             mode: attempt.mode.name(),
             backend: backend.name(),
             precision: precision.name(),
-            spp,
+            quality: quality.map_or("", |quality| quality.name()),
+            samples: samples.name(),
             runs: attempt.renders.len(),
             build_ms,
             render_ms,

@@ -7,15 +7,17 @@ use super::report::{LeftOut, Report, Stated};
 impl Report {
     /// The rows as comma-separated values, with a line of names first.
     pub fn csv(&self) -> String {
-        let mut text = "backend,precision,spp,runs,build_ms,render_ms,total_ms,rmse,max,flip,\
+        let mut text =
+            "backend,precision,quality,samples,runs,build_ms,render_ms,total_ms,rmse,max,flip,\
                         hits_wrong,standing\n"
-            .to_owned();
+                .to_owned();
         for r in &self.modes {
             text += &format!(
-                "{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                "{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
                 r.backend,
                 r.precision,
-                r.spp,
+                r.quality,
+                r.samples,
                 r.runs,
                 r.build_ms,
                 r.render_ms,
@@ -36,13 +38,13 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "mode                      runs   build ms  render ms   RMSE      max       FLIP      wrong  \
+            "mode                            runs   build ms  render ms   RMSE      max       FLIP      wrong  \
              standing"
         )?;
         for r in &self.modes {
             writeln!(
                 f,
-                "{:24} {:5} {:10.1} {:10.1}   {:.2e}  {:.2e}  {:.6} {:7}  {}",
+                "{:30} {:5} {:10.1} {:10.1}   {:.2e}  {:.2e}  {:.6} {:7}  {}",
                 r.mode,
                 r.runs,
                 r.build_ms,
@@ -55,7 +57,7 @@ impl fmt::Display for Report {
             )?;
         }
         for LeftOut { mode, reason } in &self.left_out {
-            writeln!(f, "{mode:24} left out: {reason}")?;
+            writeln!(f, "{mode:30} left out: {reason}")?;
         }
         let Stated { mode, build_ms, render_ms, .. } = &self.reference;
         let seconds = (build_ms + render_ms) * 1e-3;

@@ -3,13 +3,13 @@
 use std::time::{Duration, Instant};
 
 use super::Options;
-use super::mode::{Mode, Setup};
+use super::mode::{Mode, Samples, Setup};
 use super::reference::{Distance, Reference};
 use crate::error::Result;
 use crate::film::Film;
 use crate::intersect::Intersector;
 use crate::render::{self, Options as Rendering};
-use crate::scene::Scene;
+use crate::scene::{FilmSettings, Scene};
 
 /// By how much smaller, each way, the picture is that tells how long the others will take.
 const PROBE: u32 = 8;
@@ -43,13 +43,13 @@ pub struct Attempt {
 
 impl<'a> Trial<'a> {
     pub fn new(scene: &'a Scene, options: &'a Options, setup: Setup) -> Self {
-        let attempt = |&spp: &u32| Attempt {
-            mode: Mode { setup, spp },
+        let attempt = |&samples: &Samples| Attempt {
+            mode: Mode { setup, samples },
             renders: Vec::new(),
             spent: Duration::ZERO,
             distance: None,
         };
-        let modes = options.spp.iter().map(attempt).collect();
+        let modes = options.samples.iter().map(attempt).collect();
         let (builds, pace) = (Vec::new(), Duration::ZERO);
         Self { scene, options, setup, builds, pace, wrong_hits: None, modes }
     }
@@ -81,7 +81,7 @@ impl<'a> Trial<'a> {
         let size = self.scene.film.size.map(|n| n.div_ceil(PROBE));
         let [whole, part] = [self.scene.film.size, size].map(|[w, h]| f64::from(w) * f64::from(h));
         let mut small = self.scene.clone();
-        (small.film.size, small.film.spp) = (size, 1);
+        small.film = FilmSettings { size, ..Samples::Regular(1).film(&small.film) };
         // Once to warm up.
         let [_, (_, time)] = [(); 2].map(|()| self.render(&small, by));
         self.pace = time.mul_f64(whole / part);
@@ -95,9 +95,11 @@ impl<'a> Trial<'a> {
         reference: &Reference,
     ) -> Result<()> {
         let mode = self.modes[index].mode;
-        let scene = Scene { film: mode.film(&self.scene.film), ..self.scene.clone() };
+        let scene = Scene { film: mode.samples.film(&self.scene.film), ..self.scene.clone() };
         let (film, time) = self.render(&scene, by);
-        self.pace = time / mode.samples();
+        if let Samples::Regular(spp) = mode.samples {
+            self.pace = time / spp;
+        }
         let (whole, camera) = (self.scene, self.options.camera);
         self.wrong_hits.get_or_insert_with(|| reference.wrong_hits(whole, camera, by));
         let attempt = &mut self.modes[index];
@@ -119,9 +121,9 @@ impl<'a> Trial<'a> {
         self.builds.last().copied().unwrap_or_default()
     }
 
-    /// How long a run of the mode will take.
+    /// How long a run of the mode will take; of an adaptive one, at most.
     fn expected(&self, mode: &Mode, build: Duration) -> Duration {
-        build + self.pace * mode.samples()
+        build + self.pace * mode.samples.most()
     }
 
     /// Whether the mode has time for another run.

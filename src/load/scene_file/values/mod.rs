@@ -14,7 +14,7 @@ use serde::{Deserialize, Deserializer};
 use crate::scene::animation::MAX_FPS;
 use crate::scene::check::MAX_COORDINATE;
 pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, unit};
-pub use words::{Depth, FrameCount, Priority, Samples, ShadowKind, Size};
+pub use words::{Depth, FrameCount, Priority, SampleRange, Samples, ShadowKind, Size};
 
 /// Gives a type of value its part of the JSON Schema.
 macro_rules! value_schema {

@@ -84,6 +84,22 @@ value_schema!(Size, {
     "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1 },
 });
 
+/// The fewest and the most samples per pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct SampleRange(pub [u32; 2]);
+
+impl<'de> Deserialize<'de> for SampleRange {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let ends: [Samples; 2] = list(deserializer, "the fewest and the most samples per pixel")?;
+        Ok(Self(ends.map(|end| end.0)))
+    }
+}
+
+value_schema!(SampleRange, {
+    "type": "array", "minItems": 2, "maxItems": 2,
+    "items": { "type": "integer", "minimum": 1, "maximum": 65536 },
+});
+
 /// What keeps a light from what lies behind it.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowKind(pub Shadow);
