@@ -121,6 +121,13 @@ impl Bodies {
         self.media.is_empty()
     }
 
+    /// Whether a medium may absorb, or a surface be hidden in a body: in another one, or in its own
+    /// mesh where that runs through itself. A single sphere or plane hides nothing.
+    pub fn may_hide(&self) -> bool {
+        let absorbs = self.media.iter().any(|medium| medium.absorption != Vec3::ZERO);
+        absorbs || self.media.len() > 1 || self.instances.iter().any(|&rank| rank != NONE)
+    }
+
     /// What fills a point that these bodies hold.
     #[inline]
     pub fn medium(&self, inside: &Interiors) -> Medium {
