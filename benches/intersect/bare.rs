@@ -4,6 +4,7 @@
 
 use embree4_sys as sys;
 use envers::geometry::Ray;
+use envers::intersect::Coherence;
 use envers::scene::Scene;
 use glam::DVec3;
 
@@ -75,6 +76,10 @@ pub struct Bare {
     _spheres: Vec<[f32; 4]>,
 }
 
+// SAFETY: the library lets any number of threads query a committed scene, and queries are all that a
+// shared reference offers; the spheres are only read.
+unsafe impl Sync for Bare {}
+
 impl Bare {
     /// The same geometry, build quality and scene flags as envers's own Embree scene.
     pub fn build(scene: &Scene, width: usize) -> Self {
@@ -139,11 +144,19 @@ impl Bare {
         unsafe { sys::rtcGetDeviceProperty(self.device, property) != 0 }
     }
 
-    /// Traces every packet; returns how many rays hit.
+    /// Traces every packet as coherent; returns how many rays hit.
     pub fn closest<const W: usize>(&self, packets: &[Packet<W>]) -> usize {
+        self.trace(packets, Coherence::Coherent)
+    }
+
+    /// Traces every packet; returns how many rays hit.
+    pub fn trace<const W: usize>(&self, packets: &[Packet<W>], coherence: Coherence) -> usize {
         let mut context = Context([u32::MAX; 16]);
         let mut args = sys::RTCIntersectArguments {
-            flags: sys::RTCRayQueryFlags::COHERENT,
+            flags: match coherence {
+                Coherence::Coherent => sys::RTCRayQueryFlags::COHERENT,
+                Coherence::Incoherent => sys::RTCRayQueryFlags::INCOHERENT,
+            },
             feature_mask: sys::RTCFeatureFlags(u32::MAX),
             context: std::ptr::from_mut(&mut context).cast(),
             filter: None,

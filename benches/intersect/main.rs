@@ -5,6 +5,8 @@
 //! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
 mod bare;
+#[path = "../../examples/reference/mod.rs"]
+mod reference;
 mod scenes;
 
 use std::hint::black_box;
@@ -229,7 +231,7 @@ fn beside(
 }
 
 fn main() {
-    let cases = [Case::new("M", scenes::knot(2000, 250)), Case::new("S", scenes::spheres())];
+    let cases = [Case::new("M", scenes::knot([2000, 250])), Case::new("S", scenes::spheres())];
     let ratios_only = std::env::args().any(|a| a == "ratios" || a == "certified");
     // `cargo test --benches` runs this too: it must not take long, and measures nothing.
     if std::env::args().any(|a| a == "--test") {

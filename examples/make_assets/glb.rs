@@ -102,6 +102,7 @@ impl Glb {
     }
 
     /// A mesh of triangles over one set of vertices, flat, without a material.
+    #[allow(dead_code)] // The reference scenes have such meshes, the demo models none.
     pub fn triangles(
         &mut self,
         name: &str,

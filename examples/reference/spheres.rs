@@ -29,9 +29,10 @@ pub struct Ball {
 }
 
 /// SplitMix64: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*, OOPSLA 2014.
-struct SplitMix(u64);
+pub struct SplitMix(pub u64);
 
 impl SplitMix {
+    /// The next of all numbers.
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -41,7 +42,7 @@ impl SplitMix {
     }
 
     /// A number from `low` to below `high`.
-    fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
     }
 }
