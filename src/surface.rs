@@ -1,13 +1,15 @@
 //! What a hit means: position, normals, texture coordinates, material, side; and the rays that
 //! leave it.
 
+mod lanes;
 #[cfg(test)]
 mod tests;
 
 use glam::{DVec3, Vec3};
 
 use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
-use crate::scene::{Arrival, MaterialId, Scene};
+use crate::scene::{Arrival, MaterialId, Mesh, Plane, Scene};
+pub use lanes::{Kinds, Surfaces};
 
 /// The point of a surface that a ray hit.
 #[derive(Clone, Copy, Debug)]
@@ -22,16 +24,21 @@ pub struct Surface {
     pub normal: DVec3,
     /// The side that the viewer sees.
     pub side: Side,
+    /// What it is made of.
+    pub material: MaterialId,
+    /// What was hit.
+    pub id: PrimitiveId,
+}
+
+/// What only textures, checkers and vertex colours ask of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Detail {
     /// Texture coordinates, v running down.
     pub uv: [f32; 2],
     /// What the material's diffuse colour is multiplied with: a mesh's vertex colour, or white.
     pub tint: Vec3,
     /// The diffuse colour in place of the material's: a plane's checker.
     pub checker: Option<Vec3>,
-    /// What it is made of.
-    pub material: MaterialId,
-    /// What was hit.
-    pub id: PrimitiveId,
 }
 
 impl Surface {
@@ -84,30 +91,84 @@ impl Surface {
     }
 }
 
-fn base(id: PrimitiveId, position: DVec3, normal: DVec3, material: MaterialId) -> Surface {
-    Surface {
-        position,
-        geometric_normal: normal,
-        normal,
-        side: Side::Front,
-        uv: [0.0; 2],
-        tint: Vec3::ONE,
-        checker: None,
-        material,
-        id,
+impl Detail {
+    /// The detail of `hit` at `position`, where the geometric normal is `normal`.
+    ///
+    /// # Panics
+    /// When the hit is not one of this scene.
+    pub fn new(scene: &Scene, hit: &Hit, position: DVec3, normal: DVec3) -> Self {
+        let mut detail = Self { uv: [0.0; 2], tint: Vec3::ONE, checker: None };
+        let material = scene.material_of(hit.id);
+        let textured = scene.materials[material.0 as usize].is_textured();
+        match hit.id.geometry {
+            Geometry::Spheres if textured => detail.uv = longitude_latitude(normal),
+            Geometry::Spheres => {}
+            Geometry::Planes => {
+                let plane = &scene.planes[hit.id.primitive as usize];
+                detail.of_plane(plane, position, textured);
+            }
+            Geometry::Mesh(mesh) => {
+                let mesh = &scene.meshes[mesh as usize];
+                detail.of_mesh(mesh, hit, textured);
+            }
+        }
+        detail
     }
+
+    fn of_plane(&mut self, plane: &Plane, position: DVec3, textured: bool) {
+        if !textured && plane.checker.is_none() {
+            return;
+        }
+        let (a, b) = plane.axes();
+        let from = position - plane.point;
+        let (x, y) = (from.dot(a), from.dot(b));
+        // The whole part is taken off in f64, so that the pattern stays sharp far out.
+        if textured {
+            self.uv = [x, y].map(|x| {
+                let repeats = x / plane.texture_size;
+                (repeats - repeats.floor()) as f32
+            });
+        }
+        self.checker = plane.checker.map(|checker| {
+            let odd = |x: f64| {
+                let half = (x / checker.size).floor() * 0.5;
+                half != half.floor()
+            };
+            checker.colors[usize::from(odd(x) != odd(y))]
+        });
+    }
+
+    fn of_mesh(&mut self, mesh: &Mesh, hit: &Hit, textured: bool) {
+        let vertices = mesh.triangles[hit.id.primitive as usize];
+        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+        if textured && !mesh.uvs.is_empty() {
+            for (&i, w) in vertices.iter().zip(weights) {
+                self.uv = std::array::from_fn(|k| self.uv[k] + mesh.uvs[i as usize][k] * w as f32);
+            }
+        }
+        if !mesh.colors.is_empty() {
+            let tint = |(&i, w): (&u32, f64)| Vec3::from(mesh.colors[i as usize]) * w as f32;
+            self.tint = vertices.iter().zip(weights).map(tint).sum();
+        }
+    }
+}
+
+fn base(id: PrimitiveId, position: DVec3, normal: DVec3, material: MaterialId) -> Surface {
+    Surface { position, geometric_normal: normal, normal, side: Side::Front, material, id }
 }
 
 fn on_sphere(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let sphere = &scene.spheres[hit.id.primitive as usize];
-    let normal = (ray.at(hit.t) - sphere.center).normalize_or(DVec3::Y);
+    let normal = normal_of_sphere(sphere.center, ray.at(hit.t));
     // Put back on the sphere: the point along the ray is off by rounding of the whole distance.
     let position = sphere.center + normal * sphere.radius;
-    let mut surface = base(hit.id, position, normal, sphere.material);
-    if scene.materials[sphere.material.0 as usize].is_textured() {
-        surface.uv = longitude_latitude(normal);
-    }
-    surface
+    base(hit.id, position, normal, sphere.material)
+}
+
+/// The outward normal of a sphere near `point`.
+#[inline(always)]
+fn normal_of_sphere(center: DVec3, point: DVec3) -> DVec3 {
+    (point - center).normalize_or(DVec3::Y)
 }
 
 /// The texture coordinates of a sphere: u around the y axis, from −z through +x (the picture's
@@ -121,79 +182,55 @@ fn longitude_latitude(normal: DVec3) -> [f32; 2] {
 
 fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let plane = &scene.planes[hit.id.primitive as usize];
-    let position = ray.at(hit.t);
-    // Put back on the plane, as with the sphere.
-    let position = position - plane.normal * plane.normal.dot(position - plane.point);
-    let mut surface = base(hit.id, position, plane.normal, plane.material);
-    let textured = scene.materials[plane.material.0 as usize].is_textured();
-    if textured || plane.checker.is_some() {
-        let (a, b) = plane.axes();
-        let from = position - plane.point;
-        let (x, y) = (from.dot(a), from.dot(b));
-        // The whole part is taken off in f64, so that the pattern stays sharp far out.
-        if textured {
-            surface.uv = [x, y].map(|x| {
-                let repeats = x / plane.texture_size;
-                (repeats - repeats.floor()) as f32
-            });
-        }
-        surface.checker = plane.checker.map(|checker| {
-            let odd = |x: f64| {
-                let half = (x / checker.size).floor() * 0.5;
-                half != half.floor()
-            };
-            checker.colors[usize::from(odd(x) != odd(y))]
-        });
-    }
-    surface
+    let position = on_the_plane(plane.point, plane.normal, ray.at(hit.t));
+    base(hit.id, position, plane.normal, plane.material)
+}
+
+/// A point put back on a plane, as with the sphere.
+#[inline(always)]
+fn on_the_plane(point: DVec3, normal: DVec3, position: DVec3) -> DVec3 {
+    position - normal * normal.dot(position - point)
 }
 
 fn on_triangle(scene: &Scene, hit: &Hit) -> Surface {
+    let material = scene.instances[hit.id.instance as usize].material;
+    let (position, geometric) = flat_face(scene.triangle(hit.id), hit.u, hit.v);
+    let normal = smooth_normal(scene, hit, geometric).unwrap_or(geometric);
+    Surface { normal, ..base(hit.id, position, geometric, material) }
+}
+
+/// A point of a triangle, and the triangle's normal.
+#[inline(always)]
+fn flat_face(corners: [DVec3; 3], u: f64, v: f64) -> (DVec3, DVec3) {
+    // A degenerate triangle is never hit; the fallback only keeps the type honest.
+    let normal = triangle::area_normal(corners).normalize_or(DVec3::Y);
+    (triangle::point(corners, u, v), normal)
+}
+
+/// The interpolated normal of a triangle whose own one is `geometric`, if its mesh has normals.
+#[inline]
+fn smooth_normal(scene: &Scene, hit: &Hit, geometric: DVec3) -> Option<DVec3> {
     let instance = &scene.instances[hit.id.instance as usize];
     let mesh = &scene.meshes[instance.mesh.0 as usize];
-    let corners = scene.triangle(hit.id);
-    let area = triangle::area_normal(corners);
-    // A degenerate triangle is never hit; the fallback only keeps the type honest.
-    let geometric = area.normalize_or(DVec3::Y);
-    let mut surface =
-        base(hit.id, triangle::point(corners, hit.u, hit.v), geometric, instance.material);
+    if mesh.normals.is_empty() {
+        return None;
+    }
     let vertices = mesh.triangles[hit.id.primitive as usize];
     let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-    if !mesh.normals.is_empty() {
-        let local: DVec3 = vertices
-            .iter()
-            .zip(weights)
-            .map(|(&i, w)| DVec3::from(mesh.normals[i as usize].map(f64::from)) * w)
-            .sum();
-        // Normals go with the inverse transpose; its columns are, up to the determinant, the
-        // cross products of the matrix's columns.
-        let m = &instance.transform.matrix3;
-        let cofactor = glam::DMat3::from_cols(
-            m.y_axis.cross(m.z_axis),
-            m.z_axis.cross(m.x_axis),
-            m.x_axis.cross(m.y_axis),
-        );
-        let smooth = (cofactor * local).normalize_or(geometric);
-        // Files disagree about winding; the interpolated normal only bends the geometric one.
-        surface.normal = if smooth.dot(geometric) < 0.0 { -smooth } else { smooth };
-    }
-    let mix = |of: &[[f32; 2]]| {
-        let mut sum = [0.0f32; 2];
-        for (&i, w) in vertices.iter().zip(weights) {
-            sum = std::array::from_fn(|k| sum[k] + of[i as usize][k] * w as f32);
-        }
-        sum
-    };
-    let textured = scene.materials[instance.material.0 as usize].is_textured();
-    if textured && !mesh.uvs.is_empty() {
-        surface.uv = mix(&mesh.uvs);
-    }
-    if !mesh.colors.is_empty() {
-        surface.tint = vertices
-            .iter()
-            .zip(weights)
-            .map(|(&i, w)| Vec3::from(mesh.colors[i as usize]) * w as f32)
-            .sum();
-    }
-    surface
+    let local: DVec3 = vertices
+        .iter()
+        .zip(weights)
+        .map(|(&i, w)| DVec3::from(mesh.normals[i as usize].map(f64::from)) * w)
+        .sum();
+    // Normals go with the inverse transpose; its columns are, up to the determinant, the
+    // cross products of the matrix's columns.
+    let m = &instance.transform.matrix3;
+    let cofactor = glam::DMat3::from_cols(
+        m.y_axis.cross(m.z_axis),
+        m.z_axis.cross(m.x_axis),
+        m.x_axis.cross(m.y_axis),
+    );
+    let smooth = (cofactor * local).normalize_or(geometric);
+    // Files disagree about winding; the interpolated normal only bends the geometric one.
+    Some(if smooth.dot(geometric) < 0.0 { -smooth } else { smooth })
 }

@@ -4,14 +4,12 @@
 
 use embree4_sys as sys;
 use envers::geometry::Ray;
-use envers::intersect::Coherence;
 use envers::scene::Scene;
 use glam::DVec3;
 
-/// A packet, laid out and with room to spare as in `envers::intersect::embree`.
+/// A packet as Embree takes it, laid out and with room to spare as in `envers::intersect::embree`.
 #[repr(C, align(64))]
-#[derive(Clone)]
-pub struct Packet<const W: usize> {
+struct Record<const W: usize> {
     org: [[f32; W]; 3],
     tnear: [f32; W],
     dir: [[f32; W]; 3],
@@ -28,6 +26,42 @@ pub struct Packet<const W: usize> {
     spare: [u32; 32],
 }
 
+/// The rays of a packet, as they lie ready: no more memory goes by than must.
+#[repr(C, align(64))]
+pub struct Packet<const W: usize> {
+    org: [[f32; W]; 3],
+    dir: [[f32; W]; 3],
+    tfar: [f32; W],
+}
+
+impl<const W: usize> Record<W> {
+    fn new() -> Self {
+        Self {
+            org: [[0.0; W]; 3],
+            tnear: [0.0; W],
+            dir: [[0.0; W]; 3],
+            time: [0.0; W],
+            tfar: [0.0; W],
+            mask: [u32::MAX; W],
+            id: std::array::from_fn(|i| i as u32),
+            flags: [0; W],
+            ng: [[0.0; W]; 3],
+            uv: [[0.0; W]; 2],
+            prim: [u32::MAX; W],
+            geom: [u32::MAX; W],
+            inst: [[u32::MAX; W]; 2],
+            spare: [0; 32],
+        }
+    }
+
+    fn load(&mut self, packet: &Packet<W>) {
+        self.org = packet.org;
+        self.dir = packet.dir;
+        self.tfar = packet.tfar;
+        self.geom = [u32::MAX; W];
+    }
+}
+
 /// The query context: Embree's own part and no more.
 #[repr(C, align(64))]
 struct Context([u32; 16]);
@@ -35,26 +69,11 @@ struct Context([u32; 16]);
 #[repr(C, align(64))]
 struct Valid<const W: usize>([i32; W]);
 
-/// The packets of rays about `center`.
+/// The packets of rays about `center`; those that fill none are left out.
 pub fn packets<const W: usize>(rays: &[Ray], center: DVec3) -> Vec<Packet<W>> {
     rays.chunks_exact(W)
         .map(|rays| {
-            let mut p = Packet {
-                org: [[0.0; W]; 3],
-                tnear: [0.0; W],
-                dir: [[0.0; W]; 3],
-                time: [0.0; W],
-                tfar: [f32::INFINITY; W],
-                mask: [u32::MAX; W],
-                id: std::array::from_fn(|i| i as u32),
-                flags: [0; W],
-                ng: [[0.0; W]; 3],
-                uv: [[0.0; W]; 2],
-                prim: [u32::MAX; W],
-                geom: [u32::MAX; W],
-                inst: [[u32::MAX; W]; 2],
-                spare: [0; 32],
-            };
+            let mut p = Packet { org: [[0.0; W]; 3], dir: [[0.0; W]; 3], tfar: [0.0; W] };
             for (i, ray) in rays.iter().enumerate() {
                 let unit = if ray.tmax == 1.0 { 1.0 } else { ray.direction.length() };
                 for axis in 0..3 {
@@ -68,7 +87,7 @@ pub fn packets<const W: usize>(rays: &[Ray], center: DVec3) -> Vec<Packet<W>> {
         .collect()
 }
 
-/// A committed scene of the bare library.
+/// A committed scene of the bare library, which any thread may trace.
 pub struct Bare {
     device: sys::RTCDevice,
     scene: sys::RTCScene,
@@ -76,8 +95,7 @@ pub struct Bare {
     _spheres: Vec<[f32; 4]>,
 }
 
-// SAFETY: the library lets any number of threads query a committed scene, and queries are all that a
-// shared reference offers; the spheres are only read.
+// SAFETY: Embree lets any thread trace a committed scene.
 unsafe impl Sync for Bare {}
 
 impl Bare {
@@ -144,28 +162,25 @@ impl Bare {
         unsafe { sys::rtcGetDeviceProperty(self.device, property) != 0 }
     }
 
-    /// Traces every packet as coherent; returns how many rays hit.
-    pub fn closest<const W: usize>(&self, packets: &[Packet<W>]) -> usize {
-        self.trace(packets, Coherence::Coherent)
-    }
-
     /// Traces every packet; returns how many rays hit.
-    pub fn trace<const W: usize>(&self, packets: &[Packet<W>], coherence: Coherence) -> usize {
+    pub fn closest<const W: usize>(&self, packets: &[Packet<W>], coherent: bool) -> usize {
         let mut context = Context([u32::MAX; 16]);
+        let flags = match coherent {
+            true => sys::RTCRayQueryFlags::COHERENT,
+            false => sys::RTCRayQueryFlags::INCOHERENT,
+        };
         let mut args = sys::RTCIntersectArguments {
-            flags: match coherence {
-                Coherence::Coherent => sys::RTCRayQueryFlags::COHERENT,
-                Coherence::Incoherent => sys::RTCRayQueryFlags::INCOHERENT,
-            },
+            flags,
             feature_mask: sys::RTCFeatureFlags(u32::MAX),
             context: std::ptr::from_mut(&mut context).cast(),
             filter: None,
             intersect: None,
         };
         let valid = Valid([-1; W]);
+        let mut p = Record::<W>::new();
         let mut hits = 0;
         for packet in packets {
-            let mut p = packet.clone();
+            p.load(packet);
             let ptr = std::ptr::from_mut(&mut p);
             // SAFETY: packet, mask and context are aligned and large enough for any version.
             unsafe {
@@ -192,9 +207,10 @@ impl Bare {
             occluded: None,
         };
         let valid = Valid([-1; W]);
+        let mut p = Record::<W>::new();
         let mut blocked = 0;
         for packet in packets {
-            let mut p = packet.clone();
+            p.load(packet);
             let ptr = std::ptr::from_mut(&mut p);
             // SAFETY: as in `closest`.
             unsafe {
@@ -279,7 +295,7 @@ unsafe fn sphere<const W: usize, const CLOSEST: bool>(
     valid: *const i32,
     data: *const std::ffi::c_void,
     prim: u32,
-    rays: *mut Packet<W>,
+    rays: *mut Record<W>,
     geom: u32,
 ) {
     // SAFETY: called by Embree with a full packet, in the widths that are native.

@@ -12,7 +12,8 @@ use rayon::prelude::*;
 
 use crate::Plan;
 use crate::bare::{Bare, Packet, packets};
-use crate::growth::{busy, median, slope, wall};
+use crate::clock::{median, time};
+use crate::growth::slope;
 use crate::reference::knot::resolution;
 use crate::scenes;
 
@@ -78,8 +79,8 @@ fn table(name: &str, what: &str, scenes: impl Iterator<Item = (usize, Scene)>, p
         let intersector = Embree::build(&scene, Precision::Fast, 1).expect("Embree builds it");
         let rays = one.install(|| frame(&scene, &intersector));
         let rounds =
-            (0..plan.rounds).map(|_| one.install(|| busy(|| _ = frame(&scene, &intersector))));
-        let seconds = median(rounds.collect());
+            (0..plan.rounds).map(|_| one.install(|| time(1, || _ = frame(&scene, &intersector))));
+        let seconds = median(rounds);
         let each = seconds * 1e9 / rays as f64;
         println!("{count:>10} {rays:>11} {:8.1} {each:9.1}", seconds * 1e3);
         points.push([rays as f64, seconds]);
@@ -96,17 +97,17 @@ pub fn threads<const W: usize>(plan: &Plan) {
         let packets: Vec<Packet<W>> = packets(&scenes::primary(&scene), scene.bounds().center());
         let pools = [pool(1), pool(2)];
         let mut rounds = Vec::new();
-        // The first round warms the caches up.
+        // The first round warms the caches up. One thread, too, is timed by the clock on the wall.
         for _ in 0..=plan.rounds {
-            let ours = [0, 1].map(|i| pools[i].install(|| wall(|| _ = frame(&scene, &ours))));
+            let ours = [0, 1].map(|i| pools[i].install(|| time(2, || _ = frame(&scene, &ours))));
             let bare = [0, 1].map(|i| {
-                let trace = |some: &[Packet<W>]| bare.closest(some);
+                let trace = |some: &[Packet<W>]| bare.closest(some, true);
                 let all = || packets.par_chunks(64).map(trace).sum::<usize>();
-                pools[i].install(|| wall(|| _ = black_box(all())))
+                pools[i].install(|| time(2, || _ = black_box(all())))
             });
             rounds.push([ours[0] / ours[1], bare[0] / bare[1]]);
         }
-        let of = |value: fn(&[f64; 2]) -> f64| median(rounds[1..].iter().map(value).collect());
+        let of = |value: fn(&[f64; 2]) -> f64| median(rounds[1..].iter().map(value));
         println!(
             "\n{name}, 2 threads beside 1: ours × {:.2}, bare × {:.2}, ratio {:.3}",
             of(|r| r[0]),

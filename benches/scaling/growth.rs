@@ -1,42 +1,5 @@
 //! Times of two taken in turn, and how they grow.
 
-use std::time::{Duration, Instant};
-
-/// How long `work` takes by the clock on the wall, in seconds.
-pub fn wall(work: impl FnOnce()) -> f64 {
-    let start = Instant::now();
-    work();
-    start.elapsed().as_secs_f64()
-}
-
-/// How long `work` keeps the current thread busy, in seconds: time in which the machine did
-/// something else does not count, where it tells.
-pub fn busy(work: impl FnOnce()) -> f64 {
-    let start = thread_time();
-    let wall = wall(work);
-    match (start, thread_time()) {
-        (Some(start), Some(end)) => (end - start).as_secs_f64(),
-        _ => wall,
-    }
-}
-
-#[cfg(unix)]
-fn thread_time() -> Option<Duration> {
-    use rustix::time::{ClockId, clock_gettime};
-    clock_gettime(ClockId::ThreadCPUTime).try_into().ok()
-}
-
-#[cfg(not(unix))]
-fn thread_time() -> Option<Duration> {
-    None
-}
-
-/// The middle one; of an even number, the upper of the two.
-pub fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
-}
-
 /// The slope of the line that fits y = c·xᵏ best: least squares of the logarithms.
 pub fn slope(points: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = points.iter().map(|p| p.map(f64::ln)).collect();

@@ -10,7 +10,8 @@ use glam::DVec3;
 
 use crate::Plan;
 use crate::bare::{Bare, Packet, packets};
-use crate::growth::{self, Step, busy, median};
+use crate::clock::{median, time};
+use crate::growth::{self, Step};
 use crate::reference::spheres::SplitMix;
 use crate::scenes;
 
@@ -85,15 +86,16 @@ fn step<const W: usize>(
     let mut rounds = Vec::new();
     // The first round warms the caches up.
     for _ in 0..=plan.rounds {
-        let ours = busy(|| {
+        let ours = time(1, || {
             for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
                 ours.closest(rays, coherence, hits);
             }
         });
-        let bare = busy(|| _ = black_box(bare.trace(&packets, coherence)));
+        let bare =
+            time(1, || _ = black_box(bare.closest(&packets, coherence == Coherence::Coherent)));
         rounds.push([ours, bare]);
     }
-    let of = |value: fn(&[f64; 2]) -> f64| median(rounds[1..].iter().map(value).collect());
+    let of = |value: fn(&[f64; 2]) -> f64| median(rounds[1..].iter().map(value));
     let nanoseconds = 1e9 / rays.len() as f64;
     Step {
         count: scene.spheres.len() + scene.triangle_count() as usize,

@@ -10,13 +10,17 @@ mod double;
 mod dyadic;
 mod estimate;
 mod exact;
+mod found;
 mod hit;
 pub mod plane;
 mod ray;
+mod rays;
 pub mod sphere;
 pub mod triangle;
 
 pub use bounds::Bounds;
 pub use estimate::Estimate;
+pub use found::{Found, Hits, Ids};
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use ray::{Departure, Passage, Ray, Side};
+pub use rays::{LANES, Lanes, Left, Lines, Rays};

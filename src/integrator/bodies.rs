@@ -28,8 +28,15 @@ const NONE: Rank = Rank::MAX;
 
 /// The bodies that hold a point, in their order; one stands twice where two parts of one mesh
 /// overlap. The first fills the place.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub struct Interiors(SmallVec<[Rank; 4]>);
+
+impl Clone for Interiors {
+    #[inline]
+    fn clone(&self) -> Self {
+        Self(SmallVec::from_slice(&self.0)) // Several times as fast as element by element.
+    }
+}
 
 impl Interiors {
     fn with(&self, rank: Rank) -> Self {

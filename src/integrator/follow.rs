@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Departure, Hit, Ray, Side};
+use crate::geometry::{Departure, Hit, Hits, Ray, Rays, Side};
 use crate::integrator::bodies::{Around, Interiors};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
@@ -47,58 +47,60 @@ impl Integrator<'_> {
     /// between samples, which do not depend on each other, or, if all are of one sample, in the
     /// middle, whatever else is traced with them.
     pub(super) fn follow(&self, scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { wave, sample, next, .. } = scratch;
-        sample.clear();
-        sample.resize(wave.rays.len(), Vec3::ZERO);
-        wave.paths.clear();
-        wave.paths.extend((0..).zip(&wave.rays).map(|(sample, ray)| {
-            let inside = match &self.eye {
-                Some(inside) => inside.clone(),
-                None => self.bodies.holding(ray.origin, self.scene, self.intersector),
-            };
-            Path { sample, depth: 0, throughput: DVec3::ONE, inside }
-        }));
-        next.clear();
+        let Scratch { wave, sample, .. } = scratch;
+        if self.may_pass_first {
+            wave.paths = (0..wave.rays.len()).map(|i| self.path(wave, i)).collect();
+            sample.clear();
+            sample.resize(wave.rays.len(), Vec3::ZERO);
+        }
         self.finish(scratch, counts);
         let mut waiting = vec![std::mem::take(&mut scratch.next)];
-        while let Some(mut rays) = waiting.pop() {
-            if rays.len() > WAVE {
-                let second = rays.split_off(middle(&rays));
-                waiting.extend([second, rays]);
+        while let Some(mut wave) = waiting.pop() {
+            if wave.rays.len() > WAVE {
+                let second = wave.split_off(middle(&wave.paths));
+                waiting.extend([second, wave]);
                 continue;
             }
-            let wave = &mut scratch.wave;
-            wave.rays.clear();
-            wave.paths.clear();
-            for next in rays.drain(..) {
-                let of_kind = match next.is_refracted {
-                    true => &mut counts.rays.refraction,
-                    false => &mut counts.rays.reflection,
-                };
-                *of_kind += 1;
-                wave.rays.push(next.ray);
-                wave.paths.push(next.path);
-            }
             if wave.rays.is_empty() {
-                scratch.next = rays; // Its memory serves the next tile.
+                scratch.next = wave; // Its memory serves the next tile.
                 continue;
             }
             wave.trace(self.intersector, Coherence::Incoherent);
+            let before = std::mem::replace(&mut scratch.wave, wave);
+            scratch.next.clear();
             self.finish(scratch, counts);
-            let sent = std::mem::replace(&mut scratch.next, rays);
-            waiting.push(sent);
+            waiting.push(std::mem::replace(&mut scratch.next, before));
         }
+    }
+
+    /// Where ray `i` of a wave comes from, and what it is worth.
+    pub(super) fn path(&self, wave: &Wave, i: usize) -> Path {
+        if let Some(path) = wave.paths.get(i) {
+            return path.clone();
+        }
+        let inside = match &self.eye {
+            Some(inside) => inside.clone(),
+            None => {
+                let origin = wave.rays.ray(i).origin;
+                self.bodies.holding(origin, self.scene, self.intersector)
+            }
+        };
+        Path { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside }
     }
 
     /// Adds what the rays of a wave bring back to their samples, and sends on what goes on from
     /// there, to `scratch.next`.
     fn finish(&self, scratch: &mut Scratch, counts: &mut Counts) {
         let Scratch { wave, light, sample, next, .. } = scratch;
-        if self.transmits {
+        if self.transmits && !wave.paths.is_empty() {
             self.pass_clear(wave, counts);
         }
         self.shade(wave, light, counts);
-        for (radiance, path) in light.radiance.iter().zip(&wave.paths) {
+        if wave.paths.is_empty() {
+            light.take_samples(wave.rays.len(), sample, counts);
+        }
+        for (i, path) in wave.paths.iter().enumerate() {
+            let radiance = light.radiance(i);
             let to = &mut sample[path.sample as usize];
             if !to.is_nan() && !radiance.is_nan() {
                 *to += (path.throughput * radiance.as_dvec3()).as_vec3();
@@ -112,9 +114,17 @@ impl Integrator<'_> {
             }
         }
         for (i, surface) in &light.bounces {
-            let i = *i as usize;
-            if let Some(hit) = &wave.hits[i] {
-                self.send_on(&wave.rays[i], hit, surface, &wave.paths[i], next);
+            let (i, ray) = (*i as usize, wave.rays.ray(*i as usize));
+            if let Some(hit) = &wave.hits.get(i) {
+                self.send_on(&ray, hit, surface, &self.path(wave, i), &mut |sent| {
+                    let of_kind = match sent.is_refracted {
+                        true => &mut counts.rays.refraction,
+                        false => &mut counts.rays.reflection,
+                    };
+                    *of_kind += 1;
+                    next.rays.push(&sent.ray);
+                    next.paths.push(sent.path);
+                });
             }
         }
     }
@@ -123,36 +133,35 @@ impl Integrator<'_> {
     /// way. They go on in the same wave, so that nothing tells that something was there.
     fn pass_clear(&self, wave: &mut Wave, counts: &mut Counts) {
         let Wave { rays, hits, paths } = wave;
-        let (mut passed, mut ahead, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut passed, mut ahead, mut found) = (Vec::new(), Rays::default(), Hits::default());
         let mut open: Vec<u32> = (0..rays.len() as u32).collect();
         while !open.is_empty() {
             passed.clear();
             ahead.clear();
             for &i in &open {
                 let at = i as usize;
-                let (ray, path) = (&mut rays[at], &mut paths[at]);
-                let end = hits[at].map_or(f64::INFINITY, |hit| hit.t);
-                path.throughput *= self.absorbed(ray, end, &path.inside);
-                let Some(hit) = &hits[at] else { continue };
+                let (ray, path, hit) = (rays.ray(at), &mut paths[at], hits.get(at));
+                let end = hit.map_or(f64::INFINITY, |hit| hit.t);
+                path.throughput *= self.absorbed(&ray, end, &path.inside);
+                let Some(hit) = &hit else { continue };
                 let material = &self.scene.materials[self.scene.material_of(hit.id).0 as usize];
                 if material.transmit == Vec3::ZERO {
                     continue;
                 }
-                let surface = Surface::new(self.scene, ray, hit);
+                let surface = Surface::new(self.scene, &ray, hit);
                 let around = self.bodies.around(hit.id, surface.side, &path.inside);
                 if self.is_clear(material, &around) {
-                    *ray = ray.beyond(hit, surface.side.opposite());
+                    let beyond = ray.beyond(hit, surface.side.opposite());
+                    rays.set(at, &beyond);
                     path.inside = around.behind;
                     passed.push(i);
-                    ahead.push(*ray);
+                    ahead.push(&beyond);
                 }
             }
-            found.clear();
-            found.resize(ahead.len(), None);
-            self.intersector.closest(&ahead, Coherence::Incoherent, &mut found);
+            self.intersector.closest_of(&ahead, Coherence::Incoherent, &mut found);
             counts.rays.refraction += ahead.len() as u64;
-            for (&i, &hit) in passed.iter().zip(&found) {
-                hits[i as usize] = hit;
+            for (&i, hit) in passed.iter().zip(found.iter()) {
+                hits.set(i as usize, hit);
             }
             std::mem::swap(&mut open, &mut passed);
         }
@@ -174,7 +183,7 @@ impl Integrator<'_> {
         hit: &Hit,
         surface: &Surface,
         path: &Path,
-        next: &mut Vec<Next>,
+        next: &mut impl FnMut(Next),
     ) {
         if path.depth >= self.scene.film.max_depth {
             return;
@@ -187,7 +196,7 @@ impl Integrator<'_> {
             if throughput.max_element() > self.scene.film.cutoff.max(NOTHING) {
                 let (sample, depth) = (path.sample, path.depth + 1);
                 let path = Path { sample, depth, throughput, inside };
-                next.push(Next { ray, is_refracted, path });
+                next(Next { ray, is_refracted, path });
             }
         };
         let spawn = |direction: DVec3, side: Side| Ray {
@@ -206,11 +215,11 @@ impl Integrator<'_> {
 }
 
 /// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.
-fn middle(rays: &[Next]) -> usize {
-    let sample = |i: usize| rays[i].path.sample;
-    let half = rays.len() / 2;
+fn middle(paths: &[Path]) -> usize {
+    let sample = |i: usize| paths[i].sample;
+    let half = paths.len() / 2;
     let changes = |&i: &usize| sample(i - 1) != sample(i);
-    let up = (half..rays.len()).find(changes);
+    let up = (half..paths.len()).find(changes);
     let down = (1..half).rev().find(changes);
     match (down, up) {
         (Some(down), Some(up)) if half - down < up - half => down,
@@ -224,13 +233,14 @@ fn middle(rays: &[Next]) -> usize {
 mod tests {
     use super::*;
 
-    fn wave(samples: &[u32]) -> Vec<Next> {
-        let next = |&sample: &u32| Next {
-            ray: Ray::new(DVec3::ZERO, DVec3::Z),
-            is_refracted: false,
-            path: Path { sample, depth: 1, throughput: DVec3::ONE, inside: Interiors::default() },
+    fn wave(samples: &[u32]) -> Vec<Path> {
+        let path = |&sample: &u32| Path {
+            sample,
+            depth: 1,
+            throughput: DVec3::ONE,
+            inside: Interiors::default(),
         };
-        samples.iter().map(next).collect()
+        samples.iter().map(path).collect()
     }
 
     #[test]

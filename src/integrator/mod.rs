@@ -7,8 +7,10 @@
 //! order, whatever the tiles and threads.
 
 mod bodies;
+mod clearance;
 mod counts;
 mod follow;
+mod look;
 #[cfg(test)]
 mod reversal;
 mod samples;
@@ -20,15 +22,18 @@ mod tiling;
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{Geometry, Hit, Ray};
+use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{Camera, FilmSettings, RayMaker, Scene};
+use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
 use crate::surface::Surface;
 use bodies::{Bodies, Interiors};
+use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts};
-use follow::{Next, Path};
+use follow::Path;
+use look::{Look, has_detail};
 pub use samples::sample_positions;
 use shade::Light;
+use tiling::Tile;
 pub use tiling::Tiling;
 
 /// Makes the pixels of one picture.
@@ -44,27 +49,40 @@ pub struct Integrator<'a> {
     follows: bool,
     /// Whether any surface lets light through.
     transmits: bool,
+    /// Whether textures, checkers or vertex colours are asked for anywhere.
+    has_detail: bool,
+    /// How each material looks.
+    looks: Vec<Look>,
+    /// What the processor can do at once.
+    arch: pulp::Arch,
     bodies: Bodies,
     /// The bodies that the eye is in, if it is one point.
     eye: Option<Interiors>,
+    /// Whether rays from the eye may be absorbed, or meet what is no surface for them.
+    may_pass_first: bool,
+    /// Where light may go through anything on its way to a surface.
+    clearance: Clearance,
 }
 
 /// Memory that a thread uses again and again.
 #[derive(Default)]
 pub struct Scratch {
-    at: Vec<u32>,
+    tile: Tile,
     wave: Wave,
     light: Light,
-    next: Vec<Next>,
+    next: Wave,
+    /// The radiance of the tile's pixels: of one sample, and the sum of all.
     sample: Vec<Vec3>,
+    sum: Vec<Pixel>,
 }
 
 /// Rays that go through the intersector together, and what they hit.
 #[derive(Default)]
 struct Wave {
-    rays: Vec<Ray>,
-    hits: Vec<Option<Hit>>,
-    /// Where each ray comes from and what it is worth; empty where no ray is followed.
+    rays: Rays,
+    hits: Hits,
+    /// Where each ray comes from and what it is worth; empty where all are whole samples, from an
+    /// eye that is one point.
     paths: Vec<Path>,
 }
 
@@ -88,7 +106,30 @@ impl<'a> Integrator<'a> {
             true => Some(Interiors::default()),
             false => rays.eye().map(|eye| bodies.holding(eye, scene, intersector)),
         };
-        Self { scene, intersector, rays, view, tiling, samples, follows, transmits, bodies, eye }
+        Self {
+            scene,
+            intersector,
+            rays,
+            view,
+            tiling,
+            samples,
+            follows,
+            transmits,
+            has_detail: has_detail(scene),
+            looks: scene.materials.iter().map(Look::of).collect(),
+            arch: pulp::Arch::new(),
+            may_pass_first: match &eye {
+                Some(eye) => {
+                    // In empty space nothing hides a surface.
+                    let is_clear = |m: &Material| m.is_clear_in(1.0);
+                    *eye != Interiors::default() || scene.materials_in_use().any(is_clear)
+                }
+                None => true,
+            },
+            clearance: Clearance::of(scene),
+            bodies,
+            eye,
+        }
     }
 
     /// Makes the rows of the strip that begins at row `first`; `pixels` are whole rows.
@@ -99,48 +140,49 @@ impl<'a> Integrator<'a> {
         let mut counts = Counts::default();
         for left in (0..width).step_by(widest) {
             let columns = widest.min(width - left);
-            scratch.at.clear();
-            for y in (0..rows).step_by(block) {
-                for x in (left..left + columns).step_by(block) {
-                    for row in y..(y + block).min(rows) {
-                        let end = (x + block).min(left + columns);
-                        scratch.at.extend((x..end).map(|column| (row * width + column) as u32));
-                    }
-                }
+            scratch.tile.set([left, first], [columns, rows], block);
+            self.tile(scratch, &mut counts);
+            let mut rest = &scratch.sum[..];
+            for &[x, y, length] in &scratch.tile.runs {
+                let (run, after) = rest.split_at(length as usize);
+                let at = y as usize * width + left + x as usize;
+                pixels[at..at + run.len()].copy_from_slice(run);
+                rest = after;
             }
-            for sample in &self.samples {
-                self.sample(*sample, first, pixels, scratch, &mut counts);
-            }
-        }
-        if self.view == View::Beauty {
-            let share = 1.0 / self.samples.len() as f32;
-            pixels.iter_mut().flatten().for_each(|value| *value *= share);
         }
         counts
+    }
+
+    /// Works out the pixels of a tile.
+    fn tile(&self, scratch: &mut Scratch, counts: &mut Counts) {
+        scratch.sum.clear();
+        scratch.sum.resize(scratch.tile.count, [0.0; 3]);
+        for sample in &self.samples {
+            self.sample(*sample, scratch, counts);
+        }
+        if self.samples.len() > 1 {
+            let share = 1.0 / self.samples.len() as f32;
+            scratch.sum.iter_mut().flatten().for_each(|value| *value *= share);
+        }
     }
 
     /// Adds one sample of each pixel of a tile.
     fn sample(
         &self,
-        [dx, dy]: [f64; 2],
-        first: usize,
-        pixels: &mut [Pixel],
+        offset: [f64; 2],
         scratch: &mut Scratch,
         counts: &mut Counts,
     ) {
-        let width = self.scene.film.size[0] as usize;
-        let Scratch { at, wave, .. } = scratch;
-        wave.rays.clear();
-        wave.rays.extend(at.iter().map(|&at| {
-            let (x, y) = (at as usize % width, first + at as usize / width);
-            self.rays.through(x as f64 + dx, y as f64 + dy)
-        }));
+        let Scratch { tile, wave, sum, .. } = scratch;
+        self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
+        wave.rays.truncate(tile.count);
+        wave.paths.clear();
         wave.trace(self.intersector, Coherence::Coherent);
         counts.rays.primary += wave.rays.len() as u64;
-        counts.hits += wave.hits.iter().flatten().count() as u64;
+        counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
-            for ((&at, ray), hit) in at.iter().zip(&wave.rays).zip(&wave.hits) {
-                pixels[at as usize] = self.debug(ray, hit.as_ref());
+            for (i, sum) in sum.iter_mut().enumerate() {
+                *sum = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
             }
             return;
         }
@@ -149,13 +191,12 @@ impl<'a> Integrator<'a> {
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
-            std::mem::swap(sample, &mut light.radiance);
-            light.spoilt.drain(..).for_each(|(_, cause)| cause.count(counts));
+            light.take_samples(wave.rays.len(), sample, counts);
         }
-        for (&at, &radiance) in scratch.at.iter().zip(&scratch.sample) {
-            let sum = Vec3::from(pixels[at as usize]) + radiance;
+        for (to, &radiance) in scratch.sum.iter_mut().zip(&scratch.sample) {
+            let sum = Vec3::from(*to) + radiance;
             if sum.is_finite() {
-                pixels[at as usize] = sum.to_array();
+                *to = sum.to_array();
             } else if !radiance.is_nan() {
                 counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
             }
@@ -186,11 +227,50 @@ impl<'a> Integrator<'a> {
     }
 }
 
+/// The rays from the eye through some pixels.
+struct Aim<'a> {
+    at: &'a RayMaker,
+    tile: &'a Tile,
+    /// Where in each pixel.
+    offset: [f64; 2],
+    rays: &'a mut Rays,
+}
+
+impl pulp::WithSimd for Aim<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let ([dx, dy], [left, top]) = (self.offset, self.tile.place);
+        let all = self.rays.fill(self.tile.places.len());
+        for (lines, [columns, rows]) in all.iter_mut().zip(&self.tile.places) {
+            let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
+            for i in 0..LANES {
+                // The first sum is exact, so that the tiling does not matter.
+                x[i] = (columns[i] + left) + dx;
+                y[i] = (rows[i] + top) + dy;
+            }
+            self.at.through_all(&x, &y, lines);
+        }
+    }
+}
+
 impl Wave {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.paths.clear();
+    }
+
+    /// Takes off the rays from the one at `at` on.
+    fn split_off(&mut self, at: usize) -> Self {
+        let mut second = Self { paths: self.paths.split_off(at), ..Self::default() };
+        (at..self.rays.len()).for_each(|i| second.rays.push(&self.rays.ray(i)));
+        self.rays.truncate(at);
+        second
+    }
+
     /// Finds what the rays hit.
     fn trace(&mut self, intersector: &dyn Intersector, coherence: Coherence) {
-        self.hits.clear();
-        self.hits.resize(self.rays.len(), None);
-        intersector.closest(&self.rays, coherence, &mut self.hits);
+        intersector.closest_of(&self.rays, coherence, &mut self.hits);
     }
 }

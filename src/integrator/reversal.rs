@@ -57,7 +57,7 @@ fn walk(
         };
         // Of the two rays at most: the share that goes the chosen way, of all that goes there.
         let mut sent: Vec<Next> = Vec::new();
-        integrator.send_on(&ray, &hit, &surface, &path, &mut sent);
+        integrator.send_on(&ray, &hit, &surface, &path, &mut |next| sent.push(next));
         let chosen = sent.iter().position(|next| next.is_refracted == through).unwrap_or(0);
         let next = (!sent.is_empty()).then(|| sent.swap_remove(chosen))?;
         met.push((surface.id, next.is_refracted));

@@ -6,14 +6,25 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Hit, Ray, Side};
+use crate::geometry::{Hit, Hits, LANES, Ray, Rays, Side};
 use crate::integrator::bodies::Interiors;
 use crate::integrator::shade::Shadows;
-use crate::integrator::{Counts, Integrator};
+use crate::integrator::{Counts, Integrator, Wave};
 use crate::intersect::Coherence;
 use crate::scene::Shadow;
 use crate::shading::{Interface, transmittance};
 use crate::surface::Surface;
+
+/// Room for shadow rays that may go through glass.
+#[derive(Default)]
+pub(super) struct Through {
+    /// Whether each certainly meets none.
+    clear: Vec<bool>,
+    beams: Vec<Beam>,
+    ahead: Rays,
+    traced: Rays,
+    hits: Hits,
+}
 
 /// A shadow ray that nothing blocks, on its way.
 struct Beam {
@@ -24,61 +35,70 @@ struct Beam {
 }
 
 impl Integrator<'_> {
-    /// The bodies in which a shadow ray begins that leaves a surface, seen by a ray in `inside`.
-    pub(super) fn starts_in(&self, surface: &Surface, ray: &Ray, inside: &Interiors) -> Interiors {
-        let around = self.bodies.around(surface.id, surface.side, inside);
-        match ray.from {
-            Some(from) if from.side != surface.side => around.behind,
-            _ => around.before,
-        }
+    /// The bodies in which a shadow ray begins that leaves the surface that ray `i` of a wave hit.
+    fn starts_in(&self, shadow: &Ray, wave: &Wave, i: usize) -> Interiors {
+        let (ray, hit, path) = (wave.rays.ray(i), wave.hits.get(i), self.path(wave, i));
+        let (Some(hit), Some(from)) = (hit, shadow.from) else { return path.inside };
+        let seen = Surface::new(self.scene, &ray, &hit).side;
+        let around = self.bodies.around(hit.id, seen, &path.inside);
+        if from.side == seen { around.before } else { around.behind }
     }
 
     /// Works out what is left of the light along each shadow ray, of which it is known whether
     /// anything blocks it.
-    pub(super) fn let_through(&self, shadow: Shadow, shadows: &mut Shadows, counts: &mut Counts) {
-        let Shadows { rays, inside, blocked, left, .. } = shadows;
+    pub(super) fn let_through(
+        &self,
+        shadow: Shadow,
+        wave: &Wave,
+        shadows: &mut Shadows,
+        counts: &mut Counts,
+    ) {
+        let Shadows { rays, waiting, blocked, left, through } = shadows;
+        let Through { clear, beams, ahead, traced, hits } = through;
+        self.clearance.of_all(rays, self.arch, clear);
         left.clear();
-        let mut beams = Vec::new();
-        let mut ahead = Vec::new();
-        for (at, (ray, inside)) in rays.iter().zip(inside).enumerate() {
-            left.push(DVec3::ZERO);
-            if !blocked[at] {
-                let inside = std::mem::take(inside);
-                beams.push(Beam { at, inside, left: DVec3::ONE });
-                ahead.push(*ray);
+        beams.clear();
+        ahead.clear();
+        for (at, blocked) in blocked.iter_mut().enumerate() {
+            if *blocked || clear[at] {
+                continue;
             }
+            let ray = rays.ray(at);
+            if ray.tmax <= 0.0 {
+                continue;
+            }
+            *blocked = true; // What is left of it is added by itself.
+            let met = waiting[at / LANES].block * LANES + at % LANES;
+            beams.push(Beam { at, inside: self.starts_in(&ray, wave, met), left: DVec3::ONE });
+            ahead.push(&ray);
         }
-        let mut hits = Vec::new();
         while !beams.is_empty() {
-            hits.clear();
-            hits.resize(ahead.len(), None);
-            self.intersector.closest(&ahead, Coherence::Incoherent, &mut hits);
+            self.intersector.closest_of(ahead, Coherence::Incoherent, hits);
             counts.rays.shadow += ahead.len() as u64;
-            let mut hits = hits.iter();
-            let mut rays = std::mem::take(&mut ahead).into_iter();
+            std::mem::swap(traced, ahead);
+            ahead.clear();
+            let mut answers = traced.iter().zip(hits.iter());
             beams.retain_mut(|beam| {
-                let (Some(ray), Some(hit)) = (rays.next(), hits.next()) else { return false };
+                let Some((ray, hit)) = answers.next() else { return false };
                 let end = hit.map_or(ray.tmax, |hit| hit.t);
                 beam.left *= self.absorbed(&ray, end, &beam.inside);
                 let Some(hit) = hit else {
-                    left[beam.at] = beam.left;
+                    left.push((beam.at, beam.left));
                     return false;
                 };
-                let side = self.pass(&ray, hit, beam);
+                let side = self.pass(&ray, &hit, beam);
                 let goes_on = match shadow {
                     Shadow::Tinted | Shadow::None => beam.left != DVec3::ZERO,
                     Shadow::Opaque => beam.left == DVec3::ONE,
                 };
                 if goes_on {
-                    ahead.push(ray.beyond(hit, side));
+                    ahead.push(&ray.beyond(&hit, side));
                 }
                 goes_on
             });
         }
         if shadow == Shadow::Opaque {
-            left.iter_mut()
-                .filter(|left| **left != DVec3::ONE)
-                .for_each(|left| *left = DVec3::ZERO);
+            left.retain(|(_, left)| *left == DVec3::ONE);
         }
     }
 

@@ -21,7 +21,7 @@ pub use bvh::Bvh;
 pub use embree::{Embree, version as embree_version};
 
 use crate::error::Result;
-use crate::geometry::{Hit, Ray};
+use crate::geometry::{Hit, Hits, Ray, Rays};
 use crate::scene::Scene;
 
 /// Whether the rays of a batch go much the same way, which a packet tracer can use.
@@ -56,6 +56,30 @@ pub trait Intersector: Send + Sync {
     /// # Panics
     /// When the two slices differ in length.
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
+
+    /// As [`Intersector::closest`], of rays that stand side by side.
+    fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
+        let (places, all) = in_use(rays);
+        let mut found = vec![None; all.len()];
+        self.closest(&all, coherence, &mut found);
+        hits.reset(rays.len());
+        places.into_iter().zip(found).for_each(|(i, hit)| hits.set(i, hit));
+    }
+
+    /// As [`Intersector::occluded`], of rays that stand side by side.
+    fn occluded_of(&self, rays: &Rays, coherence: Coherence, blocked: &mut Vec<bool>) {
+        let (places, all) = in_use(rays);
+        let mut found = vec![false; all.len()];
+        self.occluded(&all, coherence, &mut found);
+        blocked.clear();
+        blocked.resize(rays.len(), false);
+        places.into_iter().zip(found).for_each(|(i, found)| blocked[i] = found);
+    }
+}
+
+/// The rays of a batch that may meet anything, and their places.
+fn in_use(rays: &Rays) -> (Vec<usize>, Vec<Ray>) {
+    rays.iter().enumerate().filter(|(_, ray)| ray.tmax > 0.0).unzip()
 }
 
 /// How far a hit can be trusted.

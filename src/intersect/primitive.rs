@@ -93,7 +93,14 @@ impl Primitives<'_> {
             Precision::Fast => plane::intersect(p.point, p.normal, ray.origin, ray.direction)
                 .filter(|&t| t > 0.0 && t < ray.tmax)?,
             Precision::Certified => {
-                plane::certified::crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
+                use plane::certified::{certainly_misses, crossing};
+                // A ray that leaves the plane nearly meets it, which is dear to decide.
+                if certainly_misses(p.point, p.normal, ray.origin, ray.direction, ray.tmax)
+                    || starts_in_plane(self.scene, index, ray)
+                {
+                    return None;
+                }
+                crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
             }
         };
         let id = PrimitiveId::plane(index);

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
-use crate::geometry::Ray;
+use crate::geometry::{LANES, Lanes, Lines, Ray};
 
 /// How much a camera sees; exactly one of the ways to say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,7 +135,7 @@ impl RayMaker {
     }
 
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
-    #[inline]
+    #[inline(always)]
     pub fn through(&self, x: f64, y: f64) -> Ray {
         let offset =
             self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
@@ -144,6 +144,19 @@ impl RayMaker {
             false => (DVec3::ZERO, offset),
         };
         Ray::new(self.origin + moved, turned + self.forward)
+    }
+
+    /// The rays through sixteen points of the picture, as [`RayMaker::through`].
+    #[inline(always)]
+    pub fn through_all(&self, x: &Lanes<f64>, y: &Lanes<f64>, lines: &mut Lines) {
+        for i in 0..LANES {
+            let ray = self.through(x[i], y[i]);
+            for axis in 0..3 {
+                lines.origin[axis][i] = ray.origin[axis];
+                lines.direction[axis][i] = ray.direction[axis];
+            }
+            lines.tmax[i] = ray.tmax;
+        }
     }
 }
 

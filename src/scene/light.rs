@@ -97,6 +97,21 @@ impl Light {
         self.shadow != Shadow::None && self.kind != LightKind::Ambient
     }
 
+    /// Whether its light comes from somewhere, rather than from infinitely far.
+    #[inline]
+    pub fn is_bounded(&self) -> bool {
+        matches!(self.kind, LightKind::Point { .. } | LightKind::Spot { .. })
+    }
+
+    /// Whether it is a point that sends the same light everywhere: without falloff, range or cone.
+    #[inline]
+    pub fn is_steady(&self) -> bool {
+        matches!(
+            self.kind,
+            LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. }
+        )
+    }
+
     /// The light moved and turned. Its intensity and its range stay as they are under any scale, as
     /// KHR_lights_punctual has it.
     pub fn placed(&self, transform: &DAffine3) -> Self {

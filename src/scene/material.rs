@@ -77,6 +77,12 @@ impl Material {
         self.transmit != Vec3::ZERO && !self.thin
     }
 
+    /// Whether light that comes from a medium with index of refraction `ior`, and goes on into one,
+    /// passes as if nothing were there.
+    pub fn is_clear_in(&self, ior: f64) -> bool {
+        self.transmit == Vec3::ONE && self.emission == Vec3::ZERO && self.ior == ior
+    }
+
     /// Whether shading it needs texture coordinates.
     pub fn is_textured(&self) -> bool {
         self.diffuse_map.is_some() || self.emission_map.is_some()

@@ -5,6 +5,7 @@ mod camera;
 pub mod check;
 pub mod closed;
 pub mod detail;
+mod faces;
 mod film;
 mod light;
 mod material;
@@ -14,6 +15,7 @@ mod texture;
 mod tone;
 
 pub use camera::{Camera, Lens, RayMaker};
+pub use faces::Faces;
 pub use film::{FilmSettings, SamplePosition, Transfer};
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId};

@@ -2,10 +2,12 @@
 //! nothing.
 
 mod interface;
+mod power;
 
 use glam::{DVec3, Vec3};
 
 pub use interface::{Interface, transmittance};
+pub use power::{power, power_of_all, whole};
 
 /// Colours of a surface at one point, with its textures applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,20 +28,33 @@ pub struct Reflectance {
 /// *Illumination for Computer Generated Pictures*, 1975). Nothing when the surface faces away
 /// from the light.
 pub fn direct(reflectance: &Reflectance, normal: DVec3, view: DVec3, light: DVec3) -> Vec3 {
-    let light = light.normalize();
-    let cosine = normal.dot(light);
+    let cosine = lambert(normal, light);
     if cosine <= 0.0 {
         return Vec3::ZERO;
     }
     let mut sum = reflectance.diffuse * cosine as f32;
     if reflectance.specular != Vec3::ZERO {
-        let toward = reflect(view.normalize(), normal).dot(light).max(0.0);
-        sum += reflectance.specular * toward.powf(f64::from(reflectance.shininess)) as f32;
+        let toward = phong(normal, view, light);
+        sum += reflectance.specular * power(toward, reflectance.shininess) as f32;
     }
     sum
 }
 
+/// The cosine n·l of the angle between a normal of length 1 and the way to a light.
+#[inline(always)]
+pub fn lambert(normal: DVec3, light: DVec3) -> f64 {
+    normal.dot(light) / light.length_squared().sqrt()
+}
+
+/// The cosine max(0, r·l) of the angle between what a mirror would send on and the way to a light.
+#[inline(always)]
+pub fn phong(normal: DVec3, view: DVec3, light: DVec3) -> f64 {
+    let lengths = view.length_squared().sqrt() * light.length_squared().sqrt();
+    (reflect(view, normal).dot(light) / lengths).max(0.0)
+}
+
 /// The direction u − 2(u·n)n in which a mirror with unit normal `normal` sends `incoming`.
+#[inline(always)]
 pub fn reflect(incoming: DVec3, normal: DVec3) -> DVec3 {
     incoming - normal * (2.0 * incoming.dot(normal))
 }

@@ -38,6 +38,11 @@ fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
     Hit { t, u, v, id }
 }
 
+fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> Detail {
+    let surface = Surface::new(scene, ray, hit);
+    Detail::new(scene, hit, surface.position, surface.geometric_normal)
+}
+
 #[test]
 fn sphere_normal_points_outward() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
@@ -74,7 +79,7 @@ fn checker_alternates_across_the_origin() {
     let color = |x: f64, z: f64| {
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
         let id = PrimitiveId::plane(0);
-        Surface::new(&scene(), &ray, &hit(1.0, 0.0, 0.0, id)).checker.unwrap().x
+        detail(&scene(), &ray, &hit(1.0, 0.0, 0.0, id)).checker.unwrap().x
     };
     assert_eq!([color(0.1, 0.1), color(0.6, 0.1), color(-0.1, 0.1)], [0.0, 1.0, 1.0]);
     assert_eq!([color(-0.1, -0.1), color(1.1, 0.1)], [0.0, 0.0]);
@@ -87,7 +92,7 @@ fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
         add_texture(&mut scene);
         (scene.planes[0].point, scene.planes[0].texture_size) = (DVec3::new(1.0, 0.0, 2.0), 4.0);
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
-        Surface::new(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
+        detail(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
     };
     assert_eq!([uv(1.0, 2.0), uv(2.0, 5.0)], [[0.0, 0.0], [0.25, 0.75]]);
     assert_eq!([uv(6.0, 1.0), uv(-3.0, -2.0)], [[0.25, 0.75], [0.0, 0.0]]);
@@ -100,8 +105,9 @@ fn attributes_are_interpolated_by_the_weights() {
     let ray = Ray::new(DVec3::new(0.25, 0.5, 1.0), DVec3::NEG_Z);
     let id = PrimitiveId::triangle(0, 0, 0);
     let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
-    assert_eq!(surface.uv, [0.25, 0.5]);
-    assert_eq!(surface.tint, Vec3::new(0.25, 0.25, 0.5));
+    let detail = detail(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
+    assert_eq!(detail.uv, [0.25, 0.5]);
+    assert_eq!(detail.tint, Vec3::new(0.25, 0.25, 0.5));
     let expected = DVec3::new(0.25, 0.5, 1.0).normalize();
     assert!((surface.normal - expected).length() < 1e-15);
 }
@@ -125,4 +131,45 @@ fn shadow_ray_leaves_on_the_lights_side() {
     let toward = |toward: DVec3| Arrival { toward, bounded: true, intensity: Vec3::ONE };
     let side = |d: DVec3| surface.shadow_ray(&toward(d)).from.unwrap().side;
     assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
+}
+
+#[test]
+fn sixteen_surfaces_are_those_of_one_at_a_time() {
+    let mut scene = scene();
+    scene.spheres.push(Sphere::new(DVec3::new(0.3, -0.2, 9.0), 2.0, MaterialId(1)));
+    scene.add_material(Material { double_sided: true, ..Material::default() });
+    let ids = [
+        Some(PrimitiveId::sphere(0)),
+        Some(PrimitiveId::plane(0)),
+        None,
+        Some(PrimitiveId::triangle(0, 0, 0)),
+        Some(PrimitiveId::sphere(1)),
+    ];
+    // Of the sixteens the first three have one kind each, and the last a part only.
+    for of in [[0; 5], [1; 5], [3; 5], [0, 1, 2, 3, 4]] {
+        let (mut rays, mut hits) = (crate::geometry::Rays::default(), Default::default());
+        let count = 13;
+        for i in 0..count {
+            let x = i as f64 / 7.0 - 0.9;
+            let mut ray = Ray::new(DVec3::new(x, 0.1, -1.0), DVec3::new(0.3, x, 2.0 - x));
+            let through = Departure { id: PrimitiveId::sphere(0), side: Side::Back };
+            ray.past = (i == 5).then_some(crate::geometry::Passage { t: 0.1, through });
+            rays.push(&ray);
+        }
+        crate::geometry::Hits::reset(&mut hits, count);
+        for i in 0..count {
+            let t = 2.0 + i as f64;
+            hits.set(i, ids[of[i % 5]].map(|id| hit(t, 0.1, 0.02 * t, id)));
+        }
+        let mut surfaces = Surfaces::default();
+        surfaces.set(&scene, &rays, 0, &hits.found()[0]);
+        for i in 0..count {
+            let Some(hit) = hits.get(i) else { continue };
+            let one = Surface::new(&scene, &rays.ray(i), &hit);
+            assert_eq!(surfaces.position(i), one.position);
+            assert_eq!(surfaces.geometric_normal(i), one.geometric_normal);
+            assert_eq!((surfaces.normal(i), surfaces.side(i)), (one.normal, one.side));
+            assert_eq!(surfaces.material[i], one.material);
+        }
+    }
 }

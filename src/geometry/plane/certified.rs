@@ -39,6 +39,32 @@ pub fn crossing(
     exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
 }
 
+/// Whether f64 alone is sure that [`crossing`] finds nothing at or before `limit`, a distance that
+/// was itself rounded.
+///
+/// A difference, three products and two sums of them: each operation rounds by half an ε of at
+/// most 3 N (P + O) in the height and 3 N D in the way, with N, P, O and D the largest components
+/// of the normal, the point, the origin and the direction. Six operations give 9 ε; 16 ε is
+/// allowed, and as many of the least normal numbers for what underflows.
+#[inline(always)]
+pub fn certainly_misses(
+    point: DVec3,
+    normal: DVec3,
+    origin: DVec3,
+    direction: DVec3,
+    limit: f64,
+) -> bool {
+    let largest = |v: DVec3| v.abs().max_element();
+    let (height, way) = (normal.dot(point - origin), normal.dot(direction));
+    let error = |size: f64| 16.0 * f64::EPSILON * largest(normal) * size + 16.0 * f64::MIN_POSITIVE;
+    let (above, along) = (error(largest(point) + largest(origin)), error(largest(direction)));
+    // What is not a number compares as false, and is left to `crossing`.
+    let behind = (height * way < 0.0) & (height.abs() > above) & (way.abs() > along);
+    let slack = 1.0 + 8.0 * f64::EPSILON;
+    let beyond = height.abs() - above > limit * (way.abs() + along) * slack;
+    behind | beyond
+}
+
 /// The same in integers, however far.
 #[cold]
 fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {

@@ -10,9 +10,13 @@ use glam::DVec3;
 /// `t` may have either sign; a line within the plane does not meet it.
 #[inline]
 pub fn intersect(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<f64> {
-    let toward = normal.dot(direction);
-    let t = normal.dot(point - origin) / toward;
-    (toward != 0.0 && t.is_finite()).then_some(t)
+    Some(quotient(point, normal, origin, direction)).filter(|t| t.is_finite())
+}
+
+/// As [`intersect`], but infinite or not a number where the ray is parallel to the plane.
+#[inline(always)]
+pub fn quotient(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
+    normal.dot(point - origin) / normal.dot(direction)
 }
 
 #[cfg(test)]

@@ -96,7 +96,7 @@ impl Shape for Ball {
         let f = context.exact.line(lane).0 - self.center;
         let power = f.length_squared() - self.radius * self.radius;
         context.may_start_on(lane, self.index, self.radius, power)
-            && leaving(context.scene, self.index, &context.rays[lane]) != Leaving::No
+            && leaving(context.scene, self.index, &context.rays.ray(lane)) != Leaving::No
     }
 }
 
@@ -143,11 +143,11 @@ impl Shape for Face {
 
     #[inline(always)]
     fn is_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
-        context.rays[lane].from.is_some_and(|from| from.id == self.id)
+        context.rays.from(lane).is_some_and(|from| from.id == self.id)
     }
 
     fn may_be_left<const W: usize>(&self, context: &Context<'_, W>, lane: usize) -> bool {
-        starts_on(context.scene, self.corners, &context.rays[lane])
+        starts_on(context.scene, self.corners, &context.rays.ray(lane))
     }
 }
 

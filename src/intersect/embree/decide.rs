@@ -11,7 +11,7 @@ impl<const W: usize> Context<'_, W> {
     /// The exact answer for one ray and one primitive.
     pub fn test(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
         let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
-        primitives.test(id, self.rays.get(lane)?)
+        primitives.test(id, &self.rays.get(lane)?)
     }
 
     /// What f64 says of each valid ray and the primitive; `None` when all certainly miss.

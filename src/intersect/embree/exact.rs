@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use crate::geometry::Ray;
 use crate::intersect::brute::is_extreme;
 use crate::intersect::embree::frame::{FAR, Frame, PAD, REACH};
+use crate::intersect::embree::packet::Packet;
 
 /// Components of an f32 direction below this share of the largest are set to 0: over any
 /// distance in the scene they move the ray by far less than the rounding above, and their
@@ -50,7 +50,7 @@ impl<const W: usize> Clip<W> {
 }
 
 /// Which rays of a packet to trace.
-pub struct Lanes<const W: usize> {
+pub struct Entered<const W: usize> {
     /// Those that come into the box at all.
     pub inside: [bool; W],
     /// Those that no f32 ray can stand for: they start too far away, or their direction is so
@@ -87,16 +87,18 @@ impl<const W: usize> Exact<W> {
         }
     }
 
-    /// Takes up `rays`, at most `W` of them; the lanes left over repeat the last one.
-    ///
-    /// # Panics
-    /// When there are none.
+    /// Takes up the rays of a packet; the lanes left over repeat the first one.
     #[inline(always)]
-    pub fn load(&mut self, rays: &[Ray]) {
-        for i in 0..W {
-            let ray = &rays[i.min(rays.len() - 1)];
-            self.set_line(i, (ray.origin, ray.direction));
-            self.tmax[i] = ray.tmax;
+    pub fn load(&mut self, packet: &Packet<'_>) {
+        let (lines, at) = packet.lines();
+        for axis in 0..3 {
+            self.origin[axis].copy_from_slice(&lines.origin[axis][at..at + W]);
+            self.direction[axis].copy_from_slice(&lines.direction[axis][at..at + W]);
+        }
+        self.tmax.copy_from_slice(&lines.tmax[at..at + W]);
+        for i in packet.count..W {
+            self.set_line(i, self.line(0));
+            self.tmax[i] = self.tmax[0];
         }
         for i in 0..W {
             let d = self.line(i).1;
@@ -105,7 +107,6 @@ impl<const W: usize> Exact<W> {
     }
 
     /// Sets up the f32 rays: where they start, how long their directions are, where they end.
-    ///
     #[inline(always)]
     pub fn set_up(
         &mut self,
@@ -113,14 +114,17 @@ impl<const W: usize> Exact<W> {
         org: &mut [[f32; W]; 3],
         dir: &mut [[f32; W]; 3],
         tfar: &mut [f32; W],
-    ) -> Lanes<W> {
-        let mut lanes = Lanes { inside: [true; W], astray: [false; W], any_astray: false };
+    ) -> Entered<W> {
+        let mut lanes = Entered { inside: [true; W], astray: [false; W], any_astray: false };
+        for i in 0..W {
+            lanes.inside[i] = self.tmax[i] > 0.0;
+        }
         let mut far = false;
         for i in 0..W {
             let (o, d) = self.line(i);
             let p = (o - frame.center).abs();
-            far |= p.max_element() > REACH * frame.extent;
-            far |= is_extreme(o, d);
+            let away = (p.max_element() > REACH * frame.extent) | is_extreme(o, d);
+            far |= away & (self.tmax[i] > 0.0);
         }
         self.clip.start = [0.0; W];
         if far {
@@ -130,10 +134,10 @@ impl<const W: usize> Exact<W> {
                 let (start, enters) = self.enter(i, frame);
                 // Where one that starts far away passes the box is certain even so.
                 let lost = (distance > FAR * frame.extent) & enters;
-                lanes.astray[i] = lost | is_extreme(o, d);
+                lanes.astray[i] = (lost | is_extreme(o, d)) & lanes.inside[i];
                 lanes.any_astray |= lanes.astray[i];
                 self.clip.start[i] = start;
-                lanes.inside[i] = enters & !lanes.astray[i];
+                lanes.inside[i] &= enters & !lanes.astray[i];
             }
         }
         for i in 0..W {
@@ -184,12 +188,14 @@ fn round_up(x: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Bounds;
+    use crate::geometry::{Bounds, Ray, Rays};
     use proptest::prelude::*;
 
     fn single(frame: &Frame, ray: Ray) -> (Exact<1>, [f32; 3], [f32; 3], f32, bool) {
         let mut exact = Exact::<1>::new();
-        exact.load(&[ray]);
+        let mut rays = Rays::default();
+        rays.push(&ray);
+        exact.load(&Packet::all::<1>(&rays).next().unwrap());
         let (mut org, mut dir, mut tfar) = ([[0.0]; 3], [[0.0]; 3], [0.0]);
         let inside = exact.set_up(frame, &mut org, &mut dir, &mut tfar).inside[0];
         (exact, org.map(|a| a[0]), dir.map(|a| a[0]), tfar[0], inside)

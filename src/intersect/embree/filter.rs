@@ -73,7 +73,6 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     rise: f32,
     [prim, geom, inst]: [u32; 3],
 ) -> bool {
-    let Some(ray) = context.rays.get(lane) else { return false };
     let attached = if inst == INVALID { geom } else { inst };
     let Some(&instance) = context.instance_of.get(attached as usize) else { return true };
     let placed = &context.scene.instances[instance as usize];
@@ -81,7 +80,7 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     if SHADOW && !context.scene.blocks_light(id) {
         return false;
     }
-    if ray.from.is_some_and(|from| from.id == id) {
+    if context.rays.from(lane).is_some_and(|from| from.id == id) {
         return false;
     }
     let end = (context.exact.tmax[lane] - context.clip.start[lane]) * context.clip.unit[lane];
@@ -89,7 +88,10 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     let height = context.doubt / 512.0;
     let clear =
         |way: f64| way > f64::from(context.doubt) && way * f64::from(rise) > f64::from(height);
-    let sure = ray.past.is_none() && clear(f64::from(t)) && clear(end - f64::from(t));
+    let sure = !context.goes_on && clear(f64::from(t)) && clear(end - f64::from(t));
     let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
-    sure || primitives.triangle(id, ray, f64::INFINITY).is_some()
+    sure || context
+        .rays
+        .get(lane)
+        .is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
 }

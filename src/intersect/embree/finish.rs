@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, sphere, triangle};
+use crate::geometry::{Found, Geometry, Hit, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::layout::Context;
 
 /// Distances and weights side by side, and which of them are proven.
@@ -14,15 +14,15 @@ struct Rounded<const W: usize> {
 }
 
 impl<const W: usize> Context<'_, W> {
-    /// The hits that were found.
+    /// Writes the hits that were found, from lane `at` on.
     ///
     /// Spheres and triangles are rounded all at once, in double-double numbers; where these leave
     /// a distance open, exactly.
     #[inline(always)]
-    pub fn finish(&self, hits: &mut [Option<Hit>]) {
+    pub fn finish(&self, found: &mut Found, at: usize) {
         let mut ids = [None; W];
         let (mut spheres, mut triangles) = (false, false);
-        for i in 0..hits.len() {
+        for i in 0..self.rays.count {
             ids[i] = self.nearest.id(self.scene, i);
             let is_sphere = ids[i].is_some_and(|id| id.geometry == Geometry::Spheres);
             spheres |= is_sphere;
@@ -35,14 +35,15 @@ impl<const W: usize> Context<'_, W> {
         if triangles {
             self.round_triangles(&ids, &mut rounded);
         }
-        for (i, hit) in hits.iter_mut().enumerate() {
-            *hit = ids[i].and_then(|id| {
+        for i in 0..self.rays.count {
+            let hit = ids[i].and_then(|id| {
                 if rounded.certain[i] {
                     Some(Hit { t: rounded.t[i], u: rounded.u[i], v: rounded.v[i], id })
                 } else {
                     self.test(i, id)
                 }
             });
+            found.set(at + i, hit);
         }
     }
 

@@ -5,9 +5,11 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `canary` proves at start that the library agrees.
 
-use crate::geometry::{Departure, Geometry, Ray, Side};
-use crate::intersect::embree::exact::{Clip, Exact};
+use crate::geometry::{Found, Ids};
+use crate::intersect::embree::exact::{Clip, Entered, Exact};
+use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::nearest::Nearest;
+use crate::intersect::embree::packet::Packet;
 pub use crate::intersect::embree::raw::INVALID;
 use crate::intersect::leaving::greatest_slack;
 use crate::scene::Scene;
@@ -74,9 +76,9 @@ pub struct Context<'a, const W: usize> {
     pub embree: [u32; 16],
     pub scene: &'a Scene,
     /// The rays of the packet as they were asked; fewer than `W` in the last one.
-    pub rays: &'a [Ray],
+    pub rays: Packet<'a>,
     /// The same, side by side.
-    pub exact: &'a Exact<W>,
+    pub exact: Exact<W>,
     /// Where on the exact rays the f32 rays lie that are being traced; within an instance they
     /// are its own.
     pub clip: Clip<W>,
@@ -97,50 +99,90 @@ pub struct Context<'a, const W: usize> {
     /// inside; `INVALID` for what left none.
     pub outward: [u32; W],
     pub inward: [u32; W],
+    /// The largest absolute coordinate in the scene.
+    reach: f64,
     /// How far from a surface a ray may start that starts on it to within rounding.
-    pub slack: f64,
+    slack: f64,
 }
 
 impl<'a, const W: usize> Context<'a, W> {
+    /// The context for the packets of a batch.
     pub fn new(
         scene: &'a Scene,
-        rays: &'a [Ray],
-        exact: &'a Exact<W>,
+        rays: Packet<'a>,
         instance_of: &'a [u32],
         doubt: f32,
         reach: f64,
     ) -> Self {
-        let goes_on = rays.iter().any(|ray| ray.past.is_some());
-        let leaves = goes_on || rays.iter().any(|ray| ray.from.is_some());
-        let (mut outward, mut inward, mut slack) = ([INVALID; W], [INVALID; W], 0.0);
-        if leaves {
-            let mut farthest = reach;
-            for (i, ray) in rays.iter().enumerate() {
-                farthest = farthest.max(ray.origin.abs().max_element());
-                match ray.from {
-                    Some(from) if from.id.geometry != Geometry::Spheres => {}
-                    Some(Departure { id, side: Side::Front }) => outward[i] = id.primitive,
-                    Some(Departure { id, side: Side::Back }) => inward[i] = id.primitive,
-                    None => {}
-                }
-            }
-            slack = greatest_slack(farthest);
-        }
+        let exact = Exact::new();
+        let (clip, nearest) = (exact.clip, Nearest::new(exact.tmax));
         Self {
             embree: [INVALID; 16],
             scene,
             rays,
             exact,
-            clip: exact.clip,
+            clip,
             instance: INVALID,
             instance_of,
-            nearest: Nearest::new(exact.tmax),
+            nearest,
             doubt,
-            leaves,
-            goes_on,
-            outward,
-            inward,
-            slack,
+            leaves: !rays.is_fresh(),
+            goes_on: !rays.is_unbroken(),
+            outward: [INVALID; W],
+            inward: [INVALID; W],
+            reach,
+            slack: 0.0,
+        }
+    }
+
+    /// Takes up another packet of the same batch, and sets up its f32 rays.
+    #[inline(always)]
+    pub fn take_up(
+        &mut self,
+        rays: Packet<'a>,
+        frame: &Frame,
+        org: &mut [[f32; W]; 3],
+        dir: &mut [[f32; W]; 3],
+        tfar: &mut [f32; W],
+    ) -> Entered<W> {
+        self.rays = rays;
+        self.exact.load(&rays);
+        let entered = self.exact.set_up(frame, org, dir, tfar);
+        self.clip = self.exact.clip;
+        self.nearest.begin(&self.exact.tmax);
+        if self.leaves {
+            let mut farthest = self.reach;
+            for i in 0..W {
+                farthest = farthest.max(self.exact.line(i).0.abs().max_element());
+            }
+            self.slack = greatest_slack(farthest);
+            (self.outward, self.inward) = rays.spheres_left();
+        }
+        entered
+    }
+
+    /// Merges the spheres that the callbacks of precision `fast` found into the hits of the
+    /// packet, from lane `at` on.
+    #[inline(always)]
+    pub fn merge_spheres(&self, found: &mut Found, at: usize) {
+        let mut any = false;
+        for i in 0..W {
+            any |= self.nearest.primitive[i] != INVALID;
+        }
+        if !any {
+            return;
+        }
+        for i in 0..W {
+            let (t, primitive) = (self.nearest.t[i], self.nearest.primitive[i]);
+            // Of two at the same distance the sphere counts.
+            let counts = (primitive != INVALID) & (t <= found.t[at + i]);
+            found.t[at + i] = if counts { t } else { found.t[at + i] };
+            found.u[at + i] = if counts { 0.0 } else { found.u[at + i] };
+            found.v[at + i] = if counts { 0.0 } else { found.v[at + i] };
+            let id = &mut found.id;
+            id.geometry[at + i] = if counts { Ids::SPHERES } else { id.geometry[at + i] };
+            id.primitive[at + i] = if counts { primitive } else { id.primitive[at + i] };
+            id.instance[at + i] = if counts { 0 } else { id.instance[at + i] };
         }
     }
 

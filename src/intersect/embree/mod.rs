@@ -26,7 +26,9 @@ mod layout;
 mod meshes;
 mod native;
 mod nearest;
+mod packet;
 mod placements;
+mod planes;
 mod query;
 mod raw;
 mod refine;
@@ -44,7 +46,7 @@ use embree4_rs::{CommittedScene, Device, SceneOptions};
 use embree4_sys::{RTCBuildQuality, RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Hit, Ray};
+use crate::geometry::{Bounds, Hit, Hits, Ray, Rays};
 use crate::intersect::kept::Kept;
 use crate::intersect::{Coherence, Intersector, Precision, leaving};
 use crate::scene::Scene;
@@ -264,11 +266,28 @@ impl Intersector for Embree<'_> {
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        self.target().closest(rays, coherence, hits);
+        let (mut batch, mut found) = (Rays::default(), Hits::default());
+        batch.extend(rays);
+        self.closest_of(&batch, coherence, &mut found);
+        found.iter().zip(hits).for_each(|(found, hit)| *hit = found);
     }
 
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
+        let (mut batch, mut found) = (Rays::default(), Vec::new());
+        batch.extend(rays);
+        self.occluded_of(&batch, coherence, &mut found);
+        blocked.copy_from_slice(&found);
+    }
+
+    fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
+        hits.reset(rays.len());
+        self.target().closest(rays, coherence, hits);
+    }
+
+    fn occluded_of(&self, rays: &Rays, coherence: Coherence, blocked: &mut Vec<bool>) {
+        blocked.clear();
+        blocked.resize(rays.len(), false);
         self.target().occluded(rays, coherence, blocked);
     }
 }

@@ -25,6 +25,15 @@ impl<const W: usize> Nearest<W> {
         Self { t: tmax, error: [0.0; W], primitive: [INVALID; W], instance: [INVALID; W] }
     }
 
+    /// Forgets the hits, for rays that end at `tmax`.
+    #[inline(always)]
+    pub fn begin(&mut self, tmax: &[f64; W]) {
+        self.t = *tmax;
+        self.error = [0.0; W];
+        self.primitive = [INVALID; W];
+        self.instance = [INVALID; W];
+    }
+
     /// Beyond this there is nothing to look for.
     #[inline(always)]
     pub fn upper(&self, i: usize) -> f64 {

@@ -152,7 +152,7 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
         }
         let outer = *tfar.cast::<[f32; W]>();
         let limits = std::array::from_fn(|i| (*context).nearest.upper(i));
-        let mut inside = placement.enter((*context).exact, &*valid.cast::<[i32; W]>(), limits);
+        let mut inside = placement.enter(&(*context).exact, &*valid.cast::<[i32; W]>(), limits);
         for i in 0..W {
             if inside.astray[i] {
                 (*context).settle_all(i, placement.instance);
@@ -210,7 +210,7 @@ unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArgumen
             return;
         }
         let outer = *tfar.cast::<[f32; W]>();
-        let exact = (*context).exact;
+        let exact = &(*context).exact;
         let mut inside = placement.enter(exact, &*valid.cast::<[i32; W]>(), exact.tmax);
         for i in (0..W).filter(|&i| inside.valid.0[i] != 0) {
             *tfar.add(i) = inside.tfar[i];

@@ -3,11 +3,11 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::{Hit, PrimitiveId, Ray};
-use crate::intersect::embree::exact::Exact;
+use crate::geometry::{Found, Hits, LANES, Rays};
 use crate::intersect::embree::filter::filter;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, INVALID, RayHit, Valid};
+use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::refine::refine;
 use crate::intersect::embree::width::Width;
 use crate::intersect::primitive::Primitives;
@@ -34,13 +34,8 @@ impl Target<'_> {
         Primitives { scene: self.scene, precision: self.precision }
     }
 
-    #[inline(always)]
-    fn context<'a, const W: usize>(
-        &'a self,
-        rays: &'a [Ray],
-        exact: &'a Exact<W>,
-    ) -> Context<'a, W> {
-        Context::new(self.scene, rays, exact, self.instance_of, self.frame.doubt(), self.reach)
+    fn context<'a, const W: usize>(&'a self, rays: Packet<'a>) -> Context<'a, W> {
+        Context::new(self.scene, rays, self.instance_of, self.frame.doubt(), self.reach)
     }
 
     /// What rays are left to that no f32 ray can stand for.
@@ -49,7 +44,7 @@ impl Target<'_> {
     }
 
     /// The closest hit of each ray.
-    pub fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
+    pub fn closest(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
         // SAFETY: the widths with target features are only chosen where the processor has them.
         match self.width {
             Width::One => closest::<1>(self, rays, coherence, hits),
@@ -62,7 +57,7 @@ impl Target<'_> {
     }
 
     /// Whether each ray is kept from its end.
-    pub fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
+    pub fn occluded(&self, rays: &Rays, coherence: Coherence, blocked: &mut [bool]) {
         // SAFETY: as in `closest`.
         match self.width {
             Width::One => occluded::<1>(self, rays, coherence, blocked),
@@ -77,25 +72,25 @@ impl Target<'_> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn closest_8(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
+fn closest_8(target: &Target<'_>, rays: &Rays, c: Coherence, hits: &mut Hits) {
     closest::<8>(target, rays, c, hits);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
-fn closest_16(target: &Target<'_>, rays: &[Ray], c: Coherence, hits: &mut [Option<Hit>]) {
+fn closest_16(target: &Target<'_>, rays: &Rays, c: Coherence, hits: &mut Hits) {
     closest::<16>(target, rays, c, hits);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn occluded_8(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
+fn occluded_8(target: &Target<'_>, rays: &Rays, c: Coherence, blocked: &mut [bool]) {
     occluded::<8>(target, rays, c, blocked);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma")]
-fn occluded_16(target: &Target<'_>, rays: &[Ray], c: Coherence, blocked: &mut [bool]) {
+fn occluded_16(target: &Target<'_>, rays: &Rays, c: Coherence, blocked: &mut [bool]) {
     occluded::<16>(target, rays, c, blocked);
 }
 
@@ -122,103 +117,106 @@ fn lanes<const W: usize>(count: usize, inside: &[bool; W]) -> Valid<W> {
 #[inline(always)]
 fn closest<const W: usize>(
     target: &Target<'_>,
-    rays: &[Ray],
+    rays: &Rays,
     coherence: Coherence,
-    hits: &mut [Option<Hit>],
+    hits: &mut Hits,
 ) {
-    let mut exact = Exact::<W>::new();
-    let mut record = RayHit::<W>::new();
-    for (rays, hits) in rays.chunks(W).zip(hits.chunks_mut(W)) {
-        exact.load(rays);
-        let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
-        record.geom = [INVALID; W];
-        record.inst = [INVALID; W];
-        let valid = lanes(rays.len(), &entry.inside);
-        let mut context = target.context(rays, &exact);
-        let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
-        let mut args = sys::RTCIntersectArguments {
-            flags: query_flags(coherence, filtered),
-            feature_mask: ALL_FEATURES,
-            context: std::ptr::from_mut(&mut context).cast(),
-            filter: if filtered { Some(filter::<W, false>) } else { None },
-            intersect: None,
-        };
-        let record_ptr = std::ptr::from_mut(&mut record);
-        // SAFETY: the scene is committed and lives as long as `target`; record, valid and context
-        // are laid out as the library wants them (see `layout` and `canary`), larger than it
-        // needs, and 64-aligned; the callbacks get a pointer to the whole context.
-        unsafe {
-            match W {
-                1 => {
-                    if valid.0[0] != 0 {
-                        sys::rtcIntersect1(target.handle, record_ptr.cast(), &mut args);
-                    }
-                }
-                4 => sys::rtcIntersect4(
-                    valid.0.as_ptr(),
-                    target.handle,
-                    record_ptr.cast(),
-                    &mut args,
-                ),
-                8 => sys::rtcIntersect8(
-                    valid.0.as_ptr(),
-                    target.handle,
-                    record_ptr.cast(),
-                    &mut args,
-                ),
-                _ => sys::rtcIntersect16(
-                    valid.0.as_ptr(),
-                    target.handle,
-                    record_ptr.cast(),
-                    &mut args,
-                ),
-            }
-        }
-        match target.precision {
-            Precision::Fast => {
-                let all_within = refine(target.scene, target.instance_of, &exact, &record, hits);
-                if !all_within && !filtered {
-                    // A ray that starts on a triangle, which hides what lies behind it: the filter
-                    // drops it and lets Embree look on.
-                    Target { careful: true, ..*target }.closest(rays, coherence, hits);
-                    continue;
-                }
-                for (i, hit) in hits.iter_mut().enumerate() {
-                    if context.nearest.primitive[i] != INVALID {
-                        let id = PrimitiveId::sphere(context.nearest.primitive[i]);
-                        Hit::keep_first(hit, Hit { t: context.nearest.t[i], u: 0.0, v: 0.0, id });
-                    }
-                }
-            }
-            Precision::Certified => context.finish(hits),
-        }
-        if entry.any_astray {
-            for i in (0..rays.len()).filter(|&i| entry.astray[i]) {
-                hits[i] = target.brute_force().first(&rays[i]);
-            }
-        }
-        if !target.scene.planes.is_empty() {
-            for (ray, hit) in rays.iter().zip(hits) {
-                target.primitives().merge_planes(ray, hit);
-            }
+    let Some(first) = Packet::all::<W>(rays).next() else { return };
+    let mut room = Room { context: target.context::<W>(first), record: RayHit::new() };
+    for packet in Packet::all::<W>(rays) {
+        let found = &mut hits.found_mut()[packet.first / LANES];
+        if !closest_in_packet(target, packet, coherence, &mut room, found) {
+            // A ray that starts on a triangle, which hides what lies behind it: the filter drops it
+            // and lets Embree look on.
+            (0..packet.count).for_each(|i| found.set(packet.first % LANES + i, None));
+            let careful = Target { careful: true, ..*target };
+            closest_in_packet(&careful, packet, coherence, &mut room, found);
         }
     }
+}
+
+/// What a packet is traced with.
+struct Room<'a, const W: usize> {
+    context: Context<'a, W>,
+    record: RayHit<W>,
+}
+
+/// Writes the closest hits of a packet; says whether all lie within their rays' segments, or else
+/// are the best that there are.
+#[inline(always)]
+fn closest_in_packet<'a, const W: usize>(
+    target: &Target<'_>,
+    packet: Packet<'a>,
+    coherence: Coherence,
+    Room { context, record }: &mut Room<'a, W>,
+    found: &mut Found,
+) -> bool {
+    let at = packet.first % LANES;
+    let RayHit { org, dir, tfar, .. } = record;
+    let entry = context.take_up(packet, target.frame, org, dir, tfar);
+    record.geom = [INVALID; W];
+    record.inst = [INVALID; W];
+    let valid = lanes(packet.count, &entry.inside);
+    let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
+    let mut args = sys::RTCIntersectArguments {
+        flags: query_flags(coherence, filtered),
+        feature_mask: ALL_FEATURES,
+        context: std::ptr::from_mut(context).cast(),
+        filter: if filtered { Some(filter::<W, false>) } else { None },
+        intersect: None,
+    };
+    let record_ptr = std::ptr::from_mut(record);
+    // SAFETY: the scene is committed and lives as long as `target`; record, valid and context
+    // are laid out as the library wants them (see `layout` and `canary`), larger than it
+    // needs, and 64-aligned; the callbacks get a pointer to the whole context.
+    unsafe {
+        match W {
+            1 => {
+                if valid.0[0] != 0 {
+                    sys::rtcIntersect1(target.handle, record_ptr.cast(), &mut args);
+                }
+            }
+            4 => sys::rtcIntersect4(valid.0.as_ptr(), target.handle, record_ptr.cast(), &mut args),
+            8 => sys::rtcIntersect8(valid.0.as_ptr(), target.handle, record_ptr.cast(), &mut args),
+            _ => sys::rtcIntersect16(valid.0.as_ptr(), target.handle, record_ptr.cast(), &mut args),
+        }
+    }
+    match target.precision {
+        Precision::Fast => {
+            let (scene, instance_of) = (target.scene, target.instance_of);
+            let exact = &context.exact;
+            let within = refine(scene, instance_of, exact, record, packet.count, found, at);
+            if !within && !filtered {
+                return false;
+            }
+            context.merge_spheres(found, at);
+        }
+        Precision::Certified => context.finish(found, at),
+    }
+    if entry.any_astray {
+        for i in (0..packet.count).filter(|&i| entry.astray[i]) {
+            found.set(at + i, target.brute_force().first(&packet.ray(i)));
+        }
+    }
+    if !target.scene.planes.is_empty() {
+        target.primitives().merge_planes_into(&packet, &context.exact, found, at);
+    }
+    true
 }
 
 #[inline(always)]
 fn occluded<const W: usize>(
     target: &Target<'_>,
-    rays: &[Ray],
+    rays: &Rays,
     coherence: Coherence,
     blocked: &mut [bool],
 ) {
-    let mut exact = Exact::<W>::new();
-    let mut record = RayHit::<W>::new();
-    for (rays, blocked) in rays.chunks(W).zip(blocked.chunks_mut(W)) {
-        exact.load(rays);
-        let entry = exact.set_up(target.frame, &mut record.org, &mut record.dir, &mut record.tfar);
-        let valid = lanes(rays.len(), &entry.inside);
-        let mut context = target.context(rays, &exact);
+    let Some(first) = Packet::all::<W>(rays).next() else { return };
+    let (mut context, mut record) = (target.context::<W>(first), RayHit::<W>::new());
+    for (packet, blocked) in Packet::all::<W>(rays).zip(blocked.chunks_mut(W)) {
+        let RayHit { org, dir, tfar, .. } = &mut record;
+        let entry = context.take_up(packet, target.frame, org, dir, tfar);
+        let valid = lanes(packet.count, &entry.inside);
         let filtered = target.precision == Precision::Fast;
         let mut args = sys::RTCOccludedArguments {
             flags: query_flags(coherence, filtered),
@@ -250,12 +248,16 @@ fn occluded<const W: usize>(
                 ),
             }
         }
-        for (i, (ray, blocked)) in rays.iter().zip(blocked).enumerate() {
-            let mut found = valid.0[i] != 0 && record.tfar[i] == f32::NEG_INFINITY;
-            if entry.any_astray && entry.astray[i] {
-                found = target.brute_force().blocks(ray);
+        for (i, blocked) in blocked.iter_mut().enumerate() {
+            *blocked = (valid.0[i] != 0) & (record.tfar[i] == f32::NEG_INFINITY);
+        }
+        if entry.any_astray {
+            for i in (0..packet.count).filter(|&i| entry.astray[i]) {
+                blocked[i] = target.brute_force().blocks(&packet.ray(i));
             }
-            *blocked = found || target.primitives().planes_occlude(ray);
+        }
+        if !target.scene.planes.is_empty() {
+            target.primitives().planes_block(&packet, &context.exact, blocked);
         }
     }
 }

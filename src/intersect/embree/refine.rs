@@ -1,16 +1,12 @@
 //! The f64 hits of the triangles that Embree found.
 
-use glam::DVec3;
-
-use crate::geometry::{Hit, PrimitiveId, triangle};
+use crate::geometry::{Found, Ids, triangle};
 use crate::intersect::embree::exact::Exact;
 use crate::intersect::embree::layout::{INVALID, RayHit};
-use crate::scene::Scene;
+use crate::scene::{Faces, Scene};
 
-/// The corners of a packet's triangles, side by side: corner, axis, lane.
-type Corners<T, const W: usize> = [[[T; W]; 3]; 3];
-
-/// Intersects each lane's triangle again in f64, and writes the hits; `None` where there is none.
+/// Intersects the triangles of the first `count` lanes again in f64, and writes the hits from lane
+/// `at` of `found` on; where no lane has one, nothing is written.
 /// Says whether all of them lie within their rays' segments.
 ///
 /// Where f64 says that the ray just misses the triangle that Embree's f32 arithmetic hit, the hit
@@ -23,104 +19,62 @@ pub fn refine<const W: usize>(
     instance_of: &[u32],
     exact: &Exact<W>,
     record: &RayHit<W>,
-    hits: &mut [Option<Hit>],
+    count: usize,
+    found: &mut Found,
+    at: usize,
 ) -> bool {
-    let mut local: Corners<f32, W> = [[[0.0; W]; 3]; 3];
-    let mut ids = [None; W];
-    let mut instances = [INVALID; W];
-    let mut first = INVALID;
-    for i in 0..hits.len() {
+    let (mut geometry, mut instances) = ([Ids::NONE; W], [0; W]);
+    let primitives = &record.prim;
+    for i in 0..count {
         if record.geom[i] == INVALID {
             continue;
         }
         let attached = if record.inst[i] == INVALID { record.geom[i] } else { record.inst[i] };
-        let instance = instance_of[attached as usize];
-        let mesh = scene.instances[instance as usize].mesh.0;
-        let corners = scene.meshes[mesh as usize].corners(record.prim[i]);
-        for (to, p) in local.iter_mut().zip(corners) {
-            for axis in 0..3 {
-                to[axis][i] = p[axis];
-            }
-        }
-        ids[i] = Some(PrimitiveId::triangle(mesh, record.prim[i], instance));
-        instances[i] = instance;
-        first = instance;
+        instances[i] = instance_of[attached as usize];
+        geometry[i] = Ids::MESHES + scene.instances[instances[i] as usize].mesh.0;
     }
-    if first == INVALID {
-        hits.fill(None);
-        return true;
-    }
-    let corners = bake(scene, first, &instances, &local);
+    let Some(faces) = Faces::of(scene, &geometry, primitives, &instances) else { return true };
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
     let mut flat = [false; W];
     for i in 0..W {
         let (origin, direction) = exact.line(i);
-        let corner = |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
-        let edges = triangle::Edges::new([corner(0), corner(1), corner(2)], origin, direction);
+        let edges = triangle::Edges::new(faces.corners(i), origin, direction);
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
         flat[i] = edges.flat;
     }
-    for i in (0..W).filter(|&i| flat[i] && ids[i].is_some()) {
+    for i in (0..W).filter(|&i| flat[i] && geometry[i] != Ids::NONE) {
         let (origin, direction) = exact.line(i);
-        let corner = |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
-        let triangle = [corner(0), corner(1), corner(2)];
-        ts[i] = triangle::certified::round(triangle, origin, direction).t;
+        ts[i] = triangle::certified::round(faces.corners(i), origin, direction).t;
     }
-    let mut all_within = true;
-    for (i, (hit, id)) in hits.iter_mut().zip(ids).enumerate() {
-        *hit = id.map(|id| {
-            let mut t = ts[i];
-            if !(t > 0.0 && t < exact.tmax[i]) {
+    let mut odd = [false; W];
+    let (mut any_odd, mut all_within) = (false, true);
+    for i in 0..W {
+        let within = (ts[i] > 0.0) & (ts[i] < exact.tmax[i]);
+        odd[i] = !(within & us[i].is_finite() & vs[i].is_finite());
+        any_odd |= odd[i];
+    }
+    if any_odd {
+        for i in (0..W).filter(|&i| odd[i] && geometry[i] != Ids::NONE) {
+            if !(ts[i] > 0.0 && ts[i] < exact.tmax[i]) {
                 all_within = false;
                 let last = exact.tmax[i].next_down();
-                t = exact.clip.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
+                ts[i] = exact.clip.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
             }
-            let (mut u, mut v) = (us[i], vs[i]);
-            if !(u.is_finite() && v.is_finite()) {
-                (u, v) = (f64::from(record.u[i]), f64::from(record.v[i]));
+            if !(us[i].is_finite() && vs[i].is_finite()) {
+                (us[i], vs[i]) = (f64::from(record.u[i]), f64::from(record.v[i]));
             }
-            Hit { t, u, v, id }
-        });
+        }
     }
+    for i in 0..W {
+        found.t[at + i] = if geometry[i] != Ids::NONE { ts[i] } else { f64::INFINITY };
+        found.u[at + i] = us[i];
+        found.v[at + i] = vs[i];
+    }
+    found.id.geometry[at..at + W].copy_from_slice(&geometry);
+    found.id.primitive[at..at + W].copy_from_slice(primitives);
+    found.id.instance[at..at + W].copy_from_slice(&instances);
     all_within
-}
-
-/// The corners in world space. Nearly always all lanes are in one instance, whose transform then
-/// is the same for all.
-#[inline(always)]
-fn bake<const W: usize>(
-    scene: &Scene,
-    first: u32,
-    instances: &[u32; W],
-    local: &Corners<f32, W>,
-) -> Corners<f64, W> {
-    let mut world: Corners<f64, W> = [[[0.0; W]; 3]; 3];
-    let mut one = true;
-    for &instance in instances {
-        one &= instance == INVALID || instance == first;
-    }
-    let placed = &scene.instances[first as usize];
-    for (to, from) in world.iter_mut().zip(local) {
-        for i in 0..W {
-            let p = placed.bake([from[0][i], from[1][i], from[2][i]]);
-            for axis in 0..3 {
-                to[axis][i] = p[axis];
-            }
-        }
-    }
-    if !one {
-        for i in (0..W).filter(|&i| instances[i] != INVALID) {
-            let placed = &scene.instances[instances[i] as usize];
-            for (to, from) in world.iter_mut().zip(local) {
-                let p = placed.bake([from[0][i], from[1][i], from[2][i]]);
-                for axis in 0..3 {
-                    to[axis][i] = p[axis];
-                }
-            }
-        }
-    }
-    world
 }

@@ -7,7 +7,7 @@
 
 use embree4_sys as sys;
 
-use crate::geometry::{Bounds, PrimitiveId, sphere};
+use crate::geometry::{Bounds, PrimitiveId, Ray, sphere};
 use crate::intersect::Precision;
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::layout::{Context, RayHit};
@@ -205,14 +205,14 @@ fn crossing<const W: usize>(context: &Context<'_, W>, s: &Entry, primitive: u32,
     if !line.crosses() {
         return f64::INFINITY;
     }
-    if let Some(ray) = context.rays.get(i).filter(|ray| ray.past.is_some()) {
+    if let Some(ray) = context.rays.get(i).filter(|ray| ray.past.is_some()).as_ref() {
         let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
         let inverse = context.exact.inverse_length_squared[i];
         let hit = primitives.sphere(primitive, ray, inverse, f64::INFINITY);
         return hit.map_or(f64::INFINITY, |hit| hit.t);
     }
     let first = |inward| sphere::first_root(line.roots(), f64::INFINITY, inward);
-    let left = |ray| leaving(context.scene, primitive, ray);
+    let left = |ray: Ray| leaving(context.scene, primitive, &ray);
     let t = match (first(false), context.rays.get(i).map_or(Leaving::No, left)) {
         (None, _) | (_, Leaving::Outward) => None,
         (t, Leaving::No) => t,

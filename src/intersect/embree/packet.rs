@@ -1,0 +1,82 @@
+//! A packet's share of a batch.
+
+use crate::geometry::{Departure, Ids, LANES, Lines, Ray, Rays};
+use crate::intersect::embree::raw::INVALID;
+
+/// Neighbouring rays of a batch that are traced together: as many as a packet is wide, or fewer
+/// at the batch's end. They never stand in two sixteens.
+#[derive(Clone, Copy)]
+pub struct Packet<'a> {
+    rays: &'a Rays,
+    /// The first ray's place in the batch.
+    pub first: usize,
+    /// How many there are.
+    pub count: usize,
+}
+
+impl<'a> Packet<'a> {
+    /// The packets of a batch, each of `W` rays.
+    pub fn all<const W: usize>(rays: &'a Rays) -> impl Iterator<Item = Self> {
+        const { assert!(LANES.is_multiple_of(W)) };
+        (0..rays.len())
+            .step_by(W)
+            .map(move |first| Self { rays, first, count: W.min(rays.len() - first) })
+    }
+
+    /// The sixteen that they stand in, and the lane of the first.
+    #[inline(always)]
+    pub fn lines(&self) -> (&'a Lines, usize) {
+        (&self.rays.lines()[self.first / LANES], self.first % LANES)
+    }
+
+    /// The ray in a lane, if there is one.
+    #[inline]
+    pub fn get(&self, lane: usize) -> Option<Ray> {
+        (lane < self.count).then(|| self.rays.ray(self.first + lane))
+    }
+
+    /// The ray in a lane.
+    ///
+    /// # Panics
+    /// When there is none.
+    #[inline]
+    pub fn ray(&self, lane: usize) -> Ray {
+        self.rays.ray(self.first + lane)
+    }
+
+    /// What the ray in a lane left.
+    #[inline(always)]
+    pub fn from(&self, lane: usize) -> Option<Departure> {
+        self.rays.from(self.first + lane)
+    }
+
+    /// The sphere that each ray left toward its outside, and toward its inside; [`INVALID`] where
+    /// there is none.
+    #[inline(always)]
+    pub fn spheres_left<const W: usize>(&self) -> ([u32; W], [u32; W]) {
+        let (mut outward, mut inward) = ([INVALID; W], [INVALID; W]);
+        let Some(left) = self.rays.left().get(self.first / LANES) else {
+            return (outward, inward);
+        };
+        let at = self.first % LANES;
+        for i in 0..W {
+            let is_sphere = left.id.geometry[at + i] == Ids::SPHERES;
+            let primitive = if is_sphere { left.id.primitive[at + i] } else { INVALID };
+            outward[i] = if left.is_back[at + i] { INVALID } else { primitive };
+            inward[i] = if left.is_back[at + i] { primitive } else { INVALID };
+        }
+        (outward, inward)
+    }
+
+    /// Whether none left a surface, nor went through one.
+    #[inline(always)]
+    pub fn is_fresh(&self) -> bool {
+        self.rays.are_fresh()
+    }
+
+    /// Whether none went straight through a surface.
+    #[inline(always)]
+    pub fn is_unbroken(&self) -> bool {
+        self.rays.are_unbroken()
+    }
+}
