@@ -133,7 +133,7 @@ impl Rays {
         let alike = self.len % LANES == 0 && self.from.len() == block && self.past.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        self.from.push(Left::NOTHING);
+        self.from.resize(block + 1, Left::NOTHING);
         self.len += LANES;
         (&mut self.lines[block], &mut self.from[block])
     }
