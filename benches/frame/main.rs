@@ -40,8 +40,14 @@ impl Settings {
 }
 
 fn settings() -> Option<Settings> {
-    let mut settings =
-        Settings { scenes: Vec::new(), size: None, threads: 1, rounds: 15, tiling: Tiling::default(), ours: None };
+    let mut settings = Settings {
+        scenes: Vec::new(),
+        size: None,
+        threads: 1,
+        rounds: 15,
+        tiling: Tiling::default(),
+        ours: None,
+    };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut number = || arguments.next()?.parse().ok();

@@ -130,7 +130,8 @@ impl Rays {
     #[inline(always)]
     pub fn push_sixteen(&mut self) -> (&mut Lines, &mut Left) {
         let block = self.len / LANES;
-        let alike = self.len % LANES == 0 && self.from.len() == block && self.past.is_empty();
+        let alike =
+            self.len.is_multiple_of(LANES) && self.from.len() == block && self.past.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
         self.from.resize(block + 1, Left::NOTHING);

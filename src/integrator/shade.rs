@@ -199,12 +199,10 @@ impl Integrator<'_> {
         let first = lit.surfaces.material[0];
         let mut alike = true;
         for i in 0..LANES {
-            let finite = lit.surfaces.position[0][i] - lit.surfaces.position[0][i]
-                + (lit.surfaces.position[1][i] - lit.surfaces.position[1][i])
-                + (lit.surfaces.position[2][i] - lit.surfaces.position[2][i]);
+            let [x, y, z] = lit.surfaces.position(i).to_array();
             alike &= (found.t[i] < f64::INFINITY)
                 & (lit.surfaces.material[i] == first)
-                & (finite == 0.0);
+                & (x + y + z).is_finite();
         }
         let look = match alike {
             true => &self.looks[first.0 as usize],

@@ -81,9 +81,8 @@ impl Rise {
 #[inline(always)]
 fn is_sure<const W: usize>(context: &Context<'_, W>, lane: usize, t: f32, rise: &Rise) -> bool {
     let height = context.doubt / 512.0;
-    let clear = |way: f32| {
-        way > context.doubt && (way * way) * rise.way > (height * height) * rise.normal
-    };
+    let clear =
+        |way: f32| way > context.doubt && (way * way) * rise.way > (height * height) * rise.normal;
     !context.goes_on && clear(t) && clear(context.end[lane] - t)
 }
 
