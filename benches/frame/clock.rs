@@ -13,11 +13,18 @@ pub fn time(threads: usize, work: impl FnOnce()) -> f64 {
     }
 }
 
-/// Seconds that this thread has run, as Linux tells it.
+/// Seconds that this thread has run. (What Linux tells of it under `/proc` moves only at the ticks of
+/// its scheduler, milliseconds apart.)
+#[cfg(unix)]
 fn own_seconds() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(nanoseconds * 1e-9)
+    use rustix::time::{ClockId, clock_gettime};
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    Some(time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9)
+}
+
+#[cfg(not(unix))]
+fn own_seconds() -> Option<f64> {
+    None
 }
 
 /// The median.

@@ -16,6 +16,7 @@ use std::path::Path;
 use bare::{Bare, Packet, packets};
 use clock::{median, time};
 use envers::geometry::Ray;
+use envers::integrator::Tiling;
 use envers::intersect::{Builder, Precision};
 use envers::render::{self, Options};
 use envers::scene::Scene;
@@ -27,19 +28,37 @@ struct Settings {
     size: Option<[u32; 2]>,
     threads: usize,
     rounds: usize,
+    tiling: Tiling,
     /// Only our frames, for a profiler.
-    ours: bool,
+    ours: Option<Precision>,
+}
+
+impl Settings {
+    fn options(&self) -> Options {
+        Options { tiling: self.tiling, ..Options::default() }
+    }
 }
 
 fn settings() -> Option<Settings> {
-    let mut settings =
-        Settings { scenes: Vec::new(), size: None, threads: 1, rounds: 15, ours: false };
+    let mut settings = Settings {
+        scenes: Vec::new(),
+        size: None,
+        threads: 1,
+        rounds: 15,
+        tiling: Tiling::default(),
+        ours: None,
+    };
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut number = || arguments.next()?.parse().ok();
         match argument.as_str() {
             "--bench" => {}
-            "--ours" => settings.ours = true,
+            "--tile" => {
+                let [rows, columns] = [number()?, number()?];
+                settings.tiling = Tiling { rows, columns, ..settings.tiling };
+            }
+            "--ours" => settings.ours = Some(Precision::Fast),
+            "--ours-certified" => settings.ours = Some(Precision::Certified),
             "--threads" => settings.threads = number()?,
             "--rounds" => settings.rounds = number()?,
             "--size" => {
@@ -103,8 +122,8 @@ impl Kind {
 }
 
 fn main() {
-    // `cargo test --benches` runs this too: it must not take long, and measures nothing.
-    if std::env::args().any(|a| a == "--test") {
+    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
+    if !std::env::args().any(|a| a == "--bench") {
         return;
     }
     let Some(settings) = settings() else {
@@ -125,15 +144,15 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
     let build = |precision| {
         Builder::new(Default::default(), precision, settings.threads).build(scene).unwrap()
     };
-    if settings.ours {
-        let (fast, options) = (build(Precision::Fast), Options::default());
+    if let Some(precision) = settings.ours {
+        let (fast, options) = (build(precision), settings.options());
         for _ in 0..settings.rounds {
             black_box(render::with_intersector(scene, &options, &*fast, &|_| {}));
         }
         return;
     }
     let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
-    let options = Options::default();
+    let options = settings.options();
     let recorder = Recorder::new(&*fast);
     let (_, counts, _) = render::with_intersector(scene, &options, &recorder, &|_| {});
     let [width, height] = scene.film.size;

@@ -5,6 +5,8 @@
 //! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
 mod bare;
+#[path = "../../examples/reference/mod.rs"]
+mod reference;
 mod scenes;
 
 use std::hint::black_box;
@@ -229,12 +231,12 @@ fn beside(
 }
 
 fn main() {
-    let cases = [Case::new("M", scenes::knot(2000, 250)), Case::new("S", scenes::spheres())];
-    let ratios_only = std::env::args().any(|a| a == "ratios" || a == "certified");
-    // `cargo test --benches` runs this too: it must not take long, and measures nothing.
-    if std::env::args().any(|a| a == "--test") {
+    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
+    if !std::env::args().any(|a| a == "--bench") {
         return;
     }
+    let cases = [Case::new("M", scenes::knot([2000, 250])), Case::new("S", scenes::spheres())];
+    let ratios_only = std::env::args().any(|a| a == "ratios" || a == "certified");
     if !ratios_only {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         cases.iter().for_each(|case| criterion(&mut c, case));

@@ -2,44 +2,19 @@
 
 use envers::geometry::Ray;
 use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind, Shadow};
-use envers::scene::{Material, Mesh, Scene, Sphere};
+use envers::scene::{Material, Scene, Sphere};
 use glam::{DAffine3, DVec3, Vec3};
+
+use crate::reference::knot;
 
 /// Width and height of the pictures that are traced.
 pub const SIZE: [u32; 2] = [1000, 500];
 
-/// M: a torus knot with a displaced surface, of `rings · sides · 2` triangles.
-pub fn knot(rings: u32, sides: u32) -> Scene {
-    use std::f64::consts::TAU;
-    let center = |s: f64| {
-        let (p, q) = (2.0 * s, 3.0 * s);
-        let radius = 1.0 + 0.45 * q.cos();
-        DVec3::new(radius * p.cos(), radius * p.sin(), 0.45 * q.sin())
-    };
-    let mut positions = Vec::with_capacity((rings * sides) as usize);
-    for i in 0..rings {
-        let s = TAU * f64::from(i) / f64::from(rings);
-        let along = (center(s + 1e-4) - center(s - 1e-4)).normalize();
-        let across = along.cross(DVec3::Z).normalize();
-        let up = across.cross(along);
-        for k in 0..sides {
-            let a = TAU * f64::from(k) / f64::from(sides);
-            let bump = 0.02 * ((s * 40.0).sin() * (a * 9.0).sin() + (s * 131.0).cos() * 0.3);
-            let p = center(s) + (across * a.cos() + up * a.sin()) * (0.3 + bump);
-            positions.push(p.as_vec3().to_array());
-        }
-    }
-    let at = |i: u32, k: u32| (i % rings) * sides + k % sides;
-    let triangles = (0..rings)
-        .flat_map(|i| (0..sides).map(move |k| (i, k)))
-        .flat_map(|(i, k)| {
-            let (a, b, c, d) = (at(i, k), at(i + 1, k), at(i + 1, k + 1), at(i, k + 1));
-            [[a, b, c], [a, c, d]]
-        })
-        .collect();
+/// A torus knot from near by, of `rings · sides · 2` triangles: M's, without what stands about it.
+pub fn knot(resolution: [u32; 2]) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
+    let mesh = scene.add_mesh(knot::mesh(resolution));
     scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     finish(scene, DVec3::new(0.25, 0.15, 2.1))
 }
@@ -59,7 +34,8 @@ pub fn spheres() -> Scene {
     finish(scene, DVec3::new(0.0, 0.6, 3.6))
 }
 
-fn finish(mut scene: Scene, eye: DVec3) -> Scene {
+/// A scene with a camera, which looks at the origin, and the light.
+pub fn finish(mut scene: Scene, eye: DVec3) -> Scene {
     scene.film.size = SIZE;
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.9));
     scene.cameras.push(camera.expect("the eye is not at the origin"));

@@ -101,6 +101,24 @@ impl Glb {
         self.meshes.len() - 1
     }
 
+    /// A mesh of triangles over one set of vertices, flat, without a material.
+    #[allow(dead_code)] // The reference scenes have such meshes, the demo models none.
+    pub fn triangles(
+        &mut self,
+        name: &str,
+        positions: &[[f32; 3]],
+        triangles: &[[u32; 3]],
+    ) -> usize {
+        let positions = self.vectors(positions, true);
+        let bytes: Vec<u8> = triangles.iter().flatten().flat_map(|i| i.to_le_bytes()).collect();
+        let count = 3 * triangles.len();
+        let accessor = json!({ "componentType": 5125, "type": "SCALAR", "count": count });
+        let indices = self.accessor(&bytes, accessor);
+        let primitive = json!({ "attributes": { "POSITION": positions }, "indices": indices });
+        self.meshes.push(json!({ "name": name, "primitives": [primitive] }));
+        self.meshes.len() - 1
+    }
+
     fn primitive(&mut self, shape: &Shape, material: usize) -> Value {
         let vec3 = |v: &[DVec3]| v.iter().map(|p| p.as_vec3().to_array()).collect::<Vec<_>>();
         let mut attributes = json!({
@@ -163,11 +181,11 @@ impl Glb {
         self.cameras.push(camera);
     }
 
-    /// The file.
-    pub fn finish(self) -> Vec<u8> {
+    /// The file; it says that `generator` made it.
+    pub fn finish(self, generator: &str) -> Vec<u8> {
         let textures: Vec<Value> = (0..self.images.len()).map(|i| json!({ "source": i })).collect();
-        let root = json!({
-            "asset": { "version": "2.0", "generator": "envers examples/make_assets.rs" },
+        let mut root = json!({
+            "asset": { "version": "2.0", "generator": generator },
             "extensionsUsed": ["KHR_lights_punctual"],
             "extensions": { "KHR_lights_punctual": { "lights": self.lights } },
             "scene": 0,
@@ -182,6 +200,12 @@ impl Glb {
             "bufferViews": self.views,
             "buffers": [{ "byteLength": self.bin.len() }],
         });
+        let root_keys = root.as_object_mut().expect("ok: made above");
+        if self.lights.is_empty() {
+            root_keys.retain(|key, _| !key.starts_with("extensions"));
+        }
+        // glTF allows no empty list.
+        root_keys.retain(|_, value| value != &json!([]));
         let mut json = root.to_string().into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
         let length = 12 + 8 + json.len() + 8 + self.bin.len();

@@ -263,5 +263,5 @@ pub fn glb() -> Vec<u8> {
     let view = glb.node("view", None, view);
     let lens = json!({ "yfov": 0.76, "aspectRatio": 1.7777778, "znear": 0.1 });
     glb.camera(view, json!({ "name": "view", "type": "perspective", "perspective": lens }));
-    glb.finish()
+    glb.finish("envers examples/make_assets.rs")
 }

@@ -130,10 +130,11 @@ impl Rays {
     #[inline(always)]
     pub fn push_sixteen(&mut self) -> (&mut Lines, &mut Left) {
         let block = self.len / LANES;
-        let alike = self.len % LANES == 0 && self.from.len() == block && self.past.is_empty();
+        let alike =
+            self.len.is_multiple_of(LANES) && self.from.len() == block && self.past.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        self.from.push(Left::NOTHING);
+        self.from.resize(block + 1, Left::NOTHING);
         self.len += LANES;
         (&mut self.lines[block], &mut self.from[block])
     }

@@ -1,7 +1,6 @@
 //! Bodies that light goes through, and which of them a ray is in.
 
 use glam::{DVec3, Vec3};
-use smallvec::SmallVec;
 
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::intersect::{Coherence, Intersector};
@@ -28,29 +27,77 @@ const NONE: Rank = Rank::MAX;
 
 /// The bodies that hold a point, in their order; one stands twice where two parts of one mesh
 /// overlap. The first fills the place.
-#[derive(Debug, Default, PartialEq, Eq)]
-pub struct Interiors(SmallVec<[Rank; 4]>);
+#[derive(Clone, Debug)]
+pub struct Interiors(Ranks);
 
-impl Clone for Interiors {
-    #[inline]
-    fn clone(&self) -> Self {
-        Self(SmallVec::from_slice(&self.0)) // Several times as fast as element by element.
+/// A few ranks in place, which is quick to copy, or many.
+#[derive(Clone, Debug)]
+enum Ranks {
+    Few { len: u8, ranks: [Rank; FEW] },
+    Many(Vec<Rank>),
+}
+
+/// So many bodies seldom fill one point.
+const FEW: usize = 4;
+
+impl Default for Interiors {
+    fn default() -> Self {
+        Self(Ranks::Few { len: 0, ranks: [NONE; FEW] })
     }
 }
 
+impl PartialEq for Interiors {
+    fn eq(&self, other: &Self) -> bool {
+        self.ranks() == other.ranks()
+    }
+}
+
+impl Eq for Interiors {}
+
 impl Interiors {
+    /// The ranks, in order.
+    #[inline]
+    fn ranks(&self) -> &[Rank] {
+        match &self.0 {
+            Ranks::Few { len, ranks } => &ranks[..usize::from(*len)],
+            Ranks::Many(ranks) => ranks,
+        }
+    }
+
+    #[inline]
+    fn first(&self) -> Option<Rank> {
+        self.ranks().first().copied()
+    }
+
     fn with(&self, rank: Rank) -> Self {
-        let mut all = self.0.clone();
-        all.insert(all.partition_point(|&r| r <= rank), rank);
-        Self(all)
+        let at = self.ranks().partition_point(|&r| r <= rank);
+        match &self.0 {
+            &Ranks::Few { len, mut ranks } if usize::from(len) < FEW => {
+                ranks.copy_within(at..usize::from(len), at + 1);
+                ranks[at] = rank;
+                Self(Ranks::Few { len: len + 1, ranks })
+            }
+            _ => {
+                let mut all = self.ranks().to_vec();
+                all.insert(at, rank);
+                Self(Ranks::Many(all))
+            }
+        }
     }
 
     fn without(&self, rank: Rank) -> Self {
-        let mut all = self.0.clone();
-        if let Some(at) = all.iter().position(|&r| r == rank) {
-            all.remove(at);
+        let Some(at) = self.ranks().iter().position(|&r| r == rank) else { return self.clone() };
+        match &self.0 {
+            &Ranks::Few { len, mut ranks } => {
+                ranks.copy_within(at + 1..usize::from(len), at);
+                Self(Ranks::Few { len: len - 1, ranks })
+            }
+            Ranks::Many(ranks) => {
+                let mut all = ranks.clone();
+                all.remove(at);
+                Self(Ranks::Many(all))
+            }
         }
-        Self(all)
     }
 }
 
@@ -121,10 +168,17 @@ impl Bodies {
         self.media.is_empty()
     }
 
+    /// Whether a medium may absorb, or a surface be hidden in a body: in another one, or in its own
+    /// mesh where that runs through itself. A single sphere or plane hides nothing.
+    pub fn may_hide(&self) -> bool {
+        let absorbs = self.media.iter().any(|medium| medium.absorption != Vec3::ZERO);
+        absorbs || self.media.len() > 1 || self.instances.iter().any(|&rank| rank != NONE)
+    }
+
     /// What fills a point that these bodies hold.
     #[inline]
     pub fn medium(&self, inside: &Interiors) -> Medium {
-        inside.0.first().map_or(EMPTY_SPACE, |&rank| self.media[rank as usize])
+        inside.first().map_or(EMPTY_SPACE, |rank| self.media[rank as usize])
     }
 
     fn rank(&self, id: PrimitiveId) -> Option<Rank> {
@@ -153,10 +207,10 @@ impl Bodies {
         };
         let (before, behind) = match self.outer(id, side) {
             Side::Front => (inside.clone(), inside.with(rank)),
-            Side::Back if inside.0.contains(&rank) => (inside.clone(), inside.without(rank)),
+            Side::Back if inside.ranks().contains(&rank) => (inside.clone(), inside.without(rank)),
             Side::Back => (inside.with(rank), inside.clone()),
         };
-        let is_hidden = before.0.first() == behind.0.first();
+        let is_hidden = before.first() == behind.first();
         Around { before, behind, is_hidden }
     }
 

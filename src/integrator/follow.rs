@@ -6,7 +6,7 @@ use crate::geometry::{Departure, Hit, Hits, Ray, Rays, Side};
 use crate::integrator::bodies::{Around, Interiors};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
-use crate::scene::Material;
+use crate::scene::{Material, Scene};
 use crate::surface::Surface;
 
 /// Where a ray comes from, and what it is worth.
@@ -92,7 +92,7 @@ impl Integrator<'_> {
     /// there, to `scratch.next`.
     fn finish(&self, scratch: &mut Scratch, counts: &mut Counts) {
         let Scratch { wave, light, sample, next, .. } = scratch;
-        if self.transmits && !wave.paths.is_empty() {
+        if self.may_pass && !wave.paths.is_empty() {
             self.pass_clear(wave, counts);
         }
         self.shade(wave, light, counts);
@@ -212,6 +212,20 @@ impl Integrator<'_> {
         };
         send(ray, through, true, around.behind);
     }
+}
+
+/// Whether anywhere in a scene light may pass a surface as if nothing were there, since the indices
+/// of refraction are the same on both sides.
+pub(super) fn may_be_clear(scene: &Scene) -> bool {
+    let around = || {
+        let bodies = scene.materials_in_use().filter(|material| material.is_body());
+        std::iter::once(1.0).chain(bodies.map(|material| material.ior))
+    };
+    scene.materials_in_use().any(|material| {
+        // Its own index is among them once, and counts where another one is the same.
+        let same = around().filter(|&ior| material.is_clear_in(ior)).count();
+        same > usize::from(material.is_body())
+    })
 }
 
 /// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.

@@ -65,7 +65,9 @@ pub struct Integrator<'a> {
     bodies: Bodies,
     /// The bodies that the eye is in, if it is one point.
     eye: Option<Interiors>,
-    /// Whether rays from the eye may be absorbed, or meet what is no surface for them.
+    /// Whether rays may be absorbed, or meet what is no surface for them.
+    may_pass: bool,
+    /// Whether those from the eye may.
     may_pass_first: bool,
     /// Where light may go through anything on its way to a surface.
     clearance: Clearance,
@@ -129,6 +131,9 @@ impl<'a> Integrator<'a> {
             has_detail: has_detail(scene),
             looks: scene.materials.iter().map(Look::of).collect(),
             arch: pulp::Arch::new(),
+            may_pass: eye.as_ref() != Some(&Interiors::default())
+                || bodies.may_hide()
+                || follow::may_be_clear(scene),
             may_pass_first: match &eye {
                 Some(eye) => {
                     // In empty space nothing hides a surface.

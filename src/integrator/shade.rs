@@ -118,9 +118,8 @@ impl Integrator<'_> {
     #[inline(always)]
     fn meet(&self, wave: &Wave, light: &mut Light) {
         let Light { radiance, spoilt, bounces, lit: (lit, filled), .. } = light;
-        let background = self.scene.film.background.to_array();
-        radiance.clear();
-        radiance.resize(wave.hits.found().len(), background.map(|x| [x; LANES]));
+        let background = self.scene.film.background;
+        radiance.resize(wave.hits.found().len(), [[0.0; LANES]; 3]);
         spoilt.clear();
         bounces.clear();
         *filled = 0;
@@ -130,6 +129,9 @@ impl Integrator<'_> {
             }
             let lit = &mut lit[*filled];
             lit.surfaces.set(self.scene, &wave.rays, block, found);
+            for axis in 0..3 {
+                radiance[block][axis] = [background[axis]; LANES];
+            }
             if lit.surfaces.kinds.any() {
                 lit.block = block;
                 self.look(found, lit, &mut Sums { radiance, spoilt }, bounces);
@@ -197,12 +199,10 @@ impl Integrator<'_> {
         let first = lit.surfaces.material[0];
         let mut alike = true;
         for i in 0..LANES {
-            let finite = lit.surfaces.position[0][i] - lit.surfaces.position[0][i]
-                + (lit.surfaces.position[1][i] - lit.surfaces.position[1][i])
-                + (lit.surfaces.position[2][i] - lit.surfaces.position[2][i]);
+            let [x, y, z] = lit.surfaces.position(i).to_array();
             alike &= (found.t[i] < f64::INFINITY)
                 & (lit.surfaces.material[i] == first)
-                & (finite == 0.0);
+                & (x + y + z).is_finite();
         }
         let look = match alike {
             true => &self.looks[first.0 as usize],
@@ -268,13 +268,17 @@ impl Integrator<'_> {
                 continue;
             }
             let (lines, left) = shadow.rays.push_sixteen();
-            lines.origin = lit.surfaces.position;
-            lines.direction = arrivals.toward;
+            for axis in 0..3 {
+                lines.origin[axis] = lit.surfaces.position[axis];
+                lines.direction[axis] = arrivals.toward[axis];
+            }
             for i in 0..LANES {
                 lines.tmax[i] = if bright[i] { tmax } else { 0.0 };
                 left.is_back[i] = !shares.on_front[i];
             }
-            left.id = found.id.clone();
+            left.id.geometry = found.id.geometry;
+            left.id.primitive = found.id.primitive;
+            left.id.instance = found.id.instance;
             shadow.waiting.push(Waiting { block: lit.block, with, here: bright });
         }
     }
@@ -484,9 +488,19 @@ impl Shares {
     #[inline(always)]
     fn set(&mut self, lit: &Lit, arrivals: &Arrivals, rays: &Rays, found: &Found) {
         let surfaces = &lit.surfaces;
-        let (mut cosines, mut over) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..LANES {
-            cosines[i] = shading::lambert(surfaces.normal(i), arrivals.toward(i));
+        let (mut cosines, mut over, mut mirrored) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        if lit.shines {
+            // In one loop, since both ask for the way's length.
+            let lines = &rays.lines()[lit.block];
+            for i in 0..LANES {
+                let (normal, toward) = (surfaces.normal(i), arrivals.toward(i));
+                cosines[i] = shading::lambert(normal, toward);
+                mirrored[i] = shading::phong(normal, lines.line(i).1, toward);
+            }
+        } else {
+            for i in 0..LANES {
+                cosines[i] = shading::lambert(surfaces.normal(i), arrivals.toward(i));
+            }
         }
         for i in 0..LANES {
             over[i] = surfaces.geometric_normal(i).dot(arrivals.toward(i));
@@ -516,26 +530,20 @@ impl Shares {
             }
         }
         if lit.shines {
-            lit.add_highlights(arrivals, rays, self);
+            lit.add_highlights(mirrored, self);
         }
     }
 }
 
 impl Lit {
     #[inline(always)]
-    fn add_highlights(&self, arrivals: &Arrivals, rays: &Rays, shares: &mut Shares) {
-        let lines = &rays.lines()[self.block];
-        let mut toward = [0.0; LANES];
-        for i in 0..LANES {
-            let view = lines.line(i).1;
-            toward[i] = shading::phong(self.surfaces.normal(i), view, arrivals.toward(i));
-        }
+    fn add_highlights(&self, mirrored: Lanes<f64>, shares: &mut Shares) {
         let highlight = match self.exponent {
-            Some(exponent) => shading::power_of_all(toward, exponent),
+            Some(exponent) => shading::power_of_all(mirrored, exponent),
             None => {
                 let mut each = [0.0; LANES];
                 for i in (0..LANES).filter(|&i| shares.here[i]) {
-                    each[i] = shading::power(toward[i], self.shininess[i]);
+                    each[i] = shading::power(mirrored[i], self.shininess[i]);
                 }
                 each
             }
@@ -574,13 +582,12 @@ impl Light {
 
     /// Takes the radiance along each of `count` rays as its sample, and counts what spoilt any.
     pub fn take_samples(&mut self, count: usize, samples: &mut Vec<Vec3>, counts: &mut Counts) {
-        samples.clear();
-        for radiance in &self.radiance {
-            for i in 0..LANES {
-                samples.push(at(radiance, i));
+        samples.resize(count, Vec3::ZERO);
+        for (samples, radiance) in samples.chunks_mut(LANES).zip(&self.radiance) {
+            for (i, sample) in samples.iter_mut().enumerate() {
+                *sample = at(radiance, i);
             }
         }
-        samples.truncate(count);
         self.spoilt.drain(..).for_each(|(_, cause)| cause.count(counts));
     }
 }

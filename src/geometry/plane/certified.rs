@@ -20,23 +20,33 @@ pub fn crossing(
     direction: DVec3,
     tmax: f64,
 ) -> Option<f64> {
+    let (t, certain) = round(point, normal, origin, direction);
+    // Where the rounded t is tmax itself, the exact one may lie on either side.
+    if certain && t != tmax {
+        return (t > 0.0 && t < tmax).then_some(t);
+    }
+    exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
+}
+
+/// The t of [`crossing`], whatever its sign, by double-double numbers, and whether it is certain.
+#[inline(always)]
+pub fn round(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> (f64, bool) {
     // Each operation has the relative error ω, so that a sum of three products of components of
     // at most α and β is off by 3ωαβ in its terms and 5ωαβ in its sums: 8ωαβ, doubled here.
     let between = difference(point, origin);
-    let size = between.iter().fold(0.0, |size: f64, x| size.max(x.hi.abs()));
+    let [x, y, z] = between.map(|x| x.hi.abs());
+    let size = x.max(y).max(z);
     let (height, way) = (normal.abs().max_element(), direction.abs().max_element());
     let n = normal.to_array();
     let d = direction.to_array().map(|hi| Double { hi, lo: 0.0 });
     let (divisor, bound) = (dot(d, n), 16.0 * OMEGA * height);
     let (t, error) = dot(between, n).quotient(bound * size, divisor, bound * way);
-    let certain = 2.0 * bound * way <= divisor.hi.abs()
-        && t.rounds_to_hi(error)
-        && [size, height, way].into_iter().all(in_range);
-    // Where the rounded t is tmax itself, the exact one may lie on either side.
-    if certain && t.hi != tmax {
-        return (t.hi > 0.0 && t.hi < tmax).then_some(t.hi);
-    }
-    exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
+    let certain = (2.0 * bound * way <= divisor.hi.abs())
+        & t.rounds_to_hi(error)
+        & in_range(size)
+        & in_range(height)
+        & in_range(way);
+    (t.hi, certain)
 }
 
 /// Whether f64 alone is sure that [`crossing`] finds nothing at or before `limit`, a distance that

@@ -148,13 +148,23 @@ impl<const W: usize> Exact<W> {
             let unit = f64::from_bits(exponent << 52);
             let shrink = f64::from_bits((2046 - exponent) << 52);
             self.clip.unit[i] = unit;
-            let start = o - frame.center + d * self.clip.start[i];
+            let start = o - frame.center;
             for axis in 0..3 {
                 let component = d[axis] * shrink;
                 dir[axis][i] = if component.abs() < NEGLIGIBLE { 0.0 } else { component as f32 };
                 org[axis][i] = start[axis] as f32;
             }
-            tfar[i] = round_up((self.tmax[i] - self.clip.start[i]) * unit);
+            tfar[i] = round_up(self.tmax[i] * unit);
+        }
+        if far {
+            for i in 0..W {
+                let (o, d) = self.line(i);
+                let start = o - frame.center + d * self.clip.start[i];
+                for axis in 0..3 {
+                    org[axis][i] = start[axis] as f32;
+                }
+                tfar[i] = round_up((self.tmax[i] - self.clip.start[i]) * self.clip.unit[i]);
+            }
         }
         lanes
     }

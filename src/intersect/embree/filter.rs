@@ -42,37 +42,61 @@ pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
             let t = f32::from_bits(field(ray, TFAR));
             let ids = [PRIM, GEOM, INST].map(|f| field(hit, f));
             let vector = |base, at| [0, 1, 2].map(|axis| f32::from_bits(field(base, at + axis)));
-            let rise = match ids[2] {
-                INVALID => rise(vector(hit, NG), vector(ray, DIR)),
-                _ => 0.0, // Normal and direction stand in two spaces.
+            // In an instance normal and direction stand in two spaces.
+            let sure = ids[2] == INVALID && {
+                let rise = Rise::new(vector(hit, NG), vector(ray, DIR));
+                is_sure(context, lane, t, &rise)
             };
-            if !stands_in_the_way::<W, SHADOW>(context, lane, t, rise, ids) {
+            if !stands_in_the_way::<W, SHADOW>(context, lane, sure, ids) {
                 *valid = 0;
             }
         }
     }
 }
 
-/// How far a ray rises over a triangle for each unit of t.
-fn rise(normal: [f32; 3], direction: [f32; 3]) -> f32 {
-    let (normal, direction) = (glam::Vec3::from(normal), glam::Vec3::from(direction));
-    normal.dot(direction).abs() / normal.length()
+/// How far a ray rises over a triangle for each unit of t: the quotient of two numbers, squared.
+struct Rise {
+    way: f32,
+    normal: f32,
 }
 
-/// Whether the candidate that Embree's f32 arithmetic found at `t` counts for the ray in `lane`.
+impl Rise {
+    #[inline(always)]
+    fn new(normal: [f32; 3], direction: [f32; 3]) -> Self {
+        let (normal, direction) = (glam::Vec3::from(normal), glam::Vec3::from(direction));
+        let way = normal.dot(direction);
+        Self { way: way * way, normal: normal.length_squared() }
+    }
+}
+
+/// Whether the candidate that Embree's f32 arithmetic found at `t` certainly counts for the ray in
+/// `lane`.
 ///
 /// The f32 ray is off by at most the frame's margin, and twice that is [`Frame::doubt`] / 512: where
 /// its ends stand higher over the triangle than that, so do those of the exact ray, on the same
-/// sides.
+/// sides. A ray that grazes a triangle in whose plane it starts or ends may seem to cross it
+/// anywhere; the triangle that it left is one of those.
 ///
 /// [`Frame::doubt`]: crate::intersect::embree::frame::Frame::doubt
+#[inline(always)]
+fn is_sure<const W: usize>(context: &Context<'_, W>, lane: usize, t: f32, rise: &Rise) -> bool {
+    let height = context.doubt / 512.0;
+    let clear =
+        |way: f32| way > context.doubt && (way * way) * rise.way > (height * height) * rise.normal;
+    !context.goes_on && clear(t) && clear(context.end[lane] - t)
+}
+
+/// Whether a candidate counts for the ray in `lane`.
+#[inline(always)]
 fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     context: &Context<'_, W>,
     lane: usize,
-    t: f32,
-    rise: f32,
+    sure: bool,
     [prim, geom, inst]: [u32; 3],
 ) -> bool {
+    if sure && (!SHADOW || context.all_block) {
+        return true;
+    }
     let attached = if inst == INVALID { geom } else { inst };
     let Some(&instance) = context.instance_of.get(attached as usize) else { return true };
     let placed = &context.scene.instances[instance as usize];
@@ -80,18 +104,14 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     if SHADOW && !context.scene.blocks_light(id) {
         return false;
     }
-    if context.rays.from(lane).is_some_and(|from| from.id == id) {
-        return false;
-    }
-    let end = (context.exact.tmax[lane] - context.clip.start[lane]) * context.clip.unit[lane];
-    // A ray that grazes a triangle in whose plane it starts or ends may seem to cross it anywhere.
-    let height = context.doubt / 512.0;
-    let clear =
-        |way: f64| way > f64::from(context.doubt) && way * f64::from(rise) > f64::from(height);
-    let sure = !context.goes_on && clear(f64::from(t)) && clear(end - f64::from(t));
+    sure || stands_exactly(context, lane, id)
+}
+
+/// Whether a triangle stands in the way of the ray in `lane` by the formulas in f64.
+#[cold]
+#[inline(never)]
+fn stands_exactly<const W: usize>(context: &Context<'_, W>, lane: usize, id: PrimitiveId) -> bool {
     let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
-    sure || context
-        .rays
-        .get(lane)
-        .is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
+    let ray = context.rays.get(lane);
+    ray.is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
 }

@@ -91,6 +91,10 @@ pub struct Context<'a, const W: usize> {
     /// Distance along the f32 rays below which, and before whose end, a candidate triangle is
     /// tested again in f64.
     pub doubt: f32,
+    /// The ends of the f32 rays, before anything was found.
+    pub end: [f32; W],
+    /// Whether every triangle blocks light.
+    pub all_block: bool,
     /// Whether any ray of the packet left a surface, or went through one.
     pub leaves: bool,
     /// Whether any went straight through one.
@@ -111,8 +115,8 @@ impl<'a, const W: usize> Context<'a, W> {
         scene: &'a Scene,
         rays: Packet<'a>,
         instance_of: &'a [u32],
-        doubt: f32,
-        reach: f64,
+        (doubt, reach): (f32, f64),
+        all_block: bool,
     ) -> Self {
         let exact = Exact::new();
         let (clip, nearest) = (exact.clip, Nearest::new(exact.tmax));
@@ -126,6 +130,8 @@ impl<'a, const W: usize> Context<'a, W> {
             instance_of,
             nearest,
             doubt,
+            end: [0.0; W],
+            all_block,
             leaves: !rays.is_fresh(),
             goes_on: !rays.is_unbroken(),
             outward: [INVALID; W],
@@ -149,6 +155,7 @@ impl<'a, const W: usize> Context<'a, W> {
         self.exact.load(&rays);
         let entered = self.exact.set_up(frame, org, dir, tfar);
         self.clip = self.exact.clip;
+        self.end = *tfar;
         self.nearest.begin(&self.exact.tmax);
         if self.leaves {
             let mut farthest = self.reach;

@@ -67,8 +67,7 @@ impl Meshes {
         local: &[Bounds],
         top: &embree4_rs::Scene,
         device: &DeviceHandle,
-        quality: RTCBuildQuality,
-        (frame, width): (Frame, Width),
+        (frame, width, quality): (Frame, Width, RTCBuildQuality),
         (all_instanced, mut kept): (bool, Option<&mut Kept<Own>>),
     ) -> Result<()> {
         let uses = uses(scene);

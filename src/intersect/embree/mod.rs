@@ -49,12 +49,12 @@ use embree4_rs::{Device, SceneOptions};
 use embree4_sys::{RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Hit, Hits, Ray, Rays};
+use crate::geometry::{Bounds, Hit, Hits, PrimitiveId, Ray, Rays};
 use crate::intersect::kept::Kept;
 use crate::intersect::standing::Moved;
 use crate::intersect::{BuildQuality, Coherence, Intersector, Precision, leaving};
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Scene, Skips};
+use crate::scene::{Instance, Scene, Skips};
 use canary::failed;
 use frame::Frame;
 pub use memory::peak as peak_memory;
@@ -81,6 +81,8 @@ pub struct Embree<'s> {
     scene: &'s Scene,
     /// The largest absolute coordinate in the scene.
     reach: f64,
+    /// Whether every triangle blocks light.
+    all_block: bool,
     top: Arc<Top>,
 }
 
@@ -108,7 +110,7 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(&boxes);
         let device = new_device(scene, asked.threads)?;
         let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
-        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top: top.into() })
+        Ok(Self::of(scene, &bounds, top.into()))
     }
 
     /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
@@ -124,7 +126,15 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(boxes);
         let frame = Frame::on_stage(bounds, shared.stage);
         let top = shared.top(scene, asked, frame, boxes, moved)?;
-        Ok(Self { scene, reach: leaving::scene_reach(scene, &bounds), top })
+        Ok(Self::of(scene, &bounds, top))
+    }
+
+    fn of(scene: &'s Scene, bounds: &Bounds, top: Arc<Top>) -> Self {
+        let blocks = |(i, instance): (u32, &Instance)| {
+            scene.blocks_light(PrimitiveId::triangle(instance.mesh.0, 0, i))
+        };
+        let all_block = (0..).zip(&scene.instances).all(blocks);
+        Self { scene, reach: leaving::scene_reach(scene, bounds), all_block, top }
     }
 
     /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
@@ -151,6 +161,7 @@ impl<'s> Embree<'s> {
             precision: top.precision,
             careful: false,
             reach: self.reach,
+            all_block: self.all_block,
         }
     }
 }

@@ -28,7 +28,14 @@ impl Primitives<'_> {
                 found.offer_plane(index, &ts, at);
                 continue;
             }
-            for i in (0..packet.count).filter(|&i| !ts[i].is_nan()) {
+            let mut open = [false; W];
+            for i in 0..W {
+                open[i] = !ts[i].is_nan();
+            }
+            if packet.is_fresh() {
+                self.merge_certain(index, exact, &mut open, found, at);
+            }
+            for i in (0..packet.count).filter(|&i| open[i]) {
                 let best = found.hit(at + i);
                 let hit = self.plane(index, &packet.ray(i));
                 if let Some(hit) = hit.filter(|hit| best.is_none_or(|best| hit.is_before(&best))) {
@@ -36,6 +43,30 @@ impl Primitives<'_> {
                 }
             }
         }
+    }
+
+    /// Merges a plane into the hits of rays that left nothing, in precision `certified`, where
+    /// double-double numbers tell its distance; what they leave open stays so.
+    #[inline(always)]
+    fn merge_certain<const W: usize>(
+        &self,
+        index: u32,
+        exact: &Exact<W>,
+        open: &mut [bool; W],
+        found: &mut Found,
+        at: usize,
+    ) {
+        let plane = &self.scene.planes[index as usize];
+        let mut ts = [f64::NAN; W];
+        for i in 0..W {
+            let (origin, direction) = exact.line(i);
+            let (t, certain) =
+                plane::certified::round(plane.point, plane.normal, origin, direction);
+            let told = open[i] & certain & (t != exact.tmax[i]);
+            ts[i] = if told & (t > 0.0) & (t < exact.tmax[i]) { t } else { f64::NAN };
+            open[i] &= !told;
+        }
+        found.offer_plane(index, &ts, at);
     }
 
     /// Marks the rays that a plane keeps from their end.

@@ -27,6 +27,8 @@ pub struct Target<'a> {
     pub careful: bool,
     /// The largest absolute coordinate in the scene.
     pub reach: f64,
+    /// Whether every triangle blocks light.
+    pub all_block: bool,
 }
 
 impl Target<'_> {
@@ -35,7 +37,8 @@ impl Target<'_> {
     }
 
     fn context<'a, const W: usize>(&'a self, rays: Packet<'a>) -> Context<'a, W> {
-        Context::new(self.scene, rays, self.instance_of, self.frame.doubt(), self.reach)
+        let reaches = (self.frame.doubt(), self.reach);
+        Context::new(self.scene, rays, self.instance_of, reaches, self.all_block)
     }
 
     /// What rays are left to that no f32 ray can stand for.

@@ -23,6 +23,9 @@ pub fn refine<const W: usize>(
     found: &mut Found,
     at: usize,
 ) -> bool {
+    if record.geom == [INVALID; W] {
+        return true;
+    }
     let (mut geometry, mut instances) = ([Ids::NONE; W], [0; W]);
     let primitives = &record.prim;
     for i in 0..count {

@@ -89,8 +89,8 @@ impl Top {
             }
             Precision::Certified => {
                 let kept = (all_instanced, shared.map(|shared| &mut shared.certified));
-                let space = (frame, width);
-                meshes.attach(scene, boxes, &top, &device, quality, space, kept)?;
+                let how = (frame, width, quality);
+                meshes.attach(scene, boxes, &top, &device, how, kept)?;
                 (Vec::new(), meshes.instanced())
             }
         };
