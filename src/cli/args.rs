@@ -109,7 +109,7 @@ pub struct Render {
     #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time", allow_negative_numbers = true)]
     pub frames: Option<Range>,
     /// From MIN to MAX samples per pixel: more than MIN where neighbouring ones disagree in what they
-    /// hit, in its normal or in colour. 1..25 suits most pictures
+    /// hit, in its normal or in colour. 1..25 suits clear shapes, 4..36 fine detail
     #[arg(long, value_name = "MIN..MAX", value_parser = sample_range, conflicts_with = "spp", allow_negative_numbers = true)]
     pub adaptive: Option<SampleRange>,
     /// From which difference on colours disagree, from 0 (always) to 1, of about what a PNG shows

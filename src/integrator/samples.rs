@@ -69,7 +69,7 @@ fn regular(spp: u32) -> Series {
 /// them come the corners of each such cell, where what the centre missed is found soonest.
 fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
     let (mut cells, mut steps) = (Vec::new(), Vec::new());
-    if let Some(factor) = (3..=side).step_by(2).find(|factor| side % factor == 0) {
+    if let Some(factor) = (3..=side).step_by(2).find(|&factor| side.is_multiple_of(factor)) {
         let (coarse, within) = grid(side / factor);
         let (middle, last) = (factor / 2, factor - 1);
         for [dx, dy] in [[middle, middle], [0, 0], [last, last], [0, last], [last, 0]] {
