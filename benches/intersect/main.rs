@@ -5,6 +5,7 @@
 //! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
 mod bare;
+mod batches;
 #[path = "../../examples/reference/mod.rs"]
 mod reference;
 mod scenes;
@@ -13,8 +14,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use bare::{Bare, Packet, packets};
+use batches::Batches;
 use criterion::{Criterion, Throughput};
-use envers::geometry::{Hit, Ray};
+use envers::geometry::Ray;
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
 use envers::render::{self, Options};
 use envers::scene::{Arrival, Scene};
@@ -50,21 +52,6 @@ impl Case {
     }
 }
 
-/// How the renderer calls an intersector: a tile at a time.
-const TILE: usize = 1024;
-
-fn closest(intersector: &dyn Intersector, rays: &[Ray], hits: &mut [Option<Hit>]) {
-    for (rays, hits) in rays.chunks(TILE).zip(hits.chunks_mut(TILE)) {
-        intersector.closest(rays, Coherence::Coherent, hits);
-    }
-}
-
-fn occluded(intersector: &dyn Intersector, rays: &[Ray], blocked: &mut [bool]) {
-    for (rays, blocked) in rays.chunks(TILE).zip(blocked.chunks_mut(TILE)) {
-        intersector.occluded(rays, Coherence::Coherent, blocked);
-    }
-}
-
 fn criterion(c: &mut Criterion, case: &Case) {
     let (embree, bvh) = (
         Embree::build(&case.scene, Precision::Fast, 1).unwrap(),
@@ -76,15 +63,15 @@ fn criterion(c: &mut Criterion, case: &Case) {
     for (name, intersector) in intersectors {
         let mut group = c.benchmark_group(format!("{} primary", case.name));
         group.throughput(Throughput::Elements(case.primary.len() as u64));
-        let mut hits = vec![None; case.primary.len()];
-        group.bench_function(name, |b| b.iter(|| closest(intersector, &case.primary, &mut hits)));
+        let mut rays = Batches::new(&case.primary);
+        group.bench_function(name, |b| {
+            b.iter(|| black_box(rays.closest(intersector, Coherence::Coherent)));
+        });
         group.finish();
         let mut group = c.benchmark_group(format!("{} shadow", case.name));
         group.throughput(Throughput::Elements(case.shadow.len() as u64));
-        let mut blocked = vec![false; case.shadow.len()];
-        group.bench_function(name, |b| {
-            b.iter(|| occluded(intersector, &case.shadow, &mut blocked));
-        });
+        let mut rays = Batches::new(&case.shadow);
+        group.bench_function(name, |b| b.iter(|| black_box(rays.occluded(intersector))));
         group.finish();
     }
     bare_criterion::<16>(c, case);
@@ -119,24 +106,22 @@ fn ratios<const W: usize>(case: &Case) {
     let center = case.scene.bounds().center();
     let primary: Vec<Packet<W>> = packets(&case.primary, center);
     let shadow: Vec<Packet<W>> = packets(&case.shadow, center);
-    let mut hits = vec![None; case.primary.len()];
-    let mut blocked = vec![false; case.shadow.len()];
+    let (mut seen, mut lit) = (Batches::new(&case.primary), Batches::new(&case.shadow));
     report(
         &format!("{} primary", case.name),
         W,
         case.primary.len(),
-        || closest(&embree, &case.primary, &mut hits),
+        || _ = black_box(seen.closest(&embree, Coherence::Coherent)),
         || _ = black_box(bare.closest(&primary, true)),
     );
     report(
         &format!("{} shadow", case.name),
         W,
         case.shadow.len(),
-        || occluded(&embree, &case.shadow, &mut blocked),
+        || _ = black_box(lit.occluded(&embree)),
         || _ = black_box(bare.occluded(&shadow)),
     );
-    let found = hits.iter().flatten().count();
-    let blocked = blocked.iter().filter(|&&b| b).count();
+    let (found, blocked) = (seen.closest(&embree, Coherence::Coherent), lit.occluded(&embree));
     println!(
         "  hits: ours {found}, bare {}; blocked: ours {blocked}, bare {}",
         bare.closest(&primary, true),
@@ -150,26 +135,26 @@ fn price(case: &Case) {
     let single = |precision| Embree::build_single(&case.scene, precision, 1).unwrap();
     let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
     let singles = (single(Precision::Fast), single(Precision::Certified));
-    let mut hits = [vec![None; case.primary.len()], vec![None; case.primary.len()]];
-    let mut blocked = [vec![false; case.shadow.len()], vec![false; case.shadow.len()]];
+    let mut seen = [Batches::new(&case.primary), Batches::new(&case.primary)];
+    let mut lit = [Batches::new(&case.shadow), Batches::new(&case.shadow)];
     for (kind, fast, certified) in
         [("packets", &fast, &certified), ("single", &singles.0, &singles.1)]
     {
-        let [a, b] = &mut hits;
+        let [a, b] = &mut seen;
         beside(
             &format!("{} primary, {kind}", case.name),
             ["certified", "fast"],
             case.primary.len(),
-            || closest(certified, &case.primary, a),
-            || closest(fast, &case.primary, b),
+            || _ = black_box(a.closest(certified, Coherence::Coherent)),
+            || _ = black_box(b.closest(fast, Coherence::Coherent)),
         );
-        let [a, b] = &mut blocked;
+        let [a, b] = &mut lit;
         beside(
             &format!("{} shadow, {kind}", case.name),
             ["certified", "fast"],
             case.shadow.len(),
-            || occluded(certified, &case.shadow, a),
-            || occluded(fast, &case.shadow, b),
+            || _ = black_box(a.occluded(certified)),
+            || _ = black_box(b.occluded(fast)),
         );
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();

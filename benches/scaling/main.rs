@@ -8,6 +8,8 @@
 #[allow(dead_code)] // It serves the bench `intersect`, too.
 #[path = "../intersect/bare.rs"]
 mod bare;
+#[path = "../intersect/batches.rs"]
+mod batches;
 #[path = "../frame/clock.rs"]
 mod clock;
 mod frames;

@@ -3,20 +3,18 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use envers::geometry::{Hit, Ray};
-use envers::intersect::{Coherence, Embree, Intersector, Precision};
+use envers::geometry::Ray;
+use envers::intersect::{Coherence, Embree, Precision};
 use envers::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 
 use crate::Plan;
 use crate::bare::{Bare, Packet, packets};
+use crate::batches::Batches;
 use crate::clock::{median, time};
 use crate::growth::{self, Step};
 use crate::reference::spheres::SplitMix;
 use crate::scenes;
-
-/// How many rays the renderer hands over at once.
-const BATCH: usize = 1024;
 
 /// `count` spheres at random in a cube of side 2, the smaller the more there are: they hide about
 /// as much of each other's background whatever their number, so that only the number grows.
@@ -82,15 +80,12 @@ fn step<const W: usize>(
     plan: &Plan,
 ) -> Step {
     let packets: Vec<Packet<W>> = packets(rays, scene.bounds().center());
-    let mut hits: Vec<Option<Hit>> = vec![None; rays.len()];
+    let mut batches = Batches::new(rays);
+    let mut hits = 0;
     let mut rounds = Vec::new();
     // The first round warms the caches up.
     for _ in 0..=plan.rounds {
-        let ours = time(1, || {
-            for (rays, hits) in rays.chunks(BATCH).zip(hits.chunks_mut(BATCH)) {
-                ours.closest(rays, coherence, hits);
-            }
-        });
+        let ours = time(1, || hits = batches.closest(ours, coherence));
         let bare =
             time(1, || _ = black_box(bare.closest(&packets, coherence == Coherence::Coherent)));
         rounds.push([ours, bare]);
@@ -99,7 +94,7 @@ fn step<const W: usize>(
     let nanoseconds = 1e9 / rays.len() as f64;
     Step {
         count: scene.spheres.len() + scene.triangle_count() as usize,
-        hits: hits.iter().flatten().count() as f64 / rays.len() as f64,
+        hits: hits as f64 / rays.len() as f64,
         ours: of(|r| r[0]) * nanoseconds,
         bare: of(|r| r[1]) * nanoseconds,
         ratio: of(|r| r[0] / r[1]),

@@ -70,6 +70,19 @@ impl<'a> Packet<'a> {
         (outward, inward)
     }
 
+    /// Whether each ray left plane `index`, and so does not meet it.
+    #[inline(always)]
+    pub fn left_plane<const W: usize>(&self, index: u32) -> [bool; W] {
+        let mut gone = [false; W];
+        let Some(left) = self.rays.left().get(self.first / LANES) else { return gone };
+        let at = self.first % LANES;
+        for i in 0..W {
+            gone[i] =
+                (left.id.geometry[at + i] == Ids::PLANES) & (left.id.primitive[at + i] == index);
+        }
+        gone
+    }
+
     /// Whether none left a surface, nor went through one.
     #[inline(always)]
     pub fn is_fresh(&self) -> bool {

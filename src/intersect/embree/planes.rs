@@ -22,7 +22,8 @@ impl Primitives<'_> {
         let mut limits = [f64::INFINITY; W];
         for (index, plane) in (0..).zip(&self.scene.planes) {
             limits.copy_from_slice(&found.t[at..at + W]);
-            let Some(mut ts) = self.ahead(plane, exact, &limits) else { continue };
+            let gone = packet.left_plane(index);
+            let Some(mut ts) = self.ahead(plane, exact, &limits, &gone) else { continue };
             (packet.count..W).for_each(|i| ts[i] = f64::NAN);
             if self.precision == Precision::Fast && packet.is_fresh() {
                 found.offer_plane(index, &ts, at);
@@ -81,7 +82,8 @@ impl Primitives<'_> {
             if !self.scene.blocks_light(PrimitiveId::plane(index)) {
                 continue;
             }
-            let Some(ts) = self.ahead(plane, exact, &exact.tmax) else { continue };
+            let gone = packet.left_plane(index);
+            let Some(ts) = self.ahead(plane, exact, &exact.tmax, &gone) else { continue };
             for (i, blocked) in blocked.iter_mut().enumerate() {
                 if !ts[i].is_nan() && !*blocked && exact.tmax[i] > 0.0 {
                     *blocked = self.plane(index, &packet.ray(i)).is_some();
@@ -91,13 +93,15 @@ impl Primitives<'_> {
     }
 
     /// Where the lines may cross a plane ahead and no farther than `limits`, by the formula of
-    /// precision `fast`; no number where they certainly do not. `None` where none does.
+    /// precision `fast`; no number where they certainly do not, as those that are `gone` from it.
+    /// `None` where none does.
     #[inline(always)]
     fn ahead<const W: usize>(
         &self,
         plane: &Plane,
         exact: &Exact<W>,
         limits: &[f64; W],
+        gone: &[bool; W],
     ) -> Option<[f64; W]> {
         const { assert!(W <= LANES) };
         let mut ts = [f64::NAN; W];
@@ -107,7 +111,7 @@ impl Primitives<'_> {
                 for i in 0..W {
                     let (origin, direction) = exact.line(i);
                     let t = plane::quotient(plane.point, plane.normal, origin, direction);
-                    let ahead = (t > 0.0) & (t <= limits[i]) & (t < exact.tmax[i]);
+                    let ahead = (t > 0.0) & (t <= limits[i]) & (t < exact.tmax[i]) & !gone[i];
                     ts[i] = if ahead { t } else { f64::NAN };
                     any |= ahead;
                 }
@@ -122,8 +126,9 @@ impl Primitives<'_> {
                         direction,
                         limits[i],
                     );
-                    ts[i] = if misses { f64::NAN } else { 0.0 };
-                    any |= !misses;
+                    let may = !misses & !gone[i];
+                    ts[i] = if may { 0.0 } else { f64::NAN };
+                    any |= may;
                 }
             }
         }
