@@ -235,7 +235,8 @@ pub fn with_intersector(
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
-    let integrator = Integrator::new(scene, intersector, camera, options.view, options.tiling);
+    let Options { view, tiling, skips, .. } = *options;
+    let integrator = Integrator::new(scene, intersector, camera, view, tiling, skips);
     let strip = size[0] as usize * options.tiling.rows;
     let total = film.pixels.len().div_ceil(strip);
     let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));
