@@ -235,8 +235,9 @@ pub fn with_intersector(
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
-    let integrator = Integrator::new(scene, intersector, camera, options.view, options.tiling);
-    let rows = options.tiling.rows;
+    let Options { view, tiling, skips, .. } = *options;
+    let integrator = Integrator::new(scene, intersector, camera, view, tiling, skips);
+    let rows = tiling.rows;
     let strip = size[0] as usize * rows;
     let strips = film.pixels.len().div_ceil(strip);
     let passes = if integrator.is_adaptive() { 2 } else { 1 };

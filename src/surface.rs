@@ -92,14 +92,13 @@ impl Surface {
 }
 
 impl Detail {
-    /// The detail of `hit` at `position`, where the geometric normal is `normal`.
+    /// The detail of `hit` at `position`, where the geometric normal is `normal`; with texture
+    /// coordinates if it is `textured`.
     ///
     /// # Panics
     /// When the hit is not one of this scene.
-    pub fn new(scene: &Scene, hit: &Hit, position: DVec3, normal: DVec3) -> Self {
+    pub fn new(scene: &Scene, hit: &Hit, position: DVec3, normal: DVec3, textured: bool) -> Self {
         let mut detail = Self { uv: [0.0; 2], tint: Vec3::ONE, checker: None };
-        let material = scene.material_of(hit.id);
-        let textured = scene.materials[material.0 as usize].is_textured();
         match hit.id.geometry {
             Geometry::Spheres if textured => detail.uv = longitude_latitude(normal),
             Geometry::Spheres => {}

@@ -24,6 +24,8 @@ mod stress;
 mod tone;
 #[path = "cli/warnings.rs"]
 mod warnings;
+#[path = "cli/work.rs"]
+mod work;
 
 #[path = "import_common/mod.rs"]
 mod import_common;

@@ -170,13 +170,14 @@ impl Stats {
         frames: usize,
         statistics: &Statistics,
         skips: Skips,
+        layers: u64,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
     ) -> Self {
         let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
         let (name, version) = statistics.backend.clone();
         let Counts { rays, not_finite, .. } = statistics.counts;
-        let work = work(scene, statistics);
+        let work = work(scene, statistics, layers);
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
@@ -201,21 +202,30 @@ impl Stats {
 }
 
 /// How much was done of each kind of work that is counted.
-fn work(scene: &Scene, statistics: &Statistics) -> BTreeMap<&'static str, u64> {
-    let (built, rays) = (&statistics.built, &statistics.counts.rays);
+fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'static str, u64> {
+    let Statistics { built, counts, .. } = statistics;
+    let (rays, done) = (&counts.rays, &counts.work);
     let mut read: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
     read.retain(|image| image.is_read());
     read.sort_by_key(|image| Arc::as_ptr(image));
     read.dedup_by_key(|image| Arc::as_ptr(image));
     [
-        (Work::Spheres, built.sphere_sets),
-        (Work::Instances, built.instanced),
-        (Work::Pictures, read.len() as u64),
-        (Work::Shadows, rays.shadow),
-        (Work::Reflection, rays.reflection),
-        (Work::Refraction, rays.refraction),
+        (Work::Spheres.name(), built.sphere_sets),
+        (Work::Instances.name(), built.instanced),
+        (Work::Planes.name(), done.planes),
+        (Work::Pictures.name(), read.len() as u64),
+        (Work::Uv.name(), done.uv),
+        (Work::Checkers.name(), done.checkers),
+        (Work::VertexColors.name(), done.vertex_colors),
+        (Work::SmoothNormals.name(), done.smooth_normals),
+        (Work::Highlights.name(), done.highlights),
+        (Work::Shadows.name(), rays.shadow),
+        (Work::Reflection.name(), rays.reflection),
+        (Work::Refraction.name(), rays.refraction),
+        ("glass-in-shadows", done.glass),
+        ("filters", done.filters),
+        ("layers", layers),
     ]
-    .map(|(work, count)| (work.name(), count))
     .into()
 }
 

@@ -67,7 +67,8 @@ pub fn run(arguments: &Render) -> Outcome {
     }
     if let Some(path) = &arguments.stats {
         let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
-        let stats = Stats::new(&first, times.len(), &done.statistics, skips, seconds, warnings);
+        let (statistics, layers) = (&done.statistics, done.layers);
+        let stats = Stats::new(&first, times.len(), statistics, skips, layers, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)
@@ -122,6 +123,8 @@ struct Sink<'a> {
 struct Done {
     statistics: Statistics,
     write: Duration,
+    /// How many pictures were encoded.
+    layers: u64,
     /// Whether there is nothing but black in any frame.
     is_black: bool,
 }
@@ -132,7 +135,7 @@ impl<'a> Sink<'a> {
         let movie = |path: &PathBuf| Movie::create(path, size, frames, plan.fps);
         let movies = plan.movies.iter().map(movie).collect::<Result<_>>()?;
         let statistics = Statistics::none(options);
-        let done = Done { statistics, write: Duration::ZERO, is_black: true };
+        let done = Done { statistics, write: Duration::ZERO, layers: 0, is_black: true };
         Ok(Self { plan, settings, movies, done })
     }
 
@@ -146,9 +149,11 @@ impl<'a> Sink<'a> {
         }
         for path in self.plan.files(frame) {
             write::write(&rendering.film, &path, &settings)?;
+            self.done.layers += 1;
         }
         for movie in &mut self.movies {
             movie.push(&rendering.film, &settings)?;
+            self.done.layers += 1;
         }
         let dark = 0.5 / 255.0 / self.settings.exposure.exp2();
         let is_dark = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= dark);

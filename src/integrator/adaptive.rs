@@ -91,7 +91,8 @@ impl pulp::WithSimd for Note<'_> {
         let Self { scene, wave, notes: Notes { has_begun, seen, surfaces, .. } } = self;
         let count = wave.rays.len();
         for (block, found) in wave.hits.found().iter().enumerate() {
-            surfaces.set(scene, &wave.rays, block, found);
+            // A scene without smooth normals has none to look up either way.
+            surfaces.set::<true>(scene, &wave.rays, block, found);
             let mut things = [NOTHING; LANES];
             let mut normals = [[0i8; LANES]; 3];
             for i in 0..LANES {

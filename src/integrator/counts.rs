@@ -1,6 +1,8 @@
 //! What is counted while a picture is made.
 
 use super::adaptive::STEPS;
+use crate::geometry::Rays;
+use crate::intersect::Extras;
 
 /// How many rays were traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -22,6 +24,37 @@ impl RayCounts {
     }
 }
 
+/// How much was done of the work that not every picture needs. Exactly 0 means that the code for it
+/// did not run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WorkCounts {
+    /// Points that were shaded whose texture coordinates were worked out.
+    pub uv: u64,
+    /// Points of planes that were looked up in a checker.
+    pub checkers: u64,
+    /// Points of meshes whose vertices were asked for colours.
+    pub vertex_colors: u64,
+    /// Points of meshes whose vertices were asked for normals.
+    pub smooth_normals: u64,
+    /// Highlights that were worked out. They are so sixteen at a time: those of rays beside count.
+    pub highlights: u64,
+    /// Shadow rays that were traced again, to look for glass in their way.
+    pub glass: u64,
+    /// Sixteens of rays that were tried against planes.
+    pub planes: u64,
+    /// Sixteens of rays of which a filter looked at each hit that Embree found.
+    pub filters: u64,
+}
+
+impl WorkCounts {
+    /// Counts what an intersector did with rays besides walking its trees.
+    pub(super) fn extras(&mut self, what: Extras, rays: &Rays) {
+        let sixteens = rays.lines().len() as u64;
+        self.planes += sixteens * u64::from(what.planes);
+        self.filters += sixteens * u64::from(what.filters);
+    }
+}
+
 /// What was counted while a picture was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
@@ -31,6 +64,8 @@ pub struct Counts {
     pub hits: u64,
     /// Pixels that got more samples, at each step of an adaptive picture.
     pub refined: [u64; STEPS],
+    /// Work that not every picture needs.
+    pub work: WorkCounts,
     /// Samples whose radiance was not finite and was left out.
     pub not_finite: NotFinite,
 }
@@ -83,8 +118,22 @@ impl std::ops::AddAssign for Counts {
         self.rays.refraction += other.rays.refraction;
         self.hits += other.hits;
         self.refined.iter_mut().zip(other.refined).for_each(|(to, other)| *to += other);
+        self.work += other.work;
         self.not_finite.light += other.not_finite.light;
         self.not_finite.surface += other.not_finite.surface;
         self.not_finite.sum += other.not_finite.sum;
+    }
+}
+
+impl std::ops::AddAssign for WorkCounts {
+    fn add_assign(&mut self, other: Self) {
+        self.uv += other.uv;
+        self.checkers += other.checkers;
+        self.vertex_colors += other.vertex_colors;
+        self.smooth_normals += other.smooth_normals;
+        self.highlights += other.highlights;
+        self.glass += other.glass;
+        self.planes += other.planes;
+        self.filters += other.filters;
     }
 }

@@ -65,7 +65,7 @@ impl Integrator<'_> {
                 scratch.next = wave; // Its memory serves the next tile.
                 continue;
             }
-            wave.trace(self.intersector, Coherence::Incoherent);
+            self.closest(&wave.rays, Coherence::Incoherent, &mut wave.hits, counts);
             let before = std::mem::replace(&mut scratch.wave, wave);
             scratch.next.clear();
             self.finish(scratch, counts);
@@ -158,7 +158,7 @@ impl Integrator<'_> {
                     ahead.push(&beyond);
                 }
             }
-            self.intersector.closest_of(&ahead, Coherence::Incoherent, &mut found);
+            self.closest(&ahead, Coherence::Incoherent, &mut found, counts);
             counts.rays.refraction += ahead.len() as u64;
             for (&i, hit) in passed.iter().zip(found.iter()) {
                 hits.set(i as usize, hit);

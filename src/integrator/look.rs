@@ -3,7 +3,8 @@
 use glam::Vec3;
 
 use crate::geometry::{Geometry, Hit};
-use crate::scene::{Material, Scene, TextureId};
+use crate::integrator::counts::WorkCounts;
+use crate::scene::{Material, Scene, Skips, TextureId, Work};
 use crate::shading::Reflectance;
 use crate::surface::Detail;
 
@@ -18,27 +19,32 @@ pub(super) struct Look {
     rest: Vec3,
     /// Whether all of it is finite.
     pub is_finite: bool,
-    /// Whether a texture has a part in it.
+    /// Whether it is asked for a highlight.
+    pub shines: bool,
+    /// Whether it is asked for texture coordinates.
     pub is_textured: bool,
-    /// Whether rays are followed from it.
+    /// Whether it is asked where it sends light on.
     pub is_followed: bool,
 }
 
 impl Look {
-    pub fn of(material: &Material) -> Self {
-        let is_followed = material.is_followed();
-        let rest = match is_followed {
-            true => (Vec3::ONE - material.reflect - material.transmit).max(Vec3::ZERO),
-            false => Vec3::ONE,
-        };
+    pub fn of(material: &Material, skips: Skips) -> Self {
+        let rest = (Vec3::ONE - material.reflect - material.transmit).max(Vec3::ZERO);
         let reflectance = Reflectance {
             diffuse: material.diffuse * rest,
             specular: material.specular * rest,
             shininess: material.shininess,
         };
-        let (emission, is_textured) = (material.emission, material.is_textured());
-        let is_finite = emission.is_finite() && reflectance.diffuse.is_finite();
-        Self { reflectance, emission, rest, is_finite, is_textured, is_followed }
+        let emission = material.emission;
+        Self {
+            reflectance,
+            emission,
+            rest,
+            is_finite: emission.is_finite() && reflectance.diffuse.is_finite(),
+            shines: skips.does(Work::Highlights, reflectance.specular != Vec3::ZERO),
+            is_textured: skips.does(Work::Uv, material.is_textured()),
+            is_followed: skips.does(Work::Reflection, material.is_followed()),
+        }
     }
 
     /// Emission and diffuse reflectance with the detail of a point.
@@ -57,20 +63,46 @@ impl Look {
     }
 }
 
-/// Whether any surface of the scene has a detail: a texture, a checker or vertex colours.
-pub(super) fn has_detail(scene: &Scene) -> bool {
-    scene.materials_in_use().any(|m| m.is_textured())
-        || scene.planes.iter().any(|plane| plane.checker.is_some())
-        || scene.meshes.iter().any(|mesh| !mesh.colors.is_empty())
+/// Which planes and meshes are asked for details of their points.
+pub(super) struct Details {
+    /// For a checker, each plane.
+    planes: Vec<bool>,
+    /// For colours of their vertices, each mesh.
+    meshes: Vec<bool>,
 }
 
-/// Whether what was hit, whose material looks like this, has a detail.
-#[inline(always)]
-pub(super) fn is_detailed(scene: &Scene, look: &Look, hit: &Hit) -> bool {
-    look.is_textured
-        || match hit.id.geometry {
-            Geometry::Spheres => false,
-            Geometry::Planes => scene.planes[hit.id.primitive as usize].checker.is_some(),
-            Geometry::Mesh(mesh) => !scene.meshes[mesh as usize].colors.is_empty(),
+impl Details {
+    pub fn of(scene: &Scene, skips: Skips) -> Self {
+        let checkers = scene.planes.iter().map(|plane| plane.checker.is_some());
+        let colors = scene.meshes.iter().map(|mesh| !mesh.colors.is_empty());
+        Self {
+            planes: checkers.map(|has| skips.does(Work::Checkers, has)).collect(),
+            meshes: colors.map(|has| skips.does(Work::VertexColors, has)).collect(),
         }
+    }
+
+    /// Whether what was hit, whose material looks like this, is asked for any.
+    #[inline(always)]
+    pub fn are_asked(&self, look: &Look, hit: &Hit) -> bool {
+        look.is_textured || self.of_geometry(hit)
+    }
+
+    #[inline(always)]
+    fn of_geometry(&self, hit: &Hit) -> bool {
+        match hit.id.geometry {
+            Geometry::Spheres => false,
+            Geometry::Planes => self.planes[hit.id.primitive as usize],
+            Geometry::Mesh(mesh) => self.meshes[mesh as usize],
+        }
+    }
+
+    /// Counts what is asked for.
+    pub fn count(&self, look: &Look, hit: &Hit, work: &mut WorkCounts) {
+        work.uv += u64::from(look.is_textured);
+        let of_kind = match hit.id.geometry {
+            Geometry::Planes => &mut work.checkers,
+            _ => &mut work.vertex_colors,
+        };
+        *of_kind += u64::from(self.of_geometry(hit));
+    }
 }

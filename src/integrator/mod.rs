@@ -26,15 +26,15 @@ use glam::Vec3;
 use crate::film::{Pixel, View};
 use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{Camera, FilmSettings, Material, RayMaker, Scene};
+use crate::scene::{Camera, FilmSettings, Material, Needs, RayMaker, Scene, Skips, Work};
 use crate::surface::Surface;
 use adaptive::{Note, Notes};
 pub use adaptive::{STEPS, Seen};
 use bodies::{Bodies, Interiors};
 use clearance::Clearance;
-pub use counts::{Counts, NotFinite, RayCounts};
+pub use counts::{Counts, NotFinite, RayCounts, WorkCounts};
 use follow::Path;
-use look::{Look, has_detail};
+use look::{Details, Look};
 use samples::Series;
 pub use samples::{sample_positions, sample_steps};
 use shade::Light;
@@ -57,7 +57,14 @@ pub struct Integrator<'a> {
     /// Whether any surface lets light through.
     transmits: bool,
     /// Whether textures, checkers or vertex colours are asked for anywhere.
-    has_detail: bool,
+    has_details: bool,
+    /// Whether meshes are asked for normals of their vertices.
+    has_smooth_normals: bool,
+    /// Whether materials are asked for highlights.
+    has_highlights: bool,
+    /// Whether shadow rays go out, to each light.
+    asks: Vec<bool>,
+    details: Details,
     /// How each material looks.
     looks: Vec<Look>,
     /// What the processor can do at once.
@@ -97,13 +104,15 @@ struct Wave {
 }
 
 impl<'a> Integrator<'a> {
-    /// An integrator for the scene's film settings, which looks through `camera`.
+    /// An integrator for the scene's film settings, which looks through `camera`. It leaves out
+    /// only `skips` of what the scene has no need of.
     pub fn new(
         scene: &'a Scene,
         intersector: &'a dyn Intersector,
         camera: &Camera,
         view: View,
         tiling: Tiling,
+        skips: Skips,
     ) -> Self {
         // Debug views are not averages: one sample.
         let film = match view {
@@ -111,8 +120,9 @@ impl<'a> Integrator<'a> {
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
         let rays = camera.rays(scene.film.size);
-        let follows = scene.materials_in_use().any(|m| m.is_followed());
-        let transmits = scene.materials_in_use().any(|m| m.transmit != Vec3::ZERO);
+        let needs = Needs::of(scene, skips);
+        let must = |work| needs.must(work);
+        let casts = scene.lights.iter().map(|light| light.casts_shadow());
         let bodies = Bodies::of(scene);
         let eye = match bodies.is_empty() {
             true => Some(Interiors::default()),
@@ -126,10 +136,14 @@ impl<'a> Integrator<'a> {
             tiling,
             series: Series::of(&film),
             threshold: film.adaptive.map(|adaptive| adaptive.threshold),
-            follows,
-            transmits,
-            has_detail: has_detail(scene),
-            looks: scene.materials.iter().map(Look::of).collect(),
+            follows: must(Work::Reflection) || must(Work::Refraction),
+            transmits: must(Work::Refraction),
+            has_details: must(Work::Uv) || must(Work::Checkers) || must(Work::VertexColors),
+            has_smooth_normals: must(Work::SmoothNormals),
+            has_highlights: must(Work::Highlights),
+            asks: casts.map(|casts| skips.does(Work::Shadows, casts)).collect(),
+            details: Details::of(scene, skips),
+            looks: scene.materials.iter().map(|material| Look::of(material, skips)).collect(),
             arch: pulp::Arch::new(),
             may_pass: eye.as_ref() != Some(&Interiors::default())
                 || bodies.may_hide()
@@ -204,7 +218,7 @@ impl<'a> Integrator<'a> {
         self.arch.dispatch(Aim { at: &self.rays, tile, offset, rays: &mut wave.rays });
         wave.rays.truncate(tile.count);
         wave.paths.clear();
-        wave.trace(self.intersector, Coherence::Coherent);
+        self.closest(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
         counts.rays.primary += wave.rays.len() as u64;
         counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
@@ -234,6 +248,18 @@ impl<'a> Integrator<'a> {
                 counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
             }
         }
+    }
+
+    /// Finds what rays hit.
+    fn closest(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits, counts: &mut Counts) {
+        self.intersector.closest_of(rays, coherence, hits);
+        counts.work.extras(self.intersector.closest_extras(rays), rays);
+    }
+
+    /// Finds which shadow rays are kept from their ends.
+    fn occluded(&self, rays: &Rays, blocked: &mut Vec<bool>, counts: &mut Counts) {
+        self.intersector.occluded_of(rays, Coherence::Coherent, blocked);
+        counts.work.extras(self.intersector.occluded_extras(), rays);
     }
 
     /// The value of a debug view.
@@ -300,10 +326,5 @@ impl Wave {
         (at..self.rays.len()).for_each(|i| second.rays.push(&self.rays.ray(i)));
         self.rays.truncate(at);
         second
-    }
-
-    /// Finds what the rays hit.
-    fn trace(&mut self, intersector: &dyn Intersector, coherence: Coherence) {
-        intersector.closest_of(&self.rays, coherence, &mut self.hits);
     }
 }

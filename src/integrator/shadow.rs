@@ -73,8 +73,9 @@ impl Integrator<'_> {
             ahead.push(&ray);
         }
         while !beams.is_empty() {
-            self.intersector.closest_of(ahead, Coherence::Incoherent, hits);
+            self.closest(ahead, Coherence::Incoherent, hits, counts);
             counts.rays.shadow += ahead.len() as u64;
+            counts.work.glass += ahead.len() as u64;
             std::mem::swap(traced, ahead);
             ahead.clear();
             let mut answers = traced.iter().zip(hits.iter());

@@ -8,7 +8,7 @@ use crate::intersect::embree::{self, Embree};
 use crate::intersect::kept::used;
 use crate::intersect::standing::Standing;
 use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
-use crate::scene::{MeshId, Scene, Skips};
+use crate::scene::{MeshId, Scene, Skips, Work};
 
 /// What building took, and what was kept of a frame before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -166,8 +166,8 @@ impl Builder {
             }
             Backend::Rust => {
                 // The BVH is built on the caller's rayon pool, and always has all its levels.
-                let _ = (self.threads, self.skips);
-                let (built, moved) = match shared {
+                let _ = self.threads;
+                let (mut built, moved) = match shared {
                     None => (Bvh::build(scene, self.precision), None),
                     Some(shared) => {
                         let moved = shared.standing.follow(scene);
@@ -175,6 +175,7 @@ impl Builder {
                         (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
                     }
                 };
+                built.planes = self.skips.does(Work::Planes, built.planes);
                 (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
             }
         };

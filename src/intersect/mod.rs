@@ -36,6 +36,15 @@ pub enum Coherence {
     Incoherent,
 }
 
+/// What an intersector does with the rays of a batch besides walking its trees.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// It tries each ray against planes.
+    pub planes: bool,
+    /// It looks at each hit that Embree finds, before Embree goes on.
+    pub filters: bool,
+}
+
 /// Finds what rays meet in one scene.
 ///
 /// A ray meets what it crosses at 0 < t < `tmax`, both strictly, except the surface it left; a
@@ -59,6 +68,16 @@ pub trait Intersector: Send + Sync {
     /// # Panics
     /// When the two slices differ in length.
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
+
+    /// What it does besides, when it looks for the closest hits of these rays.
+    fn closest_extras(&self, _: &Rays) -> Extras {
+        Extras::default()
+    }
+
+    /// What it does besides, when it looks for what stands in the way of any rays.
+    fn occluded_extras(&self) -> Extras {
+        Extras::default()
+    }
 
     /// As [`Intersector::closest`], of rays that stand side by side.
     fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {

@@ -71,12 +71,18 @@ impl Default for Surfaces {
 
 impl Surfaces {
     /// Works out what `found`, which sixteen rays of a batch hit in `scene`, means; `block` is
-    /// their number in the batch.
+    /// their number in the batch. Without `SMOOTH` no mesh that was hit may have normals.
     ///
     /// # Panics
     /// When a hit is not one of this scene.
     #[inline(always)]
-    pub fn set(&mut self, scene: &Scene, rays: &Rays, block: usize, found: &Found) {
+    pub fn set<const SMOOTH: bool>(
+        &mut self,
+        scene: &Scene,
+        rays: &Rays,
+        block: usize,
+        found: &Found,
+    ) {
         let lines = &rays.lines()[block];
         self.kinds = Kinds::of(&found.id);
         if self.kinds.spheres {
@@ -86,7 +92,7 @@ impl Surfaces {
             self.set_planes(scene, lines, found);
         }
         if self.kinds.triangles {
-            self.set_triangles(scene, found);
+            self.set_triangles::<SMOOTH>(scene, found);
         }
         self.turn(scene, rays, block, found);
     }
@@ -147,7 +153,7 @@ impl Surfaces {
     }
 
     #[inline(always)]
-    fn set_triangles(&mut self, scene: &Scene, found: &Found) {
+    fn set_triangles<const SMOOTH: bool>(&mut self, scene: &Scene, found: &Found) {
         let Ids { geometry, primitive, instance } = &found.id;
         let Some(faces) = Faces::of(scene, geometry, primitive, instance) else { return };
         let is_face = |i: usize| geometry[i] >= Ids::MESHES;
@@ -160,7 +166,7 @@ impl Surfaces {
         for i in (0..LANES).filter(|&i| is_face(i)) {
             self.material[i] = scene.instances[instance[i] as usize].material;
             let mesh = (geometry[i] - Ids::MESHES) as usize;
-            if scene.meshes[mesh].normals.is_empty() {
+            if !SMOOTH || scene.meshes[mesh].normals.is_empty() {
                 continue;
             }
             let smooth =

@@ -40,7 +40,8 @@ fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
 
 fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> Detail {
     let surface = Surface::new(scene, ray, hit);
-    Detail::new(scene, hit, surface.position, surface.geometric_normal)
+    let textured = scene.materials[surface.material.0 as usize].is_textured();
+    Detail::new(scene, hit, surface.position, surface.geometric_normal, textured)
 }
 
 #[test]
@@ -162,7 +163,7 @@ fn sixteen_surfaces_are_those_of_one_at_a_time() {
             hits.set(i, ids[of[i % 5]].map(|id| hit(t, 0.1, 0.02 * t, id)));
         }
         let mut surfaces = Surfaces::default();
-        surfaces.set(&scene, &rays, 0, &hits.found()[0]);
+        surfaces.set::<true>(&scene, &rays, 0, &hits.found()[0]);
         for i in 0..count {
             let Some(hit) = hits.get(i) else { continue };
             let one = Surface::new(&scene, &rays.ray(i), &hit);

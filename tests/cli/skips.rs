@@ -1,6 +1,7 @@
 //! What a scene does not need is not done, and the picture is the same as if it were.
 
 use super::*;
+use envers::scene::Work;
 
 /// A mesh that stands once, and a material with a picture that nothing is made of.
 const PLAIN: &str = r##"
@@ -39,37 +40,51 @@ fn work(folder: &Folder, flags: &str) -> Value {
     run.json()["work"].clone()
 }
 
-/// Asserts that the certified picture is the same bytes when a kind of work is not skipped.
+/// Asserts that the certified picture is the same bytes when a kind of work is not skipped, each in
+/// turn, and when none is.
 #[track_caller]
-fn assert_same(folder: &Folder, name: &str) {
+fn assert_same(folder: &Folder, scene: &str) {
     let backends = if cfg!(feature = "embree") { &["embree", "rust"][..] } else { &["rust"] };
     for backend in backends {
-        let render = format!("render scene.toml --precision certified --backend {backend}");
+        let render = format!("render {scene} --precision certified --backend {backend} --spp 1");
         folder.run(&format!("{render} -o skips.exr")).good();
-        folder.run(&format!("{render} -o all.exr --no-skip {name}")).good();
-        assert!(folder.read("skips.exr") == folder.read("all.exr"), "{name} on {backend}");
+        for name in Work::ALL.map(Work::name).into_iter().chain(["all"]) {
+            folder.run(&format!("{render} -o all.exr --no-skip {name}")).good();
+            assert!(folder.read("skips.exr") == folder.read("all.exr"), "{name} on {backend}");
+        }
     }
 }
 
-#[test]
-fn the_picture_is_the_same_with_a_geometry_of_no_spheres() {
-    assert_same(&plain(), "spheres");
+/// As [`assert_same`], of a small picture of a scene that comes with envers.
+#[track_caller]
+fn assert_same_of_asset(name: &str) {
+    let scene = format!("{}/assets/scenes/{name}", env!("CARGO_MANIFEST_DIR"));
+    assert_same(&Folder::new(), &format!("{scene} --size 72x48"));
 }
 
 #[test]
-fn the_picture_is_the_same_with_an_instance_level_for_a_mesh_that_stands_once() {
-    assert_same(&plain(), "instances");
+fn the_picture_of_a_scene_that_needs_nothing_is_the_same_without_each_skip() {
+    assert_same(&plain(), "scene.toml");
 }
 
 #[test]
-fn the_picture_is_the_same_with_pictures_that_nothing_shows() {
-    assert_same(&plain(), "pictures");
+fn the_picture_of_a_scene_with_everything_in_it_is_the_same_without_each_skip() {
+    assert_same(&Folder::with_everything(), "scene.toml");
 }
 
 #[test]
-fn the_picture_is_the_same_with_no_skip_at_all() {
-    assert_same(&plain(), "all");
-    assert_same(&Folder::with_everything(), "all");
+fn the_picture_of_the_room_is_the_same_without_each_skip() {
+    assert_same_of_asset("room.toml");
+}
+
+#[test]
+fn the_picture_of_gems_is_the_same_without_each_skip() {
+    assert_same_of_asset("gallery/gems.toml");
+}
+
+#[test]
+fn the_picture_of_a_lit_sphere_is_the_same_without_each_skip() {
+    assert_same_of_asset("tutorial/3-2-lambert.toml");
 }
 
 #[test]

@@ -12,13 +12,13 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, Rays, sphere};
 use crate::intersect::brute::is_extreme;
 use crate::intersect::entry::Entry;
 use crate::intersect::kept::{Kept, used};
 use crate::intersect::primitive::Primitives;
 use crate::intersect::standing::Moved;
-use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
+use crate::intersect::{BruteForce, Coherence, Extras, Intersector, Precision};
 use crate::scene::{Instance, Mesh, Scene, Sphere};
 use build::build;
 use tree::{Line, Tree};
@@ -29,6 +29,8 @@ pub struct Bvh<'s> {
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
     meshes: Vec<Arc<MeshTree>>,
+    /// Whether planes are tried.
+    pub(super) planes: bool,
 }
 
 /// Where the meshes stand.
@@ -70,7 +72,8 @@ impl<'s> Bvh<'s> {
         let primitives = Primitives { scene, precision };
         let meshes = mesh_trees(scene, None);
         let instances = Instances::new(scene, &meshes).into();
-        Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
+        let (spheres, planes) = (sphere_tree(scene).into(), !scene.planes.is_empty());
+        Self { primitives, spheres, instances, meshes, planes }
     }
 
     /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
@@ -93,7 +96,7 @@ impl<'s> Bvh<'s> {
         }
         shared.tops += u64::from(!(spheres_stay && instances_stay));
         let (spheres, instances) = (shared.spheres.clone(), shared.instances.clone());
-        Self { primitives, spheres, instances, meshes }
+        Self { primitives, spheres, instances, meshes, planes: !scene.planes.is_empty() }
     }
 
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
@@ -183,6 +186,14 @@ impl Intersector for Bvh<'_> {
         env!("CARGO_PKG_VERSION").to_owned()
     }
 
+    fn closest_extras(&self, _: &Rays) -> Extras {
+        Extras { planes: self.planes, filters: false }
+    }
+
+    fn occluded_extras(&self) -> Extras {
+        Extras { planes: self.planes, filters: false }
+    }
+
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         for (ray, best) in rays.iter().zip(hits) {
@@ -193,14 +204,16 @@ impl Intersector for Bvh<'_> {
                 *limit = limit.min(hit.t);
                 false
             });
-            self.primitives.merge_planes(ray, best);
+            if self.planes {
+                self.primitives.merge_planes(ray, best);
+            }
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.primitives.planes_occlude(ray);
+            *blocked = self.planes && self.primitives.planes_occlude(ray);
             if !*blocked {
                 let mut limit = ray.tmax;
                 self.visit(ray, &mut limit, |hit, _| {

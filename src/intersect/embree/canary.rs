@@ -61,7 +61,7 @@ fn packet<const W: usize>(scene: sys::RTCScene) -> bool {
         }
     }
     let hit = |i: usize| {
-        record.tfar[i] == 5.0
+        (record.tfar[i] - 5.0).abs() < 1e-5
             && (record.u[i] - 0.25).abs() < 1e-6
             && (record.v[i] - 0.25).abs() < 1e-6
             && [record.prim[i], record.geom[i], record.inst[i]] == [0, 0, INVALID]

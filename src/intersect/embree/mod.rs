@@ -52,9 +52,9 @@ use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Hit, Hits, PrimitiveId, Ray, Rays};
 use crate::intersect::kept::Kept;
 use crate::intersect::standing::Moved;
-use crate::intersect::{BuildQuality, Coherence, Intersector, Precision, leaving};
+use crate::intersect::{BuildQuality, Coherence, Extras, Intersector, Precision, leaving};
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Instance, Scene, Skips};
+use crate::scene::{Instance, Scene, Skips, Work};
 use canary::failed;
 use frame::Frame;
 pub use memory::peak as peak_memory;
@@ -81,6 +81,8 @@ pub struct Embree<'s> {
     scene: &'s Scene,
     /// The largest absolute coordinate in the scene.
     reach: f64,
+    /// Whether planes are tried.
+    planes: bool,
     /// Whether every triangle blocks light.
     all_block: bool,
     top: Arc<Top>,
@@ -110,7 +112,7 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(&boxes);
         let device = new_device(scene, asked.threads)?;
         let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
-        Ok(Self::of(scene, &bounds, top.into()))
+        Ok(Self::of(scene, asked, &bounds, top.into()))
     }
 
     /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
@@ -126,15 +128,16 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(boxes);
         let frame = Frame::on_stage(bounds, shared.stage);
         let top = shared.top(scene, asked, frame, boxes, moved)?;
-        Ok(Self::of(scene, &bounds, top))
+        Ok(Self::of(scene, asked, &bounds, top))
     }
 
-    fn of(scene: &'s Scene, bounds: &Bounds, top: Arc<Top>) -> Self {
+    fn of(scene: &'s Scene, asked: Asked, bounds: &Bounds, top: Arc<Top>) -> Self {
+        let planes = asked.skips.does(Work::Planes, !scene.planes.is_empty());
         let blocks = |(i, instance): (u32, &Instance)| {
             scene.blocks_light(PrimitiveId::triangle(instance.mesh.0, 0, i))
         };
         let all_block = (0..).zip(&scene.instances).all(blocks);
-        Self { scene, reach: leaving::scene_reach(scene, bounds), all_block, top }
+        Self { scene, reach: leaving::scene_reach(scene, bounds), planes, all_block, top }
     }
 
     /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
@@ -161,6 +164,7 @@ impl<'s> Embree<'s> {
             precision: top.precision,
             careful: false,
             reach: self.reach,
+            planes: self.planes,
             all_block: self.all_block,
         }
     }
@@ -292,6 +296,15 @@ impl Intersector for Embree<'_> {
 
     fn version(&self) -> String {
         self.top.version.clone()
+    }
+
+    fn closest_extras(&self, rays: &Rays) -> Extras {
+        let filters = self.top.precision == Precision::Fast && !rays.are_fresh();
+        Extras { planes: self.planes, filters }
+    }
+
+    fn occluded_extras(&self) -> Extras {
+        Extras { planes: self.planes, filters: self.top.precision == Precision::Fast }
     }
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {

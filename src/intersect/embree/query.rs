@@ -27,6 +27,8 @@ pub struct Target<'a> {
     pub careful: bool,
     /// The largest absolute coordinate in the scene.
     pub reach: f64,
+    /// Whether planes are tried.
+    pub planes: bool,
     /// Whether every triangle blocks light.
     pub all_block: bool,
 }
@@ -201,7 +203,7 @@ fn closest_in_packet<'a, const W: usize>(
             found.set(at + i, target.brute_force().first(&packet.ray(i)));
         }
     }
-    if !target.scene.planes.is_empty() {
+    if target.planes {
         target.primitives().merge_planes_into(&packet, &context.exact, found, at);
     }
     true
@@ -259,7 +261,7 @@ fn occluded<const W: usize>(
                 blocked[i] = target.brute_force().blocks(&packet.ray(i));
             }
         }
-        if !target.scene.planes.is_empty() {
+        if target.planes {
             target.primitives().planes_block(&packet, &context.exact, blocked);
         }
     }

@@ -1,0 +1,83 @@
+//! The sums of what comes back along the rays.
+
+use glam::Vec3;
+
+use crate::geometry::{LANES, Lanes};
+use crate::integrator::counts::Cause;
+use crate::integrator::shade::{Radiance, Shadows, Waiting, at, put};
+
+/// The radiance along the rays of a wave, and which of it is spoilt.
+pub(super) struct Sums<'a> {
+    pub radiance: &'a mut [Radiance],
+    pub spoilt: &'a mut Vec<(u32, Cause)>,
+}
+
+impl Sums<'_> {
+    /// Adds to the radiance along the rays that are `here`, unless it is spoilt already.
+    #[inline(always)]
+    pub fn add_all(&mut self, block: usize, with: &Radiance, here: &Lanes<bool>) {
+        let radiance = &mut self.radiance[block];
+        let mut sum = *radiance;
+        let mut odd = false;
+        for axis in 0..3 {
+            for i in 0..LANES {
+                let more = sum[axis][i] + with[axis][i];
+                sum[axis][i] = if here[i] { more } else { sum[axis][i] };
+            }
+        }
+        for i in 0..LANES {
+            odd |= here[i] & !(sum[0][i] + sum[1][i] + sum[2][i]).is_finite();
+        }
+        if !odd {
+            *radiance = sum;
+            return;
+        }
+        for i in (0..LANES).filter(|&i| here[i]) {
+            self.add(block, i, at(with, i));
+        }
+    }
+
+    /// Adds to the radiance along one ray, unless it is spoilt already.
+    pub fn add(&mut self, block: usize, i: usize, with: Vec3) {
+        let sum = at(&self.radiance[block], i) + with;
+        if sum.is_finite() {
+            put(&mut self.radiance[block], i, sum);
+        } else if with.is_nan() {
+            self.spoil(block, i, Cause::Light);
+        } else {
+            self.spoil(block, i, Cause::Sum);
+        }
+    }
+
+    /// Makes the radiance along one ray NaN, so that it stays out of the picture, and keeps what
+    /// did it first.
+    #[cold]
+    pub fn spoil(&mut self, block: usize, i: usize, cause: Cause) {
+        if !at(&self.radiance[block], i).is_nan() {
+            self.spoilt.push(((block * LANES + i) as u32, cause));
+        }
+        put(&mut self.radiance[block], i, Vec3::NAN);
+    }
+}
+
+/// Adds what waits on shadow rays that nothing blocks.
+pub(super) struct Settle<'a, 'b> {
+    pub shadow: &'a Shadows,
+    pub to: &'a mut Sums<'b>,
+}
+
+impl pulp::WithSimd for Settle<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        let Shadows { waiting, blocked, .. } = self.shadow;
+        for (Waiting { block, with, here }, blocked) in waiting.iter().zip(blocked.chunks(LANES)) {
+            let mut open = *here;
+            for (open, blocked) in open.iter_mut().zip(blocked) {
+                *open &= !blocked;
+            }
+            self.to.add_all(*block, with, &open);
+        }
+    }
+}
