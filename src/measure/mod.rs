@@ -1,6 +1,6 @@
 //! What measures the renderer: one backend against the other ([`validate`](fn@validate)), all of
 //! them on one ray ([`replay`](fn@replay)), one picture against another ([`compare`], [`flip`]),
-//! every hit against exact integers ([`oracle`], [`stress`]), and run time against error ([`bench`]).
+//! every hit against exact integers ([`oracle`], [`stress`]), and run time against error ([`mod@bench`]).
 
 pub mod bench;
 mod dispute;
