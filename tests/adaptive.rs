@@ -176,9 +176,9 @@ fn no_thin_thing_is_lost_that_the_least_samples_find() {
     }
 }
 
-/// Each pixel has the samples of one of the steps.
+/// 1, 9 and 81 samples are regular squares, and steps of this series.
 #[test]
-fn every_pixel_is_one_of_a_regular_picture() {
+fn as_many_pixels_as_stop_at_a_regular_step_are_those_of_that_regular_picture() {
     let scene = with_samples(&varied(), 1, 81, 0.1);
     assert_eq!(sample_steps(&scene.film), [1, 5, 9, 45, 81]);
     let all = film(&scene);
