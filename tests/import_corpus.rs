@@ -125,6 +125,25 @@ fn every_other_file_loads_or_gives_an_error_that_says_why() {
 }
 
 #[test]
+fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
+    let Some(corpus) = corpus() else { return };
+    let mut faces = 0;
+    for path in files(&corpus, &["gltf", "glb", "obj"]) {
+        let Ok(scene) = envers::load::load(&path) else { continue };
+        let report = &scene.report;
+        assert!(report.balances(), "{}: {report}", path.display());
+        let mut shown: Vec<_> = scene.instances.iter().map(|i| i.mesh).collect();
+        shown.sort_unstable();
+        shown.dedup();
+        let stored: usize = shown.iter().map(|m| scene.meshes[m.0 as usize].triangles.len()).sum();
+        assert_eq!(report.handed_over, stored as u64, "{}: {report}", path.display());
+        faces += report.read;
+    }
+    println!("{faces} faces read");
+    assert!(faces > 500_000, "only {faces}");
+}
+
+#[test]
 fn files_that_the_khronos_validator_finds_valid_load() {
     let Some(corpus) = corpus() else { return };
     let mut count = 0;

@@ -99,14 +99,14 @@ fn vertex_index_out_of_range_drops_its_triangles() {
     model.primitive()["indices"] = indices.into();
     let scene = model.load().unwrap();
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
-    assert_warns(&scene, "2 triangles are left out");
+    assert_warns(&scene, "2 faces are left out");
 }
 
 #[test]
 fn indices_that_do_not_fill_a_triangle_are_counted() {
     let scene = Model::parabola(5).load().unwrap();
     assert_eq!(scene.triangle_count(), 1);
-    assert_warns(&scene, "2 corners are left out");
+    assert_warns(&scene, "1 faces are left out: they have fewer than three corners");
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn vertex_that_is_no_number_drops_its_triangles() {
     model.primitive()["attributes"]["POSITION"] = positions.into();
     let scene = model.load().unwrap();
     assert_eq!(scene.triangle_count(), 0);
-    assert_warns(&scene, "1 triangles are left out");
+    assert_warns(&scene, "1 faces are left out");
 }
 
 #[test]

@@ -12,6 +12,7 @@ mod lights;
 mod materials;
 mod nodes;
 mod optics;
+mod report;
 mod textures;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};
