@@ -14,6 +14,7 @@ mod nodes;
 mod optics;
 mod report;
 mod textures;
+mod validation;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};
 use envers::scene::{Material, Scene};

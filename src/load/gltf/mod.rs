@@ -19,6 +19,7 @@ mod packed;
 mod primitive;
 mod texture;
 mod topology;
+mod validation;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -49,8 +50,9 @@ pub fn load(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene>
 
 fn import(path: &Path, bytes: &[u8], animation: Option<&str>, wanted: bool) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
-    let root = document::parse(json)?;
+    let (root, value) = document::parse(json)?;
     let mut tally = Tally::default();
+    validation::validate(&value, bin.map(<[u8]>::len), &mut tally);
     extensions::check(&root, &mut tally)?;
     let buffers = Buffers::new(&root, path, bin);
     let accessors = Accessors::new(&root, &buffers);
