@@ -34,6 +34,16 @@ impl Tally {
         }
     }
 
+    /// Adds what another one has counted, which comes after.
+    pub fn append(&mut self, later: Self) {
+        for entry in later.0 {
+            match self.0.iter_mut().find(|e| e.reason == entry.reason) {
+                Some(own) => own.count += entry.count,
+                None => self.0.push(entry),
+            }
+        }
+    }
+
     /// One sentence for each reason, with the file's name before it.
     pub fn sentences(self, file: &Path) -> Vec<String> {
         let sentence = |e: Entry| {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::illumination::Illumination;
-use super::lines::{decode, statements};
+use super::lines::{decode, lines};
 use super::map::Map;
 use crate::load::picture;
 use crate::load::tally::Tally;
@@ -224,10 +224,11 @@ fn find(folder: &Path, name: &str) -> PathBuf {
 /// three numbers, and drops the whole file at a number it cannot read.
 fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
     let mut out = String::with_capacity(text.len());
-    for s in statements(text) {
+    for line in lines(text) {
+        let s = line.statement();
         let bad = |tally: &mut Tally| {
             let reason = "{} lines of the MTL file are not understood and ignored";
-            tally.add(reason, 1, || format!("{}:{}", path.display(), s.line));
+            tally.add(reason, 1, || format!("{}:{}", path.display(), line.number));
         };
         let finite = |w: &str| w.parse::<f32>().ok().filter(|x| x.is_finite() && *x >= 0.0);
         let rest = s.rest.as_ref();
