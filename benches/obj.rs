@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// Times that each file is read by either.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 11;
 /// Squares along the ring and around it; two triangles each.
 const SQUARES: [usize; 2] = [1000, 500];
 

@@ -347,7 +347,10 @@ fn glass_of_a_mesh_that_is_not_closed_is_a_warning() {
 fn broken_lines_of_an_mtl_file_are_ignored_with_a_warning() {
     let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nKd 1\nKs a b c\nNs\nKe 1 2\nillum x");
     assert_eq!(m.diffuse, Vec3::ONE);
-    assert_warns(&scene, "4 lines of the MTL file");
+    for what in ["`Ks` wants three numbers", "`Ns` wants a number", "`Ke`", "`illum`"] {
+        assert_warns(&scene, what);
+    }
+    assert_warns(&scene, "m.mtl:3 (`Ks a b c`)");
 }
 
 #[test]

@@ -5,6 +5,9 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
+/// Bytes among which a binary file has a zero.
+const HEAD: usize = 1 << 12;
+
 /// The text of a file: UTF-8, or UTF-16 with its mark, or else Latin-1, as old exporters wrote;
 /// lines that end in a carriage return alone, as on old Macs, end in a line feed.
 ///
@@ -12,7 +15,7 @@ use crate::error::{Error, Result};
 /// When it is no text at all.
 pub fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
     let text = characters(bytes)?;
-    let old_mac = text.contains('\r') && !text.contains('\n');
+    let old_mac = !text.contains('\n') && text.contains('\r');
     Ok(if old_mac { text.replace('\r', "\n").into() } else { text })
 }
 
@@ -27,7 +30,7 @@ fn characters(bytes: &[u8]) -> Result<Cow<'_, str>> {
         [0xEF, 0xBB, 0xBF, rest @ ..] => rest,
         _ => bytes,
     };
-    if bytes.contains(&0) {
+    if bytes.iter().take(HEAD).any(|&b| b == 0) {
         return Err(Error::input("this is a binary file, not Wavefront OBJ, which is text")
             .help("a compiler's object files end in .obj too"));
     }
@@ -66,7 +69,7 @@ pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
         let (mut length, mut count) = (0, 0);
         loop {
             let line = rest.get(length..).unwrap_or_default();
-            let end = line.find('\n').map_or(line.len(), |at| at + 1);
+            let end = end_of_line(line);
             let open = line.get(..end).is_some_and(is_open);
             (length, count) = (length + end, count + 1);
             // A comment is not continued.
@@ -80,9 +83,14 @@ pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
+/// How long the first line of a text is, its line break included.
+pub fn end_of_line(text: &str) -> usize {
+    memchr::memchr(b'\n', text.as_bytes()).map_or(text.len(), |at| at + 1)
+}
+
 /// Whether a line ends in `\`, spaces aside.
 pub fn is_open(line: &str) -> bool {
-    line.trim_end().ends_with('\\')
+    line.as_bytes().trim_ascii_end().ends_with(b"\\")
 }
 
 impl<'a> Line<'a> {

@@ -9,6 +9,7 @@ mod illumination;
 mod library;
 mod lines;
 mod map;
+mod mtl;
 mod plain;
 mod polygon;
 mod rewrite;
@@ -35,6 +36,7 @@ use crate::scene::{Instance, Mesh, Scene, Transfer};
 /// line.
 pub fn load(path: &Path, wanted: bool) -> Result<Scene> {
     let bytes = super::read(path)?;
+
     import(path, &bytes, wanted).map_err(|e| e.at(path))
 }
 

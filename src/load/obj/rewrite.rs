@@ -12,7 +12,7 @@ use std::io::BufRead;
 
 use rayon::prelude::*;
 
-use super::lines::{Statement, is_open, lines};
+use super::lines::{Statement, end_of_line, is_open, lines};
 use super::segments::Segments;
 use super::sorter::{Sorted, Sorter};
 use crate::error::Result;
@@ -161,7 +161,7 @@ fn chunks(text: &str) -> Vec<&str> {
         let mut end = rest.floor_char_boundary(CHUNK);
         loop {
             let line = rest.get(end..).unwrap_or_default();
-            end += line.find('\n').map_or(line.len(), |at| at + 1);
+            end += end_of_line(line);
             let last = rest.get(..end).unwrap_or_default();
             let last = last.get(last.trim_end().rfind('\n').unwrap_or(0)..).unwrap_or_default();
             if end >= rest.len() || !is_open(last) {
@@ -199,7 +199,7 @@ fn survey(chunk: &str) -> Place {
         };
         place.counts.add(kind, line.text);
     }
-    place.lines = chunk.bytes().filter(|&b| b == b'\n').count();
+    place.lines = memchr::memchr_iter(b'\n', chunk.as_bytes()).count();
     place
 }
 
@@ -211,10 +211,8 @@ impl Counts {
         }
         // Six numbers, whatever their form.
         self.colored |= kind == 0 && {
-            let ends = line.as_bytes().windows(2);
-            let words =
-                ends.filter(|w| !w[0].is_ascii_whitespace() && w[1].is_ascii_whitespace()).count();
-            words > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
+            let spaces = line.bytes().filter(|b| matches!(b, b' ' | b'\t')).count();
+            spaces > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
         };
     }
 }
@@ -252,7 +250,8 @@ mod tests {
     fn a_file_of_several_chunks_keeps_its_settings_indices_and_line_numbers() {
         let filler = "# nothing\n".repeat(CHUNK / 8);
         let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-        let text = format!("{vertices}usemtl a\n{filler}f -3 -2 -1\n{filler}{vertices}f 4 5 6\np 1");
+        let text =
+            format!("{vertices}usemtl a\n{filler}f -3 -2 -1\n{filler}{vertices}f 4 5 6\np 1");
         let mut tally = Tally::default();
         let made = rewrite(&text, &mut tally).unwrap();
         let read: Vec<_> = made.reader(&text).lines().map(Result::unwrap).collect();
