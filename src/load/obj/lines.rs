@@ -69,7 +69,7 @@ pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
         let (mut length, mut count) = (0, 0);
         loop {
             let line = rest.get(length..).unwrap_or_default();
-            let end = end_of_line(line);
+            let end = end_of_line(line.as_bytes());
             let open = line.get(..end).is_some_and(is_open);
             (length, count) = (length + end, count + 1);
             // A comment is not continued.
@@ -84,8 +84,8 @@ pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
 }
 
 /// How long the first line of a text is, its line break included.
-pub fn end_of_line(text: &str) -> usize {
-    memchr::memchr(b'\n', text.as_bytes()).map_or(text.len(), |at| at + 1)
+pub fn end_of_line(text: &[u8]) -> usize {
+    memchr::memchr(b'\n', text).map_or(text.len(), |at| at + 1)
 }
 
 /// Whether a line ends in `\`, spaces aside.

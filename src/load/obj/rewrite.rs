@@ -158,10 +158,10 @@ fn chunks(text: &str) -> Vec<&str> {
     let mut chunks = Vec::new();
     let mut rest = text;
     while !rest.is_empty() {
-        let mut end = rest.floor_char_boundary(CHUNK);
+        // A line feed is never within a character.
+        let mut end = CHUNK.min(rest.len());
         loop {
-            let line = rest.get(end..).unwrap_or_default();
-            end += end_of_line(line);
+            end += end_of_line(rest.as_bytes().get(end..).unwrap_or_default());
             let last = rest.get(..end).unwrap_or_default();
             let last = last.get(last.trim_end().rfind('\n').unwrap_or(0)..).unwrap_or_default();
             if end >= rest.len() || !is_open(last) {

@@ -164,7 +164,8 @@ impl<'a> Sorter<'a> {
                 let colored = self.total.colored;
                 let out = self.made.vertices.write();
                 if !vertices::write(kind, rest, colored, out)? {
-                    let reason = "{} lines of vertex data have a number that is not finite";
+                    let reason =
+                        "{} lines of vertex data have a number that is broken or not finite";
                     self.tally.add(reason, 1, at);
                 }
             }

@@ -52,16 +52,23 @@ fn push(out: &mut String, word: &str) {
     out.push_str(word);
 }
 
-/// A number; NaN in any spelling is one, and so is what lies beyond f32.
+/// A number; NaN in any spelling is one, and so is what lies beyond f32. What begins as a number
+/// and goes on as none (`3.1+e2`) counts as one that is not finite: nobody can tell which it is.
 fn number(word: &str) -> Result<f32> {
     // Microsoft's old C library wrote 1.#QNAN, 1.#INF and -1.#IND.
     if word.contains(".#") {
         return Ok(f32::NAN);
     }
     let clean = word.split('#').next().unwrap_or(word);
-    clean.parse().map_err(|_| {
-        let error = Error::input(format!("`{word}` is no number"));
-        let comma = clean.contains(',');
-        if comma { error.help("decimals have a point, not a comma") } else { error }
-    })
+    let begins =
+        clean.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
+    match clean.parse() {
+        Ok(number) => Ok(number),
+        Err(_) if begins && !clean.contains(',') => Ok(f32::NAN),
+        Err(_) => {
+            let error = Error::input(format!("`{word}` is no number"));
+            let comma = clean.contains(',');
+            Err(if comma { error.help("decimals have a point, not a comma") } else { error })
+        }
+    }
 }
