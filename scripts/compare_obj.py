@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds what envers reads of OBJ files against trimesh, a reader by other people.
 
-usage: compare_obj.py ENVERS FOLDER, in an environment with `pip install trimesh numpy`.
+usage: compare_obj.py ENVERS FOLDER, in an environment with `pip install trimesh charset_normalizer`.
 
 For each .obj file under the folder: triangles, corners of the box around them, materials in use and
 whether faces have normals. Prints the files that differ, and how many agree. trimesh cuts a
