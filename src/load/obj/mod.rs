@@ -16,6 +16,7 @@ mod rewrite;
 mod segments;
 mod smooth;
 mod sorter;
+mod stream;
 mod vertices;
 
 use std::path::Path;
@@ -43,15 +44,15 @@ pub fn load(path: &Path, wanted: bool) -> Result<Scene> {
 fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
     let mut tally = Tally::default();
     let text = lines::decode(bytes)?;
-    let made = rewrite::rewrite(&text, &mut tally)?;
+    let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
+        let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+        // No `mtllib` is left in the text.
+        tobj::load_obj_buf(made, &options, |_| Err(tobj::LoadError::GenericFailure))
+    })?;
+    let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut library = Library::read(&made.libraries, folder, wanted, &mut tally);
     let mut scene = Scene::default();
-    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
-    // No `mtllib` is left in the text.
-    let no_library = |_: &Path| Err(tobj::LoadError::GenericFailure);
-    let (models, _) = tobj::load_obj_buf(&mut made.reader(&text), &options, no_library)
-        .map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     for model in models {
         let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
             continue;
