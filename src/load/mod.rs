@@ -11,7 +11,9 @@ mod picture;
 mod place;
 mod repair;
 mod scene_file;
+mod settle;
 mod tally;
+mod tangents;
 
 use std::path::Path;
 
@@ -60,6 +62,7 @@ pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Sc
         scene.film.spp = BARE_MODEL_SPP;
         framing::light(&mut scene);
     }
+    settle::settle(&mut scene);
     scene.check().map_err(|e| e.at(path))?;
     let open = closed::open_bodies(&scene);
     scene.warnings.extend(open);

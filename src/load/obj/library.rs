@@ -14,7 +14,7 @@ use super::lines::{decode, statements};
 use super::map::Map;
 use crate::load::picture;
 use crate::load::tally::Tally;
-use crate::scene::{Filter, Material, MaterialId, Scene, Texture, TextureId, Transfer, Wrap};
+use crate::scene::{Material, MaterialId, Scene, Texture, TextureId, Wrap};
 
 /// The name, for tobj, of a material whose name is empty.
 const UNNAMED: &str = "(unnamed)";
@@ -164,10 +164,8 @@ impl Library {
             picture::placeholder(map.file)
         });
         let id = scene.add_texture(Texture {
-            image: Arc::new(image),
-            transfer: Transfer::Srgb,
             wrap: [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2],
-            filter: Filter::Linear,
+            ..Texture::new(Arc::new(image))
         });
         self.textures.insert(key, id);
         Some(id)
