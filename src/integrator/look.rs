@@ -35,7 +35,7 @@ impl Look {
             false => surface::finish(scene, material, &Detail::default()),
         };
         let reflectance = scattered(&finish);
-        let highlight = reflectance.specular != Vec3::ZERO || material.is_textured();
+        let highlight = reflectance.specular != Vec3::ZERO || material.metallic.is_some();
         Self {
             finish,
             reflectance,

@@ -178,7 +178,7 @@ impl Needs {
             Work::SmoothNormals => {
                 among(standing().filter(|(mesh, _)| !mesh.normals.is_empty()).count(), meshes)
             }
-            Work::Highlights => made_of(|m| m.specular != Vec3::ZERO),
+            Work::Highlights => made_of(|m| m.specular != Vec3::ZERO || m.metallic.is_some()),
             Work::Shadows => {
                 let casting = scene.lights.iter().filter(|light| light.casts_shadow());
                 among(casting.count(), scene.lights.len())
