@@ -100,10 +100,13 @@ pub struct Bare {
 // SAFETY: Embree lets any thread trace a committed scene.
 unsafe impl Sync for Bare {}
 
+/// Vertices and triangles.
+type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
 /// What a scene of the bare library is built of, about a centre, as f32 numbers that lie ready.
 pub struct Shapes {
-    /// Vertices and triangles of each mesh as it stands.
-    meshes: Vec<(Vec<[f32; 3]>, Vec<[u32; 3]>)>,
+    /// Each mesh as it stands.
+    meshes: Vec<Mesh>,
     /// Centre and radius of each sphere.
     spheres: Vec<[f32; 4]>,
 }

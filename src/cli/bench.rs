@@ -123,6 +123,7 @@ fn tracing(arguments: &Bench) -> Tracing {
         time: None,
         precision: PrecisionName::Fast,
         threads: arguments.threads,
+        strict: false,
         quiet: arguments.quiet,
     }
 }

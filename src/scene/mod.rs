@@ -16,6 +16,7 @@ mod metallic;
 mod needs;
 mod object;
 mod pyramid;
+mod report;
 mod texture;
 mod tone;
 
@@ -33,6 +34,7 @@ pub use metallic::{Finish, Metallic, MetallicMaps, sharpness, shininess};
 pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use pyramid::{Level, Pyramid};
+pub use report::{DropReason, Report};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
 pub use tone::Tone;
 
@@ -70,6 +72,8 @@ pub struct Scene {
     pub animation: Option<Animation>,
     /// What the loader could not do as the files ask, or found odd; one sentence each.
     pub warnings: Vec<String>,
+    /// What became of its files: what was read, dropped, and not supported.
+    pub report: Report,
 }
 
 impl Scene {

@@ -6,12 +6,13 @@ use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
 
 /// The extensions that are read, or that change nothing which is.
-const READ: [&str; 12] = [
+const READ: [&str; 13] = [
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_variants",
@@ -33,7 +34,7 @@ pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
         }
     }
     for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
-        tally.say(format!("the extension {name} is not read"));
+        tally.unsupported(&format!("the extension {name} is not read"), 1, String::new);
     }
     Ok(())
 }

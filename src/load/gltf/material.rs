@@ -264,7 +264,7 @@ impl<'a> Maker<'_, 'a> {
                     let at = &self.at;
                     let reason = "{} textures are laid on by the first of more than two sets of \
                                   texture coordinates";
-                    self.tally.add(reason, 1, || format!("{at}.{place}"));
+                    self.tally.unsupported(reason, 1, || format!("{at}.{place}"));
                     0
                 }
                 next => {

@@ -61,7 +61,7 @@ impl Maker<'_, '_> {
                 None => "{} frosted materials are drawn clear",
                 Some(_) => "{} materials that transmit light are drawn clear where they are rough",
             };
-            self.tally.add(reason, 1, || at.clone());
+            self.tally.unsupported(reason, 1, || at.clone());
         }
         Ok(())
     }
@@ -90,7 +90,7 @@ impl Maker<'_, '_> {
             Checked::Valid(Mode::Blend) if material.may_transmit() => {
                 let at = &self.at;
                 let reason = "{} materials transmit light and have alpha: the alpha is left out";
-                self.tally.add(reason, 1, || at.clone());
+                self.tally.unsupported(reason, 1, || at.clone());
                 return;
             }
             Checked::Valid(Mode::Blend) => {

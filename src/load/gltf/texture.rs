@@ -171,7 +171,7 @@ impl<'a> Textures<'a> {
         let picture = match source(texture) {
             Some(source) => Some(self.picture(source, &format!("textures[{index}].source"))?),
             None => {
-                tally.say(format!("textures[{index}] has no picture that can be read"));
+                tally.placeholder(format!("textures[{index}] has no picture that can be read"));
                 None
             }
         };
@@ -240,7 +240,7 @@ impl<'a> Textures<'a> {
         let decoded: Vec<_> = pictures.into_par_iter().map(decode).collect();
         for (image, at, shown_by) in decoded {
             let image = Arc::new(image.unwrap_or_else(|error| {
-                tally.say(format!("{error}; a magenta checker takes its place"));
+                tally.placeholder(format!("{error}; a magenta checker takes its place"));
                 picture::placeholder(&at)
             }));
             shown_by.iter().for_each(|id| scene.textures[id.0 as usize].image = image.clone());

@@ -136,9 +136,9 @@ impl Library {
                 .flatten()
                 .count();
         let reason = "{} textures of highlights and bumps are not read";
-        tally.add(reason, textures as u64, name);
+        tally.unsupported(reason, textures as u64, name);
         let opacities = u64::from(source.dissolve_texture.is_some());
-        tally.add("{} textures of opacity are not read", opacities, name);
+        tally.unsupported("{} textures of opacity are not read", opacities, name);
         material
     }
 
@@ -152,7 +152,7 @@ impl Library {
         let map = Map::parse(value)?;
         if map.ignored {
             let reason = "{} textures have options (scale, offset, gain …) that are not read";
-            tally.add(reason, 1, || format!("`{value}`"));
+            tally.unsupported(reason, 1, || format!("`{value}`"));
         }
         let path = find(folder, map.file);
         let key = (path, map.clamp);
@@ -160,7 +160,7 @@ impl Library {
             return Some(id);
         }
         let image = picture::read(&key.0, self.wanted).unwrap_or_else(|error| {
-            tally.say(format!("{error}; a magenta checker takes its place"));
+            tally.placeholder(format!("{error}; a magenta checker takes its place"));
             picture::placeholder(map.file)
         });
         let id = scene.add_texture(Texture {
