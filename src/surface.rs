@@ -1,15 +1,23 @@
 //! What a hit means: position, normals, texture coordinates, material, side; and the rays that
 //! leave it.
 
+mod detail;
+mod finish;
+mod footprint;
 mod lanes;
+mod normal_map;
 #[cfg(test)]
 mod tests;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3};
 
 use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
-use crate::scene::{Arrival, MaterialId, Mesh, Plane, Scene};
+use crate::scene::{Arrival, MaterialId, Scene};
+pub use detail::Detail;
+pub use finish::{finish, occlusion};
+pub use footprint::{Cone, Footprint, curvature};
 pub use lanes::{Kinds, Surfaces};
+pub use normal_map::mapped_normal;
 
 /// The point of a surface that a ray hit.
 #[derive(Clone, Copy, Debug)]
@@ -28,17 +36,6 @@ pub struct Surface {
     pub material: MaterialId,
     /// What was hit.
     pub id: PrimitiveId,
-}
-
-/// What only textures, checkers and vertex colours ask of a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Detail {
-    /// Texture coordinates, v running down.
-    pub uv: [f32; 2],
-    /// What the material's diffuse colour is multiplied with: a mesh's vertex colour, or white.
-    pub tint: Vec3,
-    /// The diffuse colour in place of the material's: a plane's checker.
-    pub checker: Option<Vec3>,
 }
 
 impl Surface {
@@ -91,67 +88,6 @@ impl Surface {
     }
 }
 
-impl Detail {
-    /// The detail of `hit` at `position`, where the geometric normal is `normal`; with texture
-    /// coordinates if it is `textured`.
-    ///
-    /// # Panics
-    /// When the hit is not one of this scene.
-    pub fn new(scene: &Scene, hit: &Hit, position: DVec3, normal: DVec3, textured: bool) -> Self {
-        let mut detail = Self { uv: [0.0; 2], tint: Vec3::ONE, checker: None };
-        match hit.id.geometry {
-            Geometry::Spheres if textured => detail.uv = longitude_latitude(normal),
-            Geometry::Spheres => {}
-            Geometry::Planes => {
-                let plane = &scene.planes[hit.id.primitive as usize];
-                detail.of_plane(plane, position, textured);
-            }
-            Geometry::Mesh(mesh) => {
-                let mesh = &scene.meshes[mesh as usize];
-                detail.of_mesh(mesh, hit, textured);
-            }
-        }
-        detail
-    }
-
-    fn of_plane(&mut self, plane: &Plane, position: DVec3, textured: bool) {
-        if !textured && plane.checker.is_none() {
-            return;
-        }
-        let (a, b) = plane.axes();
-        let from = position - plane.point;
-        let (x, y) = (from.dot(a), from.dot(b));
-        // The whole part is taken off in f64, so that the pattern stays sharp far out.
-        if textured {
-            self.uv = [x, y].map(|x| {
-                let repeats = x / plane.texture_size;
-                (repeats - repeats.floor()) as f32
-            });
-        }
-        self.checker = plane.checker.map(|checker| {
-            let odd = |x: f64| {
-                let half = (x / checker.size).floor() * 0.5;
-                half != half.floor()
-            };
-            checker.colors[usize::from(odd(x) != odd(y))]
-        });
-    }
-
-    fn of_mesh(&mut self, mesh: &Mesh, hit: &Hit, textured: bool) {
-        let vertices = mesh.triangles[hit.id.primitive as usize];
-        let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
-        if textured && !mesh.uvs.is_empty() {
-            for (&i, w) in vertices.iter().zip(weights) {
-                self.uv = std::array::from_fn(|k| self.uv[k] + mesh.uvs[i as usize][k] * w as f32);
-            }
-        }
-        if !mesh.colors.is_empty() {
-            let tint = |(&i, w): (&u32, f64)| Vec3::from(mesh.colors[i as usize]) * w as f32;
-            self.tint = vertices.iter().zip(weights).map(tint).sum();
-        }
-    }
-}
-
 fn base(id: PrimitiveId, position: DVec3, normal: DVec3, material: MaterialId) -> Surface {
     Surface { position, geometric_normal: normal, normal, side: Side::Front, material, id }
 }
@@ -168,15 +104,6 @@ fn on_sphere(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
 #[inline(always)]
 fn normal_of_sphere(center: DVec3, point: DVec3) -> DVec3 {
     (point - center).normalize_or(DVec3::Y)
-}
-
-/// The texture coordinates of a sphere: u around the y axis, from −z through +x (the picture's
-/// middle is +z), v from the pole +y down.
-fn longitude_latitude(normal: DVec3) -> [f32; 2] {
-    use std::f64::consts::{PI, TAU};
-    let u = 0.5 + normal.x.atan2(normal.z) / TAU;
-    let v = normal.y.clamp(-1.0, 1.0).acos() / PI;
-    [u as f32, v as f32]
 }
 
 fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
@@ -221,15 +148,14 @@ fn smooth_normal(scene: &Scene, hit: &Hit, geometric: DVec3) -> Option<DVec3> {
         .zip(weights)
         .map(|(&i, w)| DVec3::from(mesh.normals[i as usize].map(f64::from)) * w)
         .sum();
-    // Normals go with the inverse transpose; its columns are, up to the determinant, the
-    // cross products of the matrix's columns.
-    let m = &instance.transform.matrix3;
-    let cofactor = glam::DMat3::from_cols(
-        m.y_axis.cross(m.z_axis),
-        m.z_axis.cross(m.x_axis),
-        m.x_axis.cross(m.y_axis),
-    );
-    let smooth = (cofactor * local).normalize_or(geometric);
+    let smooth = (cofactor(&instance.transform.matrix3) * local).normalize_or(geometric);
     // Files disagree about winding; the interpolated normal only bends the geometric one.
     Some(if smooth.dot(geometric) < 0.0 { -smooth } else { smooth })
+}
+
+/// What normals go with: the inverse transpose, whose columns are, up to the determinant, the cross
+/// products of the matrix's columns.
+#[inline]
+fn cofactor(m: &DMat3) -> DMat3 {
+    DMat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis))
 }

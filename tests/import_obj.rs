@@ -5,7 +5,7 @@ mod common;
 
 use common::{Folder, assert_warns, png};
 use envers::error::{Error, Place};
-use envers::scene::{Material, Scene, Wrap};
+use envers::scene::{Material, Scene, Texels, Wrap};
 use glam::Vec3;
 
 /// A triangle's vertices.
@@ -412,7 +412,7 @@ fn texture_file_with_options_spaces_and_windows_paths() {
         folder.write(file, png(&[RED]));
         let (scene, m) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {value}"));
         let map = &scene.textures[m.diffuse_map.unwrap().0 as usize];
-        assert_eq!(map.image.texels, [RED], "{value}");
+        assert_eq!(map.image.texels, Texels::Bytes(vec![RED]), "{value}");
         assert_eq!(m.diffuse, Vec3::ONE);
     }
 }

@@ -156,13 +156,9 @@ fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).colors = vec![[0.5; 3]; 4];
-    let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[51; 4]] };
-    let texture = scene.add_texture(Texture {
-        image: image.into(),
-        transfer: Transfer::None,
-        wrap: Default::default(),
-        filter: Default::default(),
-    });
+    let image = Image::bytes("", [1, 1], vec![[51; 4]]);
+    let texture = Texture { transfer: Transfer::None, ..Texture::new(image.into()) };
+    let texture = scene.add_texture(texture);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).uvs = vec![[0.0; 2]; 4];
     scene.materials[0].diffuse_map = Some(texture);
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
@@ -189,12 +185,11 @@ fn a_picture_on_a_wall_has_its_upper_left_corner_at_the_planes_point() {
     plane.texture_size = 8.0;
     scene.planes.push(plane);
     let texels = (0..16).map(|i| [i * 16; 4]).collect();
-    let image = Image { name: String::new(), width: 4, height: 4, texels };
+    let image = Image::bytes("", [4, 4], texels);
     let texture = scene.add_texture(Texture {
-        image: image.into(),
         transfer: Transfer::None,
-        wrap: Default::default(),
         filter: Filter::Nearest,
+        ..Texture::new(image.into())
     });
     scene.materials[0].diffuse_map = Some(texture);
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));

@@ -16,9 +16,8 @@ pub(super) struct Clearance {
 
 impl Clearance {
     pub fn of(scene: &Scene) -> Self {
-        let transmits = |id: MaterialId| {
-            scene.materials.get(id.0 as usize).is_some_and(|m| m.transmit != glam::Vec3::ZERO)
-        };
+        let transmits =
+            |id: MaterialId| scene.materials.get(id.0 as usize).is_some_and(|m| m.may_transmit());
         let spheres = scene.spheres.iter().filter(|s| transmits(s.material)).map(|s| s.bounds());
         let instances = scene
             .instances

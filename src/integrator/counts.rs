@@ -30,6 +30,10 @@ impl RayCounts {
 pub struct WorkCounts {
     /// Points that were shaded whose texture coordinates were worked out.
     pub uv: u64,
+    /// Points for which it was worked out how much of a picture one sample sees.
+    pub mipmaps: u64,
+    /// Points whose normal a picture was asked for.
+    pub normal_maps: u64,
     /// Points of planes that were looked up in a checker.
     pub checkers: u64,
     /// Points of meshes whose vertices were asked for colours.
@@ -128,6 +132,8 @@ impl std::ops::AddAssign for Counts {
 impl std::ops::AddAssign for WorkCounts {
     fn add_assign(&mut self, other: Self) {
         self.uv += other.uv;
+        self.mipmaps += other.mipmaps;
+        self.normal_maps += other.normal_maps;
         self.checkers += other.checkers;
         self.vertex_colors += other.vertex_colors;
         self.smooth_normals += other.smooth_normals;

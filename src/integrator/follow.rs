@@ -5,10 +5,11 @@ use glam::{DVec3, Vec3};
 use crate::geometry::{Departure, Hit, Hits, LANES, Ray, Rays, Side};
 use crate::integrator::bodies::{Around, Interiors};
 use crate::integrator::radiance::{DARK, at, put};
+use crate::integrator::shade::Bounce;
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
-use crate::scene::{Material, Scene};
-use crate::surface::Surface;
+use crate::scene::{Finish, Material, Scene};
+use crate::surface::{Cone, Surface};
 
 /// Where a ray comes from, and what it is worth.
 #[derive(Clone, Debug)]
@@ -21,6 +22,8 @@ pub(super) struct Path {
     pub throughput: DVec3,
     /// The bodies that it is in.
     pub inside: Interiors,
+    /// What of a surface it sees, where any picture is averaged.
+    pub cone: Cone,
 }
 
 /// A ray that a surface sent on.
@@ -86,7 +89,8 @@ impl Integrator<'_> {
                 self.bodies.holding(origin, self.scene, self.intersector)
             }
         };
-        Path { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside }
+        let cone = self.cone(&wave.rays.ray(i));
+        Path { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside, cone }
     }
 
     /// Adds what the rays of a wave bring back to their samples, and sends on what goes on from
@@ -117,10 +121,10 @@ impl Integrator<'_> {
                 put(to, spoilt % LANES, Vec3::NAN);
             }
         }
-        for (i, surface) in &light.bounces {
-            let (i, ray) = (*i as usize, wave.rays.ray(*i as usize));
+        for bounce in &light.bounces {
+            let (i, ray) = (bounce.ray as usize, wave.rays.ray(bounce.ray as usize));
             if let Some(hit) = &wave.hits.get(i) {
-                self.send_on(&ray, hit, surface, &self.path(wave, i), &mut |sent| {
+                self.send_on(&ray, hit, bounce, &self.path(wave, i), &mut |sent| {
                     let of_kind = match sent.is_refracted {
                         true => &mut counts.rays.refraction,
                         false => &mut counts.rays.reflection,
@@ -149,12 +153,13 @@ impl Integrator<'_> {
                 path.throughput *= self.absorbed(&ray, end, &path.inside);
                 let Some(hit) = &hit else { continue };
                 let material = &self.scene.materials[self.scene.material_of(hit.id).0 as usize];
-                if material.transmit == Vec3::ZERO {
+                if !material.may_transmit() {
                     continue;
                 }
                 let surface = Surface::new(self.scene, &ray, hit);
                 let around = self.bodies.around(hit.id, surface.side, &path.inside);
-                if self.is_clear(material, &around) {
+                let finish = self.finish_at(&ray, hit, &surface, &path.cone);
+                if self.is_clear(material, &finish, &around) {
                     let beyond = ray.beyond(hit, surface.side.opposite());
                     rays.set(at, &beyond);
                     path.inside = around.behind;
@@ -173,10 +178,10 @@ impl Integrator<'_> {
 
     /// Whether a surface is none: hidden in another body, or clear and with the same index of
     /// refraction on both sides.
-    pub(super) fn is_clear(&self, material: &Material, around: &Around) -> bool {
+    pub(super) fn is_clear(&self, material: &Material, finish: &Finish, around: &Around) -> bool {
         let ior = |inside| self.bodies.medium(inside).ior;
         let behind = if material.thin { material.ior } else { ior(&around.behind) };
-        let clear = material.transmit == Vec3::ONE && material.emission == Vec3::ZERO;
+        let clear = finish.transmit == Vec3::ONE && finish.emission == Vec3::ZERO;
         around.is_hidden || (clear && ior(&around.before) == behind)
     }
 
@@ -185,21 +190,26 @@ impl Integrator<'_> {
         &self,
         ray: &Ray,
         hit: &Hit,
-        surface: &Surface,
+        bounce: &Bounce,
         path: &Path,
         next: &mut impl FnMut(Next),
     ) {
         if path.depth >= self.scene.film.max_depth {
             return;
         }
-        let material = &self.scene.materials[surface.material.0 as usize];
+        let Bounce { surface, finish, .. } = bounce;
+        let length = hit.t * ray.direction.length();
         let around = self.bodies.around(surface.id, surface.side, &path.inside);
-        let scattered = self.scatter(material, surface, &around, ray.direction.normalize());
+        let scattered = self.scatter(finish, surface, &around, ray.direction.normalize());
         let mut send = |ray: Ray, share: DVec3, is_refracted: bool, inside: Interiors| {
             let throughput = path.throughput * share;
             if throughput.max_element() > self.scene.film.cutoff.max(NOTHING) {
                 let (sample, depth) = (path.sample, path.depth + 1);
-                let path = Path { sample, depth, throughput, inside };
+                let cone = match ray.past {
+                    Some(_) => path.cone,
+                    None => self.cone_onward(&path.cone, length, surface, is_refracted),
+                };
+                let path = Path { sample, depth, throughput, inside, cone };
                 next(Next { ray, is_refracted, path });
             }
         };
@@ -257,6 +267,7 @@ mod tests {
             depth: 1,
             throughput: DVec3::ONE,
             inside: Interiors::default(),
+            cone: Cone::default(),
         };
         samples.iter().map(path).collect()
     }

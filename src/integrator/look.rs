@@ -4,62 +4,57 @@ use glam::Vec3;
 
 use crate::geometry::{Geometry, Hit};
 use crate::integrator::counts::WorkCounts;
-use crate::scene::{Material, Scene, Skips, TextureId, Work};
+use crate::scene::{Finish, Material, Mesh, Scene, Skips, Work};
 use crate::shading::Reflectance;
-use crate::surface::Detail;
+use crate::surface::{self, Detail};
 
 /// A material as it looks where no texture, checker or vertex colour tells otherwise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Look {
+    /// What it does with light.
+    pub finish: Finish,
     /// What of the light it scatters, less what is seen in it and through it.
     pub reflectance: Reflectance,
-    /// What it sends out itself.
-    pub emission: Vec3,
-    /// The share that is neither reflected nor let through.
-    rest: Vec3,
     /// Whether all of it is finite.
     pub is_finite: bool,
     /// Whether it is asked for a highlight.
     pub shines: bool,
     /// Whether it is asked for texture coordinates.
     pub is_textured: bool,
+    /// Whether it is asked for a normal map.
+    pub has_normals: bool,
     /// Whether it is asked where it sends light on.
     pub is_followed: bool,
 }
 
 impl Look {
-    pub fn of(material: &Material, skips: Skips) -> Self {
-        let rest = (Vec3::ONE - material.reflect - material.transmit).max(Vec3::ZERO);
-        let reflectance = Reflectance {
-            diffuse: material.diffuse * rest,
-            specular: material.specular * rest,
-            shininess: material.shininess,
+    pub fn of(scene: &Scene, material: &Material, skips: Skips) -> Self {
+        // A material that nothing is made of may have pictures that were not read.
+        let finish = match material.is_textured() {
+            true => material.finish(),
+            false => surface::finish(scene, material, &Detail::default()),
         };
-        let emission = material.emission;
+        let reflectance = scattered(&finish);
+        let highlight = reflectance.specular != Vec3::ZERO || material.metallic.is_some();
         Self {
+            finish,
             reflectance,
-            emission,
-            rest,
-            is_finite: emission.is_finite() && reflectance.diffuse.is_finite(),
-            shines: skips.does(Work::Highlights, reflectance.specular != Vec3::ZERO),
+            is_finite: finish.emission.is_finite() && reflectance.diffuse.is_finite(),
+            shines: skips.does(Work::Highlights, highlight),
             is_textured: skips.does(Work::Uv, material.is_textured()),
+            has_normals: skips.does(Work::NormalMaps, material.normal_map.is_some()),
             is_followed: skips.does(Work::Reflection, material.is_followed()),
         }
     }
+}
 
-    /// Emission and diffuse reflectance with the detail of a point.
-    #[inline(never)]
-    pub fn with(&self, scene: &Scene, material: &Material, detail: &Detail) -> (Vec3, Vec3) {
-        let texture = |map: Option<TextureId>| {
-            map.map_or(Vec3::ONE, |id| scene.textures[id.0 as usize].color(detail.uv))
-        };
-        let diffuse = detail.checker.unwrap_or(material.diffuse);
-        let diffuse = diffuse * texture(material.diffuse_map) * detail.tint * self.rest;
-        let emission = match material.emission == Vec3::ZERO {
-            true => Vec3::ZERO,
-            false => material.emission * texture(material.emission_map),
-        };
-        (emission, diffuse)
+/// What of the light a surface scatters: of the share that is neither reflected nor let through.
+pub(super) fn scattered(finish: &Finish) -> Reflectance {
+    let rest = (Vec3::ONE - finish.reflect - finish.transmit).max(Vec3::ZERO);
+    Reflectance {
+        diffuse: finish.diffuse * rest,
+        specular: finish.specular * rest,
+        shininess: finish.shininess,
     }
 }
 
@@ -74,7 +69,8 @@ pub(super) struct Details {
 impl Details {
     pub fn of(scene: &Scene, skips: Skips) -> Self {
         let checkers = scene.planes.iter().map(|plane| plane.checker.is_some());
-        let colors = scene.meshes.iter().map(|mesh| !mesh.colors.is_empty());
+        let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
+        let colors = scene.meshes.iter().map(|mesh| has(mesh));
         Self {
             planes: checkers.map(|has| skips.does(Work::Checkers, has)).collect(),
             meshes: colors.map(|has| skips.does(Work::VertexColors, has)).collect(),
@@ -84,7 +80,7 @@ impl Details {
     /// Whether what was hit, whose material looks like this, is asked for any.
     #[inline(always)]
     pub fn are_asked(&self, look: &Look, hit: &Hit) -> bool {
-        look.is_textured || self.of_geometry(hit)
+        look.is_textured || look.has_normals || self.of_geometry(hit)
     }
 
     #[inline(always)]

@@ -11,6 +11,7 @@ mod adaptive;
 mod bodies;
 mod clearance;
 mod counts;
+mod details;
 mod follow;
 mod look;
 mod radiance;
@@ -34,6 +35,7 @@ pub use adaptive::{STEPS, Seen};
 use bodies::{Bodies, Interiors};
 use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts, WorkCounts};
+use details::EyeCone;
 use follow::Path;
 use look::{Details, Look};
 use radiance::{Add, DARK, Develop, Radiance, put};
@@ -60,6 +62,8 @@ pub struct Integrator<'a> {
     transmits: bool,
     /// Whether textures, checkers or vertex colours are asked for anywhere.
     has_details: bool,
+    /// How wide a ray from the eye is, where it is asked how much of a picture it sees.
+    lens: Option<EyeCone>,
     /// Whether meshes are asked for normals of their vertices.
     has_smooth_normals: bool,
     /// Whether materials are asked for highlights.
@@ -140,12 +144,19 @@ impl<'a> Integrator<'a> {
             threshold: film.adaptive.map(|adaptive| adaptive.threshold),
             follows: must(Work::Reflection) || must(Work::Refraction),
             transmits: must(Work::Refraction),
-            has_details: must(Work::Uv) || must(Work::Checkers) || must(Work::VertexColors),
+            has_details: [Work::Uv, Work::Checkers, Work::VertexColors, Work::NormalMaps]
+                .into_iter()
+                .any(must),
+            lens: must(Work::Mipmaps).then(|| EyeCone::of(&rays, &film)),
             has_smooth_normals: must(Work::SmoothNormals),
             has_highlights: must(Work::Highlights),
             asks: casts.map(|casts| skips.does(Work::Shadows, casts)).collect(),
             details: Details::of(scene, skips),
-            looks: scene.materials.iter().map(|material| Look::of(material, skips)).collect(),
+            looks: scene
+                .materials
+                .iter()
+                .map(|material| Look::of(scene, material, skips))
+                .collect(),
             arch: pulp::Arch::new(),
             may_pass: eye.as_ref() != Some(&Interiors::default())
                 || bodies.may_hide()

@@ -6,12 +6,13 @@ use proptest::prelude::*;
 
 use super::bodies::Interiors;
 use super::follow::{Next, Path};
+use super::shade::Bounce;
 use super::{Integrator, Tiling};
 use crate::film::View;
 use crate::geometry::{PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
 use crate::scene::{Camera, Lens, Material, Plane, Scene, Skips, Sphere};
-use crate::surface::Surface;
+use crate::surface::{Cone, Surface};
 
 /// A path: the surfaces that it met, whether it went through each, its share of the light, and
 /// where it came out.
@@ -37,7 +38,8 @@ fn walk(
     choices: &[bool],
 ) -> Option<Walk> {
     let mut ray = Ray::new(origin, direction);
-    let mut path = Path { sample: 0, depth: 0, throughput: DVec3::ONE, inside };
+    let mut path =
+        Path { sample: 0, depth: 0, throughput: DVec3::ONE, inside, cone: Cone::default() };
     let mut met = Vec::new();
     let mut position = origin;
     for &through in choices {
@@ -49,7 +51,7 @@ fn walk(
             let surface = Surface::new(integrator.scene, &ray, &hit);
             let around = integrator.bodies.around(hit.id, surface.side, &path.inside);
             let material = &integrator.scene.materials[surface.material.0 as usize];
-            if !integrator.is_clear(material, &around) {
+            if !integrator.is_clear(material, &material.finish(), &around) {
                 break (surface, hit);
             }
             ray = ray.beyond(&hit, surface.side.opposite());
@@ -57,11 +59,13 @@ fn walk(
         };
         // Of the two rays at most: the share that goes the chosen way, of all that goes there.
         let mut sent: Vec<Next> = Vec::new();
-        integrator.send_on(&ray, &hit, &surface, &path, &mut |next| sent.push(next));
+        let finish = integrator.finish_at(&ray, &hit, &surface, &path.cone);
+        let bounce = Bounce { ray: 0, surface, finish };
+        integrator.send_on(&ray, &hit, &bounce, &path, &mut |next| sent.push(next));
         let chosen = sent.iter().position(|next| next.is_refracted == through).unwrap_or(0);
         let next = (!sent.is_empty()).then(|| sent.swap_remove(chosen))?;
-        met.push((surface.id, next.is_refracted));
-        position = surface.position;
+        met.push((bounce.surface.id, next.is_refracted));
+        position = bounce.surface.position;
         (ray, path) = (next.ray, next.path);
     }
     let mut next = [None];

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::integrator::Integrator;
 use crate::integrator::bodies::Around;
-use crate::scene::Material;
+use crate::scene::Finish;
 use crate::shading::{Interface, reflect};
 use crate::surface::Surface;
 
@@ -21,17 +21,18 @@ impl Integrator<'_> {
     /// What becomes of light that comes along `incoming`, of length 1.
     pub(super) fn scatter(
         &self,
-        material: &Material,
+        finish: &Finish,
         surface: &Surface,
         around: &Around,
         incoming: DVec3,
     ) -> Scattered {
+        let material = &self.scene.materials[surface.material.0 as usize];
         let facing = surface.facing_normal();
         let shading = surface.normal * -surface.normal.dot(incoming).signum();
         let ior = |inside| self.bodies.medium(inside).ior;
         let by = |normal: DVec3| {
             let cosine = -normal.dot(incoming);
-            let interface = if material.transmit == Vec3::ZERO {
+            let interface = if finish.transmit == Vec3::ZERO {
                 Interface::new(cosine, 1.0, 1.0)
             } else if material.thin {
                 Interface::sheet(cosine, ior(&around.before), material.ior)
@@ -42,8 +43,7 @@ impl Integrator<'_> {
                 true => None,
                 false => interface.refract(incoming, normal),
             };
-            let (reflect_share, transmit) =
-                (material.reflect.as_dvec3(), material.transmit.as_dvec3());
+            let (reflect_share, transmit) = (finish.reflect.as_dvec3(), finish.transmit.as_dvec3());
             Scattered {
                 reflected: reflect(incoming, normal).normalize(),
                 refracted,

@@ -11,7 +11,7 @@ use crate::integrator::counts::Cause;
 use crate::integrator::radiance::{Radiance, at};
 use crate::integrator::shadow::Through;
 use crate::integrator::{Counts, Integrator, Wave};
-use crate::scene::LightKind;
+use crate::scene::{Finish, LightKind};
 use crate::surface::{Surface, Surfaces};
 use meet::Meet;
 use reach::Reach;
@@ -25,10 +25,20 @@ pub(super) struct Light {
     /// Rays of which the radiance is not finite, and is NaN here, with what made it so.
     pub spoilt: Vec<(u32, Cause)>,
     /// The mirrors and the glass that were hit, by ray.
-    pub bounces: Vec<(u32, Surface)>,
+    pub bounces: Vec<Bounce>,
     /// Room for surfaces, and how many of them are in use.
     lit: (Vec<Lit>, usize),
     shadow: Shadows,
+}
+
+/// A mirror or a glass that a ray of the wave hit.
+pub(super) struct Bounce {
+    /// The ray.
+    pub ray: u32,
+    /// The surface, its normal as a normal map bends it.
+    pub surface: Surface,
+    /// What it does with light there.
+    pub finish: Finish,
 }
 
 /// Sixteen surfaces that wait for light.
@@ -42,6 +52,10 @@ struct Lit {
     diffuse: [Lanes<f32>; 3],
     specular: [Lanes<f32>; 3],
     shininess: Lanes<f32>,
+    /// The share of the ambient light that comes there.
+    ambient: Lanes<f32>,
+    /// Whether a picture has bent any normal.
+    is_bent: bool,
     /// Whether any has a highlight.
     shines: bool,
     /// The exponent of all highlights, where they have one, and it is whole.
@@ -92,6 +106,9 @@ impl Integrator<'_> {
                     let mut with = lit.diffuse;
                     for axis in 0..3 {
                         with[axis].iter_mut().for_each(|x| *x *= light.intensity[axis]);
+                        if self.has_details {
+                            with[axis].iter_mut().zip(lit.ambient).for_each(|(x, a)| *x *= a);
+                        }
                     }
                     to.add_all(lit.block, &with, &lit.here);
                 }
@@ -138,6 +155,8 @@ impl Default for Lit {
             diffuse: [[0.0; LANES]; 3],
             specular: [[0.0; LANES]; 3],
             shininess: [0.0; LANES],
+            ambient: [1.0; LANES],
+            is_bent: false,
             shines: false,
             exponent: None,
         }

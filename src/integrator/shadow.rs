@@ -13,7 +13,7 @@ use crate::integrator::{Counts, Integrator, Wave};
 use crate::intersect::Coherence;
 use crate::scene::Shadow;
 use crate::shading::{Interface, transmittance};
-use crate::surface::Surface;
+use crate::surface::{Cone, Surface};
 
 /// Room for shadow rays that may go through glass.
 #[derive(Default)]
@@ -134,7 +134,8 @@ impl Integrator<'_> {
                 let [a, b] = [&around.before, &around.behind].map(|i| self.bodies.medium(i).ior);
                 Interface::new(cosine, a.min(b), a.max(b))
             };
-            beam.left *= material.transmit.as_dvec3() * (1.0 - interface.reflected);
+            let finish = self.finish_at(ray, hit, &surface, &Cone::default());
+            beam.left *= finish.transmit.as_dvec3() * (1.0 - interface.reflected);
         }
         beam.inside = around.behind;
         onward

@@ -32,6 +32,8 @@ pub struct Built {
     pub sphere_sets: u64,
     /// Instances in a level that was built whose meshes are in spaces of their own.
     pub instanced: u64,
+    /// Instances in a level that was built whose alpha is tested.
+    pub masked: u64,
 }
 
 impl Built {
@@ -47,6 +49,7 @@ impl Built {
             spheres_moved: each(self.spheres_moved, other.spheres_moved),
             sphere_sets: each(self.sphere_sets, other.sphere_sets),
             instanced: each(self.instanced, other.instanced),
+            masked: each(self.masked, other.masked),
         }
     }
 
@@ -185,6 +188,8 @@ impl Builder {
         };
         let moved = moved.unwrap_or_default();
         let (sphere_sets, instanced) = work;
+        let is_tested = |&i: &u32| self.skips.does(Work::AlphaTests, scene.is_masked(i));
+        let masked = (0..scene.instances.len() as u32).filter(is_tested).count() as u64;
         self.built += match built.tops {
             0 => Built {
                 tops_kept: 1,
@@ -192,7 +197,7 @@ impl Builder {
                 spheres_moved: moved.spheres.len() as u64,
                 ..built
             },
-            _ => Built { placed: stand, sphere_sets, instanced, ..built },
+            _ => Built { placed: stand, sphere_sets, instanced, masked, ..built },
         };
         self.built.reused += used.saturating_sub(built.meshes);
         Ok(intersector)

@@ -130,7 +130,7 @@ impl Primitives<'_> {
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
         let left = starts_on(self.scene, corners, ray) || lies_behind(ray, hit.t, id);
-        (!left).then_some(hit)
+        (!left && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
     }
 
     /// Where `ray` meets whatever `id` names.

@@ -11,8 +11,10 @@ mod picture;
 mod place;
 mod repair;
 mod scene_file;
+mod settle;
 mod studio;
 mod tally;
+mod tangents;
 
 use std::path::Path;
 
@@ -63,6 +65,7 @@ pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Sc
         scene.film.spp = BARE_MODEL_SPP;
         studio::light(&mut scene);
     }
+    settle::settle(&mut scene);
     scene.check().map_err(|e| e.at(path))?;
     let open = closed::open_bodies(&scene);
     scene.warnings.extend(open);

@@ -3,10 +3,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::ImageReader;
+use image::{DynamicImage, ImageReader};
 
 use crate::error::{Error, Result};
-use crate::scene::Image;
+use crate::scene::{Image, Texels};
 
 /// The longest side of a picture, in pixels, and the memory that decoding may take.
 const MAX_SIDE: u32 = 1 << 15;
@@ -21,14 +21,14 @@ pub fn read(path: &Path, wanted: bool) -> Result<Image> {
     let name = path.display().to_string();
     if !wanted {
         super::check_file(path)?;
-        return Ok(Image::unread(&name));
+        return Ok(Image::unread(name));
     }
     let bytes = super::read(path)?;
     decode(&bytes, &name, wanted).map_err(|e| e.at(path))
 }
 
-/// Decodes a picture (PNG, JPEG, WebP, TGA or BMP), if it is `wanted`; `name` says where it came
-/// from.
+/// Decodes a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR or OpenEXR), if it is `wanted`; `name`
+/// says where it came from.
 ///
 /// # Errors
 /// When it is none of these, is damaged, or is larger than 32768 pixels on a side.
@@ -49,10 +49,32 @@ pub fn decode(bytes: &[u8], name: &str, wanted: bool) -> Result<Image> {
     limits.max_image_height = Some(MAX_SIDE);
     limits.max_alloc = Some(MAX_BYTES);
     reader.limits(limits);
-    let pixels = reader.decode().map_err(fail)?.into_rgba8();
-    let (width, height) = pixels.dimensions();
-    let texels = pixels.pixels().map(|p| p.0).collect();
-    Ok(Image { name: name.to_owned(), width, height, texels })
+    let picture = reader.decode().map_err(fail)?;
+    let size = [picture.width(), picture.height()];
+    Ok(Image::new(name, size, texels(picture)))
+}
+
+/// The pixels as finely as the file has them.
+fn texels(picture: DynamicImage) -> Texels {
+    use DynamicImage as D;
+    match picture {
+        D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
+            let mut texels = pixels(picture.into_rgba32f().into_raw());
+            // What is no light is none.
+            let is_light = |x: &f32| x.is_finite() && *x >= 0.0;
+            texels.as_flattened_mut().iter_mut().filter(|x| !is_light(x)).for_each(|x| *x = 0.0);
+            Texels::Floats(texels)
+        }
+        D::ImageLuma16(_) | D::ImageLumaA16(_) | D::ImageRgb16(_) | D::ImageRgba16(_) => {
+            Texels::Words(pixels(picture.into_rgba16().into_raw()))
+        }
+        _ => Texels::Bytes(pixels(picture.into_rgba8().into_raw())),
+    }
+}
+
+/// Four values a pixel.
+fn pixels<T: Copy>(values: Vec<T>) -> Vec<[T; 4]> {
+    values.as_chunks().0.to_vec()
 }
 
 /// What stands in for a picture that cannot be had: a checker of magenta and black that nobody
@@ -60,5 +82,59 @@ pub fn decode(bytes: &[u8], name: &str, wanted: bool) -> Result<Image> {
 pub fn placeholder(name: &str) -> Image {
     let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
     let texels = vec![magenta, black, black, magenta];
-    Image { name: format!("{name} (missing)"), width: 2, height: 2, texels }
+    Image::bytes(format!("{name} (missing)"), [2, 2], texels)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::{ImageBuffer, ImageFormat, Rgb, Rgba};
+
+    fn encoded(picture: DynamicImage, format: ImageFormat) -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    }
+
+    fn decoded(picture: DynamicImage, format: ImageFormat) -> Texels {
+        decode(&encoded(picture, format), "a", true).unwrap().texels
+    }
+
+    #[test]
+    fn eight_bits_stay_eight_bits() {
+        let red = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(1, 1, Rgb([255, 0, 0])));
+        for format in [ImageFormat::Png, ImageFormat::Bmp, ImageFormat::WebP] {
+            assert_eq!(decoded(red.clone(), format), Texels::Bytes(vec![[255, 0, 0, 255]]));
+        }
+    }
+
+    #[test]
+    fn sixteen_bits_stay_sixteen_bits() {
+        let fine = DynamicImage::ImageRgb16(ImageBuffer::from_pixel(1, 1, Rgb([300, 0, 65535])));
+        let expected = Texels::Words(vec![[300, 0, 65535, 65535]]);
+        assert_eq!(decoded(fine, ImageFormat::Png), expected);
+    }
+
+    #[test]
+    fn floats_stay_floats_in_exr() {
+        let bright = Rgba([7.5f32, 0.25, 0.0, 1.0]);
+        let bright = DynamicImage::ImageRgba32F(ImageBuffer::from_pixel(1, 1, bright));
+        let expected = Texels::Floats(vec![[7.5, 0.25, 0.0, 1.0]]);
+        assert_eq!(decoded(bright, ImageFormat::OpenExr), expected);
+    }
+
+    #[test]
+    fn floats_stay_floats_in_radiance_pictures() {
+        let bright =
+            DynamicImage::ImageRgb32F(ImageBuffer::from_pixel(1, 1, Rgb([8.0f32, 2.0, 0.0])));
+        let expected = Texels::Floats(vec![[8.0, 2.0, 0.0, 1.0]]);
+        assert_eq!(decoded(bright, ImageFormat::Hdr), expected);
+    }
+
+    #[test]
+    fn floats_that_are_no_light_become_none() {
+        let odd = Rgba([f32::NAN, -1.0, f32::INFINITY, 1.0]);
+        let odd = DynamicImage::ImageRgba32F(ImageBuffer::from_pixel(1, 1, odd));
+        assert_eq!(texels(odd), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
+    }
 }

@@ -31,22 +31,38 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         }
     }
     drop_degenerate(mesh, tally, place);
-    for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len()] {
+    for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.tangents.len()] {
         debug_assert!(length == 0 || length == count);
     }
     mend_normals(mesh, tally, place);
     let mut bad = 0;
-    for uv in mesh.uvs.iter_mut().flatten().filter(|x| !x.is_finite()) {
+    let uvs = mesh.uvs.iter_mut().chain(&mut mesh.second_uvs).flatten();
+    for uv in uvs.filter(|x| !x.is_finite()) {
         *uv = 0.0;
         bad += 1;
     }
     tally.add("{} texture coordinates are not finite and become 0", bad, at);
     let mut bad = 0;
-    for color in mesh.colors.iter_mut().flatten().filter(|x| !(x.is_finite() && **x >= 0.0)) {
+    let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
+    for color in colors.filter(|x| !(x.is_finite() && **x >= 0.0)) {
         *color = 0.0;
         bad += 1;
     }
     tally.add("{} vertex colours are negative or not finite and become 0", bad, at);
+    let is_sound = |t: &[f32; 4]| {
+        let [x, y, z, sign] = *t;
+        let length = Vec3::new(x, y, z).length_squared();
+        length > 0.0 && length.is_finite() && sign.abs() == 1.0
+    };
+    let bad = mesh.tangents.iter().filter(|t| !is_sound(t)).count();
+    tally.add(
+        "{} tangents have no direction or no sign; all of the mesh are made anew",
+        bad as u64,
+        at,
+    );
+    if bad > 0 {
+        mesh.tangents.clear();
+    }
 }
 
 /// Drops triangles with two corners at one place. Those whose corners only stand in line are kept:

@@ -134,6 +134,12 @@ impl RayMaker {
         (!self.parallel).then_some(self.origin)
     }
 
+    /// The width of a pixel one unit of a ray's t away, and where the ray starts, in world units.
+    pub fn pixel(&self) -> [f64; 2] {
+        let width = self.per_pixel[0].length();
+        if self.parallel { [0.0, width] } else { [width, 0.0] }
+    }
+
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
     #[inline(always)]
     pub fn through(&self, x: f64, y: f64) -> Ray {

@@ -4,7 +4,10 @@ use glam::{DVec3, Vec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::scene::{Adaptive, Camera, Lens, LightKind, Mesh, Scene, Texture};
+use crate::scene::{
+    Adaptive, AlphaMode, Camera, Lens, LightKind, Material, MaterialId, Mesh, Scene, ShininessMap,
+    Texture,
+};
 
 /// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -62,9 +65,10 @@ impl Scene {
                 format!("{what}: ior must be from 0.01 to 100, found {}", material.ior)
             })?;
             color(|| format!("{what}: absorption"), material.absorption)?;
-            for map in [material.diffuse_map, material.emission_map].into_iter().flatten() {
-                index(|| what.clone(), "texture", map.0, self.textures.len())?;
-            }
+            material
+                .textures()
+                .try_for_each(|id| index(|| what.clone(), "texture", id.0, self.textures.len()))?;
+            check_maps(&what, material)?;
         }
         (0..self.spheres.len()).try_for_each(|i| self.check_sphere(i))?;
         for (i, plane) in self.planes.iter().enumerate() {
@@ -72,6 +76,7 @@ impl Scene {
             position(|| format!("{what}: point"), plane.point)?;
             unit(|| format!("{what}: normal"), plane.normal)?;
             index(|| what.clone(), "material", plane.material.0, self.materials.len())?;
+            self.check_unmasked(|| what.clone(), plane.material)?;
             require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
                 format!("{what}: texture_size must be above 0, found {}", plane.texture_size)
             })?;
@@ -92,7 +97,7 @@ impl Scene {
             self.check_instance(i, may_be_flat)?;
         }
         let mut shown = vec![false; self.textures.len()];
-        let maps = self.materials_in_use().flat_map(|m| [m.diffuse_map, m.emission_map]).flatten();
+        let maps = self.materials_in_use().flat_map(Material::textures);
         maps.for_each(|map| shown[map.0 as usize] = true);
         let mut textures = self.textures.iter().zip(shown).enumerate();
         textures.try_for_each(|(i, (texture, shown))| check_texture(i, texture, shown))?;
@@ -109,7 +114,16 @@ impl Scene {
             let found = sphere.radius;
             format!("sphere {i}: radius must be above 0 (and at most 1e15), found {found}")
         })?;
-        index(|| format!("sphere {i}"), "material", sphere.material.0, self.materials.len())
+        index(|| format!("sphere {i}"), "material", sphere.material.0, self.materials.len())?;
+        self.check_unmasked(|| format!("sphere {i}"), sphere.material)
+    }
+
+    /// Checks that the material of what is no mesh has no mask.
+    fn check_unmasked(&self, what: impl Fn() -> String, material: MaterialId) -> Result<()> {
+        require(!self.materials[material.0 as usize].is_masked(), || {
+            format!("{}: only meshes can have a mask", what())
+        })
+        .map_err(|e| e.help("blend its alpha instead"))
     }
 
     /// Checks instance `i`.
@@ -189,6 +203,63 @@ fn check_texture(i: usize, texture: &Texture, shown: bool) -> Result<()> {
             image.height,
             image.texels.len()
         )
+    })?;
+    require(texture.set < 2, || {
+        format!(
+            "texture {i}: there are two sets of texture coordinates, 0 and 1, not {}",
+            texture.set
+        )
+    })?;
+    require(texture.transform.is_finite(), || {
+        format!("texture {i}: its transform must be finite, found {}", texture.transform)
+    })
+}
+
+/// Checks what a material says beside its constants.
+fn check_maps(what: &str, material: &Material) -> Result<()> {
+    let channels = material.coverage.and_then(|c| c.map).into_iter();
+    let channels = channels.chain(material.occlusion_map.map(|o| o.map));
+    let metallic = material.metallic.as_deref();
+    let of_metal = metallic.map(|m| [m.metallic, m.roughness, m.specular, m.transmission]);
+    for map in channels.chain(of_metal.into_iter().flatten().flatten()) {
+        require(map.channel < 4, || {
+            format!("{what}: a picture has channels 0 to 3, not {}", map.channel)
+        })?;
+    }
+    let share = |name: &str, x: f32| {
+        require((0.0..=1.0).contains(&x), || {
+            format!("{what}: {name} must be from 0 to 1, found {x}")
+        })
+    };
+    if let Some(metallic) = metallic {
+        let f = &metallic.factors;
+        color(|| format!("{what}: the base colour"), f.base)?;
+        color(|| format!("{what}: the specular colour"), f.specular_color)?;
+        share("metallic", f.metallic)?;
+        share("roughness", f.roughness)?;
+        share("the specular factor", f.specular)?;
+        share("the transmission", f.transmission)?;
+        require(f.ior == 0.0 || (0.01..=100.0).contains(&f.ior), || {
+            format!("{what}: the ior of its metal must be 0 or from 0.01 to 100, found {}", f.ior)
+        })?;
+    }
+    if let Some(map) = &material.normal_map {
+        require(map.scale.is_finite(), || {
+            format!("{what}: the scale of its normal map must be finite, found {}", map.scale)
+        })?;
+    }
+    if let Some(map) = &material.occlusion_map {
+        share("the strength of its occlusion map", map.strength)?;
+    }
+    match material.shininess_map {
+        Some(ShininessMap::Gloss(_, factor)) => share("the gloss", factor)?,
+        Some(ShininessMap::Factor(_)) | None => {}
+    }
+    let Some(coverage) = material.coverage else { return Ok(()) };
+    share("alpha", coverage.alpha)?;
+    let is_plain = material.thin && material.ior == 1.0 && material.transmit == Vec3::ZERO;
+    require(coverage.mode != AlphaMode::Blend || is_plain, || {
+        format!("{what}: what is blended must be thin, with an ior of 1 and no transmit of its own")
     })
 }
 
@@ -199,9 +270,14 @@ fn check_mesh(i: usize, mesh: &Mesh) -> Result<()> {
     require(mesh.has_all_vertices(), || {
         format!("{what}: a triangle names a vertex that is not there ({count} vertices)")
     })?;
-    for (name, length) in
-        [("normals", mesh.normals.len()), ("uvs", mesh.uvs.len()), ("colors", mesh.colors.len())]
-    {
+    for (name, length) in [
+        ("normals", mesh.normals.len()),
+        ("uvs", mesh.uvs.len()),
+        ("second uvs", mesh.second_uvs.len()),
+        ("colors", mesh.colors.len()),
+        ("alphas", mesh.alphas.len()),
+        ("tangents", mesh.tangents.len()),
+    ] {
         require(length == 0 || length == count, || {
             format!("{what}: {length} {name} for {count} vertices")
         })?;

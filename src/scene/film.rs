@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::scene::Tone;
 
 /// How linear radiance becomes the bytes of a PNG.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Transfer {
     /// The sRGB curve (IEC 61966-2-1).

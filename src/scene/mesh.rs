@@ -30,8 +30,17 @@ pub struct Mesh {
     pub normals: Vec<[f32; 3]>,
     /// Texture coordinates for each vertex, v running down the image as in glTF.
     pub uvs: Vec<[f32; 2]>,
+    /// A second set of texture coordinates.
+    pub second_uvs: Vec<[f32; 2]>,
     /// A colour for each vertex, multiplied with the diffuse colour, linear Rec. 709.
     pub colors: Vec<[f32; 3]>,
+    /// The alpha of each vertex, multiplied with that of the material, where this has a
+    /// [`Coverage`](crate::scene::Coverage).
+    pub alphas: Vec<f32>,
+    /// For each vertex the direction along which u grows on the picture of a normal map, and the
+    /// sign of the third direction: normal × tangent · sign points up in the picture, as in glTF.
+    /// Without them a normal map is laid on by the texture coordinates of each triangle.
+    pub tangents: Vec<[f32; 4]>,
 }
 
 impl Mesh {
@@ -42,6 +51,43 @@ impl Mesh {
     #[inline(always)]
     pub fn corners(&self, triangle: u32) -> [[f32; 3]; 3] {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    }
+
+    /// The mean of what the corners of a triangle have, by their weights.
+    #[inline]
+    pub(crate) fn at<const N: usize>(
+        &self,
+        of_vertices: &[[f32; N]],
+        triangle: u32,
+        weights: [f64; 3],
+    ) -> [f32; N] {
+        let mut mean = [0.0; N];
+        for (&i, w) in self.triangles[triangle as usize].iter().zip(weights) {
+            mean = std::array::from_fn(|k| mean[k] + of_vertices[i as usize][k] * w as f32);
+        }
+        mean
+    }
+
+    /// The texture coordinates, in both sets, of a triangle's point by the weights of its corners;
+    /// 0 in a set that the mesh does not have.
+    #[inline]
+    pub(crate) fn uv(&self, triangle: u32, weights: [f64; 3]) -> [[f32; 2]; 2] {
+        [&self.uvs, &self.second_uvs].map(|uvs| match uvs.is_empty() {
+            true => [0.0; 2],
+            false => self.at(uvs, triangle, weights),
+        })
+    }
+
+    /// The alpha of a triangle's point.
+    #[inline]
+    pub(crate) fn alpha(&self, triangle: u32, weights: [f64; 3]) -> f32 {
+        match self.alphas.is_empty() {
+            true => 1.0,
+            false => {
+                let corners = self.triangles[triangle as usize].iter().zip(weights);
+                corners.map(|(&i, w)| self.alphas[i as usize] * w as f32).sum()
+            }
+        }
     }
 
     /// Whether all positions are finite.

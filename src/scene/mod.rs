@@ -4,14 +4,18 @@ pub mod animation;
 mod camera;
 pub mod check;
 pub mod closed;
+mod coverage;
 pub mod detail;
 mod faces;
 mod film;
+mod image;
 mod light;
 mod material;
 mod mesh;
+mod metallic;
 mod needs;
 mod object;
+mod pyramid;
 mod report;
 mod texture;
 mod tone;
@@ -19,14 +23,19 @@ mod tone;
 pub use camera::{Camera, Lens, RayMaker};
 pub use faces::Faces;
 pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
+pub use image::{Image, Texel, Texels};
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
-pub use material::{Material, MaterialId};
+pub use material::{
+    AlphaMode, Coverage, Material, MaterialId, NormalMap, OcclusionMap, ShininessMap,
+};
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
+pub use metallic::{Finish, Metallic, MetallicMaps, sharpness, shininess};
 pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
+pub use pyramid::{Level, Pyramid};
 pub use report::{DropReason, Report};
-pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
+pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
 pub use tone::Tone;
 
 use std::sync::Arc;
@@ -107,7 +116,7 @@ impl Scene {
     #[inline(always)]
     pub fn blocks_light(&self, id: PrimitiveId) -> bool {
         let material = || self.materials.get(self.material_of(id).0 as usize);
-        self.casts_shadow(id) && material().is_none_or(|m| m.transmit == glam::Vec3::ZERO)
+        self.casts_shadow(id) && material().is_none_or(|m| !m.may_transmit())
     }
 
     /// Whether a primitive keeps light from what lies behind it, or some of it.

@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::error::{Error, Result};
-use crate::scene::{Image, Material, Scene};
+use crate::scene::{Image, Material, Mesh, Scene, TextureId};
 
 /// A kind of work that not every scene needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -19,6 +19,12 @@ pub enum Work {
     Pictures,
     /// Texture coordinates.
     Uv,
+    /// How much of a picture each ray sees.
+    Mipmaps,
+    /// Normals from pictures.
+    NormalMaps,
+    /// Alpha, where a mask cuts holes into a mesh.
+    AlphaTests,
     /// Checkers on planes.
     Checkers,
     /// Colours of vertices.
@@ -37,12 +43,15 @@ pub enum Work {
 
 impl Work {
     /// All kinds, in the order in which they are listed.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Spheres,
         Self::Instances,
         Self::Planes,
         Self::Pictures,
         Self::Uv,
+        Self::Mipmaps,
+        Self::NormalMaps,
+        Self::AlphaTests,
         Self::Checkers,
         Self::VertexColors,
         Self::SmoothNormals,
@@ -60,6 +69,9 @@ impl Work {
             Self::Planes => "planes",
             Self::Pictures => "pictures",
             Self::Uv => "uv",
+            Self::Mipmaps => "mipmaps",
+            Self::NormalMaps => "normal-maps",
+            Self::AlphaTests => "alpha-tests",
             Self::Checkers => "checkers",
             Self::VertexColors => "vertex-colors",
             Self::SmoothNormals => "smooth-normals",
@@ -148,23 +160,31 @@ impl Needs {
             Work::Planes => count(scene.planes.len()),
             Work::Pictures => (shown, pictures(scene, scene.materials.iter()).len() as u64),
             Work::Uv => made_of(Material::is_textured),
+            Work::Mipmaps => {
+                let averaged = |id: TextureId| scene.textures[id.0 as usize].mipmap;
+                let some = materials.iter().filter(|m| m.textures().any(averaged)).count();
+                among(some, materials.len())
+            }
+            Work::NormalMaps => made_of(|m| m.normal_map.is_some()),
+            Work::AlphaTests => made_of(Material::is_masked),
             Work::Checkers => {
                 let checkers = scene.planes.iter().filter(|p| p.checker.is_some());
                 among(checkers.count(), scene.planes.len())
             }
             Work::VertexColors => {
-                among(standing().filter(|(mesh, _)| !mesh.colors.is_empty()).count(), meshes)
+                let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
+                among(standing().filter(|(mesh, _)| has(mesh)).count(), meshes)
             }
             Work::SmoothNormals => {
                 among(standing().filter(|(mesh, _)| !mesh.normals.is_empty()).count(), meshes)
             }
-            Work::Highlights => made_of(|m| m.specular != Vec3::ZERO),
+            Work::Highlights => made_of(|m| m.specular != Vec3::ZERO || m.metallic.is_some()),
             Work::Shadows => {
                 let casting = scene.lights.iter().filter(|light| light.casts_shadow());
                 among(casting.count(), scene.lights.len())
             }
             Work::Reflection => made_of(Material::is_followed),
-            Work::Refraction => made_of(|m| m.transmit != Vec3::ZERO),
+            Work::Refraction => made_of(Material::may_transmit),
         });
         Self { counts, skips }
     }
@@ -202,6 +222,9 @@ impl Needs {
             Work::Planes => of("planes", "are tried"),
             Work::Pictures => of("pictures", "are on a material in use"),
             Work::Uv => of("materials in use", "have a picture"),
+            Work::Mipmaps => of("materials in use", "have a picture with mipmaps"),
+            Work::NormalMaps => of("materials in use", "have a normal map"),
+            Work::AlphaTests => of("materials in use", "have a mask"),
             Work::Checkers => of("planes", "have a checker"),
             Work::VertexColors => of("meshes", "have colours"),
             Work::SmoothNormals => of("meshes", "have normals"),
@@ -218,7 +241,7 @@ pub(in crate::scene) fn pictures<'a>(
     scene: &'a Scene,
     materials: impl Iterator<Item = &'a Material>,
 ) -> Vec<&'a Image> {
-    let maps = materials.flat_map(|m| [m.diffuse_map, m.emission_map]).flatten();
+    let maps = materials.flat_map(Material::textures);
     let mut found: Vec<&Image> = maps.map(|map| &*scene.textures[map.0 as usize].image).collect();
     found.sort_by_key(|image| std::ptr::from_ref(*image));
     found.dedup_by_key(|image| std::ptr::from_ref(*image));
@@ -228,7 +251,7 @@ pub(in crate::scene) fn pictures<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Instance, Mesh, Plane, Sphere};
+    use crate::scene::{Instance, Plane, Sphere};
     use glam::{DAffine3, DVec3};
 
     fn skipped(scene: &Scene, skips: Skips) -> Vec<&'static str> {

@@ -242,6 +242,14 @@ impl Surfaces {
         at(&self.normal, i)
     }
 
+    /// Changes the normal to shade with in lane `i`.
+    #[inline(always)]
+    pub fn set_normal(&mut self, i: usize, normal: DVec3) {
+        for axis in 0..3 {
+            self.normal[axis][i] = normal[axis];
+        }
+    }
+
     /// The side that the viewer sees in lane `i`.
     #[inline(always)]
     pub fn side(&self, i: usize) -> Side {

@@ -1,6 +1,6 @@
 use super::*;
-use crate::scene::{Checker, Instance, Material, Mesh, Plane, Sphere};
-use glam::DAffine3;
+use crate::scene::{Checker, Image, Instance, Material, Mesh, Plane, Sphere, Texture};
+use glam::{DAffine3, Vec3};
 
 fn scene() -> Scene {
     let mut scene = Scene::default();
@@ -23,14 +23,8 @@ fn scene() -> Scene {
 
 /// Gives the material a picture, so that texture coordinates are asked for.
 fn add_texture(scene: &mut Scene) {
-    let image =
-        crate::scene::Image { name: String::new(), width: 1, height: 1, texels: vec![[255; 4]] };
-    let texture = scene.add_texture(crate::scene::Texture {
-        image: image.into(),
-        transfer: crate::scene::Transfer::None,
-        wrap: Default::default(),
-        filter: Default::default(),
-    });
+    let image = Image::bytes("", [1, 1], vec![[255; 4]]);
+    let texture = scene.add_texture(Texture::new(image.into()));
     scene.materials[0].diffuse_map = Some(texture);
 }
 
@@ -41,7 +35,7 @@ fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
 fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> Detail {
     let surface = Surface::new(scene, ray, hit);
     let textured = scene.materials[surface.material.0 as usize].is_textured();
-    Detail::new(scene, hit, surface.position, surface.geometric_normal, textured)
+    Detail::of(scene, hit, &surface, textured)
 }
 
 #[test]
@@ -93,7 +87,7 @@ fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
         add_texture(&mut scene);
         (scene.planes[0].point, scene.planes[0].texture_size) = (DVec3::new(1.0, 0.0, 2.0), 4.0);
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
-        detail(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).uv
+        detail(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).point.uv[0]
     };
     assert_eq!([uv(1.0, 2.0), uv(2.0, 5.0)], [[0.0, 0.0], [0.25, 0.75]]);
     assert_eq!([uv(6.0, 1.0), uv(-3.0, -2.0)], [[0.25, 0.75], [0.0, 0.0]]);
@@ -107,7 +101,7 @@ fn attributes_are_interpolated_by_the_weights() {
     let id = PrimitiveId::triangle(0, 0, 0);
     let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
     let detail = detail(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
-    assert_eq!(detail.uv, [0.25, 0.5]);
+    assert_eq!(detail.point.uv[0], [0.25, 0.5]);
     assert_eq!(detail.tint, Vec3::new(0.25, 0.25, 0.5));
     let expected = DVec3::new(0.25, 0.5, 1.0).normalize();
     assert!((surface.normal - expected).length() < 1e-15);

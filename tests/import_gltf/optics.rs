@@ -1,6 +1,9 @@
 //! Metals that mirror, transmission, volumes, alpha.
 
 use super::*;
+use envers::geometry::PrimitiveId;
+use envers::scene::Finish;
+use envers::surface::Detail;
 use serde_json::Value;
 
 /// What a material becomes, of which there is nothing to say.
@@ -69,14 +72,6 @@ fn what_is_no_metal_mirrors_nothing() {
 }
 
 #[test]
-fn a_pictured_metal_mirrors_in_the_pictures_mean_with_a_warning() {
-    let source = json!({"pbrMetallicRoughness": {"metallicFactor": 1.0, "roughnessFactor": 0.0}});
-    let scene = pictured([255, 0, 0, 255], source);
-    assert!(close(material(&scene).reflect, [1.0, 0.0, 0.0]));
-    assert_warns(&scene, "by their mean alone");
-}
-
-#[test]
 fn transmission_without_volume_is_a_thin_wall() {
     let m = made(glass([1.0, 0.5, 0.25, 1.0], transmission(1.0)));
     assert!(close(m.transmit, [1.0, 0.5, 0.25]), "{}", m.transmit);
@@ -89,20 +84,6 @@ fn what_is_not_transmitted_is_scattered_as_the_file_means() {
     let scattered = (Vec3::ONE - m.reflect - m.transmit) * m.diffuse;
     assert!(close(m.transmit, [0.75, 0.375, 0.1875]), "{}", m.transmit);
     assert!(close(scattered, [0.25, 0.125, 0.0625]), "{scattered}");
-}
-
-#[test]
-fn a_transmission_texture_counts_by_its_mean() {
-    let mut model = Model::triangle();
-    model.json["images"] = json!([{"uri": data_uri(&png(&[[255, 0, 0, 255], [0; 4]]))}]);
-    model.json["textures"] = json!([{"source": 0}]);
-    let extension = json!({"KHR_materials_transmission": {
-        "transmissionFactor": 0.5, "transmissionTexture": {"index": 0},
-    }});
-    model.material(glass([1.0; 4], extension));
-    let scene = model.load().unwrap();
-    assert!(close(material(&scene).transmit, [0.25; 3]));
-    assert_warns(&scene, "their mean holds");
 }
 
 #[test]
@@ -206,16 +187,6 @@ fn a_body_that_is_not_closed_is_a_warning() {
 }
 
 #[test]
-fn blended_alpha_is_seen_straight_through() {
-    let mut source = glass([1.0, 0.5, 0.25, 0.25], json!({}));
-    source["alphaMode"] = "BLEND".into();
-    source["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
-    let m = made(source);
-    assert_eq!((m.transmit, m.thin, m.ior), (Vec3::splat(0.75), true, 1.0));
-    assert!(close(m.diffuse, [1.0, 0.5, 0.25]) && close(m.emission, [0.25; 3]));
-}
-
-#[test]
 fn alpha_counts_for_nothing_unless_the_mode_says_so() {
     assert_eq!(made(glass([1.0, 1.0, 1.0, 0.25], json!({}))).transmit, Vec3::ZERO);
 }
@@ -225,29 +196,6 @@ fn blended_alpha_of_1_is_opaque_and_no_matter() {
     let mut source = glass([1.0; 4], json!({}));
     source["alphaMode"] = "BLEND".into();
     assert_eq!(made(source).transmit, Vec3::ZERO);
-}
-
-#[test]
-fn masked_alpha_is_all_or_nothing() {
-    for (alpha, cutoff, through) in [(0.4, None, 1.0), (0.6, None, 0.0), (0.6, Some(0.7), 1.0)] {
-        let mut source = glass([1.0, 1.0, 1.0, alpha], json!({}));
-        source["alphaMode"] = "MASK".into();
-        if let Some(cutoff) = cutoff {
-            source["alphaCutoff"] = cutoff.into();
-        }
-        assert_eq!(made(source).transmit, Vec3::splat(through), "{alpha} at {cutoff:?}");
-    }
-}
-
-#[test]
-fn alpha_of_a_picture_is_left_out_with_a_warning() {
-    for (mode, words) in [("BLEND", "as if their picture had no alpha"), ("MASK", "drawn whole")] {
-        let scene = pictured([255, 255, 255, 100], json!({"alphaMode": mode}));
-        assert_eq!(material(&scene).transmit, Vec3::ZERO);
-        assert_warns(&scene, words);
-        let opaque = pictured([255; 4], json!({"alphaMode": mode}));
-        assert_eq!(opaque.warnings, [""; 0]);
-    }
 }
 
 #[test]
@@ -275,4 +223,72 @@ fn transmission_and_volume_can_be_required() {
         json!(["KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior"]);
     model.json["extensionsUsed"] = model.json["extensionsRequired"].clone();
     assert_eq!(model.load().unwrap().warnings, [""; 0]);
+}
+
+/// What the material does with light.
+fn finish(scene: &Scene) -> Finish {
+    envers::surface::finish(scene, material(scene), &Detail::default())
+}
+
+#[test]
+fn a_transmission_texture_counts_point_by_point() {
+    let mut model = Model::triangle();
+    model.json["images"] = json!([{"uri": data_uri(&png(&[[51, 255, 255, 255]]))}]);
+    model.json["textures"] = json!([{"source": 0}]);
+    let extension = json!({"KHR_materials_transmission": {
+        "transmissionFactor": 0.5, "transmissionTexture": {"index": 0},
+    }});
+    model.material(glass([1.0; 4], extension));
+    assert!(close(finish(&model.load().unwrap()).transmit, [0.1; 3]));
+}
+
+#[test]
+fn blended_alpha_is_seen_straight_through() {
+    let mut source = glass([1.0, 0.5, 0.25, 0.25], json!({}));
+    source["alphaMode"] = "BLEND".into();
+    source["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
+    let mut model = Model::triangle();
+    model.material(source);
+    let scene = model.load().unwrap();
+    let (m, f) = (material(&scene), finish(&scene));
+    assert_eq!((f.transmit, m.thin, m.ior), (Vec3::splat(0.75), true, 1.0));
+    assert!(close(f.diffuse, [1.0, 0.5, 0.25]) && close(f.emission, [0.25; 3]));
+}
+
+#[test]
+fn the_alpha_of_a_picture_is_blended() {
+    let scene = pictured([255, 255, 255, 51], json!({"alphaMode": "BLEND"}));
+    assert!(close(finish(&scene).transmit, [0.8; 3]));
+}
+
+#[test]
+fn the_alpha_of_vertices_is_blended() {
+    let mut model = Model::triangle();
+    let colors = model.floats("VEC4", &[1., 1., 1., 0.5, 1., 1., 1., 0.5, 1., 1., 1., 0.5]);
+    model.primitive()["attributes"]["COLOR_0"] = colors.into();
+    model.material(json!({"alphaMode": "BLEND"}));
+    let scene = model.load().unwrap();
+    assert_eq!(scene.meshes[0].alphas, [0.5; 3]);
+    assert!(material(&scene).coverage.is_some());
+}
+
+#[test]
+fn a_picture_without_alpha_asks_for_no_alpha() {
+    for mode in ["BLEND", "MASK"] {
+        let scene = pictured([255; 4], json!({"alphaMode": mode}));
+        assert_eq!(material(&scene).coverage, None, "{mode}");
+    }
+}
+
+#[test]
+fn masked_alpha_is_all_or_nothing() {
+    let id = PrimitiveId::triangle(0, 0, 0);
+    for (alpha, cutoff, is_cut) in [(102, None, true), (153, None, false), (153, Some(0.7), true)] {
+        let mut source = json!({"alphaMode": "MASK"});
+        if let Some(cutoff) = cutoff {
+            source["alphaCutoff"] = cutoff.into();
+        }
+        let scene = pictured([255, 255, 255, alpha], source);
+        assert_eq!(scene.is_cut_out(id, 0.1, 0.1), is_cut, "{alpha} at {cutoff:?}");
+    }
 }

@@ -1,11 +1,12 @@
 //! Pictures, samplers and texture coordinates.
 
-use envers::scene::{Filter, Texture, Wrap};
+use envers::scene::{Filter, Texels, Texture, TextureId, Wrap};
 
 use super::*;
 
 fn diffuse_map(scene: &Scene) -> &Texture {
-    &scene.textures[material(scene).diffuse_map.unwrap().0 as usize]
+    let map = material(scene).metallic.as_ref().unwrap().base;
+    &scene.textures[map.unwrap().0 as usize]
 }
 
 /// A triangle with texture coordinates and a base colour texture.
@@ -24,7 +25,7 @@ const RED: [u8; 4] = [255, 0, 0, 255];
 #[test]
 fn picture_in_a_data_uri() {
     let scene = textured(json!({"uri": data_uri(&png(&[RED]))})).load().unwrap();
-    assert_eq!(diffuse_map(&scene).image.texels, [RED]);
+    assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
@@ -32,7 +33,7 @@ fn picture_in_a_buffer_view_without_a_mime_type() {
     let mut model = textured(json!({}));
     let view = model.view(&png(&[RED]));
     model.json["images"][0]["bufferView"] = view.into();
-    assert_eq!(diffuse_map(&model.load().unwrap()).image.texels, [RED]);
+    assert_eq!(diffuse_map(&model.load().unwrap()).image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
@@ -42,7 +43,7 @@ fn picture_in_a_file_whose_name_is_encoded() {
         let name = uri.replace('\\', "/").replace("%20", " ").replace("%C3%A9", "é");
         folder.write(&name, png(&[RED]));
         let scene = textured(json!({"uri": uri})).load_in(&folder).unwrap();
-        assert_eq!(diffuse_map(&scene).image.texels, [RED], "{uri}");
+        assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]), "{uri}");
     }
 }
 
@@ -51,7 +52,7 @@ fn picture_in_a_file_with_a_percent_sign_of_its_own() {
     let folder = Folder::new();
     folder.write("50%20.png", png(&[RED]));
     let scene = textured(json!({"uri": "50%20.png"})).load_in(&folder).unwrap();
-    assert_eq!(diffuse_map(&scene).image.texels, [RED]);
+    assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
@@ -96,13 +97,86 @@ fn material_chooses_its_set_of_texture_coordinates() {
     assert_eq!(model.load().unwrap().meshes[0].uvs, [[0.5; 2]; 3]);
 }
 
+/// Where the corners of the triangle fall on the picture of a texture.
+fn on_picture(scene: &Scene, texture: &Texture) -> Vec<[f32; 2]> {
+    let mesh = &scene.meshes[0];
+    let uvs = if texture.set == 0 { &mesh.uvs } else { &mesh.second_uvs };
+    uvs.iter().map(|&uv| texture.transform.transform_point2(uv.into()).to_array()).collect()
+}
+
 #[test]
 fn texture_transform_moves_the_coordinates() {
     let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
     model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
         json!({"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2, -1]}});
-    let uvs = &model.load().unwrap().meshes[0].uvs;
-    assert_eq!(*uvs, [[0.25, 0.5], [2.25, 0.5], [0.25, -0.5]]);
+    let scene = model.load().unwrap();
+    let expected = [[0.25, 0.5], [2.25, 0.5], [0.25, -0.5]];
+    assert_eq!(on_picture(&scene, diffuse_map(&scene)), expected);
+}
+
+#[test]
+fn every_slot_has_its_own_transform_and_set() {
+    let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
+    let second = model.floats("VEC2", &[0.5; 6]);
+    model.primitive()["attributes"]["TEXCOORD_3"] = second.into();
+    let moved = |x: f32, set: u32| {
+        let transform = json!({"KHR_texture_transform": {"offset": [x, 0], "texCoord": set}});
+        json!({"index": 0, "extensions": transform})
+    };
+    let material = &mut model.json["materials"][0];
+    material["normalTexture"] = moved(1.0, 3);
+    material["occlusionTexture"] = moved(2.0, 0);
+    material["emissiveTexture"] = moved(3.0, 3);
+    material["emissiveFactor"] = json!([1, 1, 1]);
+    let scene = model.load().unwrap();
+    let m = super::material(&scene);
+    let first = |id: TextureId| on_picture(&scene, &scene.textures[id.0 as usize])[0];
+    assert_eq!(first(m.normal_map.unwrap().texture), [1.5, 0.5]);
+    assert_eq!(first(m.occlusion_map.unwrap().map.texture), [2.0, 0.0]);
+    assert_eq!(first(m.emission_map.unwrap()), [3.5, 0.5]);
+}
+
+#[test]
+fn a_third_set_of_texture_coordinates_is_a_warning() {
+    let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
+    let material = &mut model.json["materials"][0];
+    material["occlusionTexture"] = json!({"index": 0, "texCoord": 1});
+    material["normalTexture"] = json!({"index": 0, "texCoord": 2});
+    assert_warns(&model.load().unwrap(), "more than two sets of texture coordinates");
+}
+
+#[test]
+fn a_picture_is_decoded_once_however_many_textures_show_it() {
+    let uri = data_uri(&png(&[RED]));
+    let mut model = textured(json!({"uri": uri}));
+    model.json["images"] = json!([{"uri": uri}, {"uri": uri}]);
+    model.json["textures"] = json!([{"source": 0}, {"source": 1}]);
+    model.json["materials"][0]["emissiveTexture"] = json!({"index": 1});
+    model.json["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
+    let scene = model.load().unwrap();
+    let m = super::material(&scene);
+    let ids = [m.metallic.as_ref().unwrap().base.unwrap(), m.emission_map.unwrap()];
+    let [a, b] = ids.map(|id| &scene.textures[id.0 as usize].image);
+    assert!(std::sync::Arc::ptr_eq(a, b));
+}
+
+#[test]
+fn mipmaps_are_used_unless_the_sampler_says_otherwise() {
+    for (filter, mipmap) in [
+        (None, true),
+        (Some(9728), false),
+        (Some(9729), false),
+        (Some(9986), true),
+        (Some(9987), true),
+    ] {
+        let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
+        model.json["samplers"] = json!([{}]);
+        if let Some(filter) = filter {
+            model.json["samplers"][0]["minFilter"] = filter.into();
+        }
+        model.json["textures"][0]["sampler"] = 0.into();
+        assert_eq!(diffuse_map(&model.load().unwrap()).mipmap, mipmap, "{filter:?}");
+    }
 }
 
 #[test]

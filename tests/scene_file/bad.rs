@@ -80,9 +80,24 @@ fn a_key_in_the_wrong_table_is_sent_home() {
 }
 
 #[test]
-fn a_key_of_a_later_version_says_so() {
-    let error = refused_seen("[[material]]\nname = \"m\"\n¦normal_map = 1\n");
-    assert_eq!(error.message(), "`normal_map` is not supported yet");
+fn an_alpha_mode_without_a_picture_is_refused() {
+    let error = refused_seen("[[material]]\nname = \"m\"\nalpha_mode = ¦\"blend\"\n");
+    let message = "`alpha_mode` is about the alpha of a picture, and there is none";
+    assert_says(&error, message, "add a `diffuse_map`");
+}
+
+#[test]
+fn an_alpha_cutoff_without_a_mask_is_refused() {
+    let error = refused_seen("[[material]]\nname = \"m\"\nalpha_cutoff = ¦0.3\n");
+    let message = "`alpha_cutoff` is about a mask, and there is none";
+    assert_says(&error, message, "add `alpha_mode = \"mask\"`");
+}
+
+#[test]
+fn a_blended_alpha_beside_transmit_is_refused() {
+    let material = "[[material]]\nname = \"m\"\ntransmit = 1\nalpha_mode = ¦\"blend\"\n";
+    let message = "`transmit` and a blended alpha both say what is seen through it";
+    assert_says(&refused_seen(material), message, "leave one of them out");
 }
 
 #[test]

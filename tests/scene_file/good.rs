@@ -1,8 +1,8 @@
 //! What scene files mean.
 
 use envers::scene::{
-    Adaptive, Camera, Falloff, FilmSettings, Lens, Light, LightKind, Material, SamplePosition,
-    Shadow, Sphere, Tone, Transfer,
+    Adaptive, AlphaMode, Camera, Falloff, FilmSettings, Filter, Lens, Light, LightKind, Material,
+    SamplePosition, Shadow, Sphere, Tone, Transfer,
 };
 use glam::{DVec3, Vec3};
 
@@ -178,6 +178,57 @@ fn pictures_of_a_model_in_another_material_are_not_read() {
         let scene = file.load().unwrap();
         assert_eq!(scene.textures[0].image.is_read(), read, "{models}");
     }
+}
+
+/// A scene file with these keys in a material, beside a picture of one pixel that is half clear.
+fn with_dot(keys: &str) -> File {
+    let material = format!("[[material]]\nname = \"a\"\n{keys}");
+    let ball = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\nmaterial = \"a\"\n";
+    let file = File::new(format!("{}{material}{ball}", super::CAMERA));
+    let dot = image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 128]));
+    dot.save(file.beside("dot.png")).unwrap();
+    file
+}
+
+#[test]
+fn a_normal_map_is_linear_and_other_maps_are_srgb() {
+    let scene = with_dot("normal_map = \"dot.png\"\nspecular_map = \"dot.png\"\n").load().unwrap();
+    let material = &scene.materials[0];
+    let transfer = |id: envers::scene::TextureId| scene.textures[id.0 as usize].transfer;
+    assert_eq!(transfer(material.normal_map.unwrap().texture), Transfer::None);
+    assert_eq!(transfer(material.specular_map.unwrap()), Transfer::Srgb);
+    // One file, decoded once.
+    assert!(std::sync::Arc::ptr_eq(&scene.textures[0].image, &scene.textures[1].image));
+}
+
+#[test]
+fn filters_of_pictures() {
+    for (filter, expected) in [
+        ("nearest", (Filter::Nearest, false)),
+        ("linear", (Filter::Linear, false)),
+        ("mipmap", (Filter::Linear, true)),
+    ] {
+        let scene = with_dot(&format!("diffuse_map = \"dot.png\"\nfilter = \"{filter}\"\n"));
+        let scene = scene.load().unwrap();
+        assert_eq!((scene.textures[0].filter, scene.textures[0].mipmap), expected);
+    }
+}
+
+#[test]
+fn blended_alpha_makes_a_thin_sheet() {
+    let scene = with_dot("diffuse_map = \"dot.png\"\nalpha_mode = \"blend\"\n").load().unwrap();
+    let material = &scene.materials[0];
+    assert_eq!(material.coverage.unwrap().mode, AlphaMode::Blend);
+    assert_eq!((material.thin, material.ior), (true, 1.0));
+}
+
+#[test]
+fn a_mask_on_a_sphere_is_blended() {
+    let scene = with_dot("diffuse_map = \"dot.png\"\nalpha_mode = \"mask\"\nalpha_cutoff = 0.7\n");
+    let scene = scene.load().unwrap();
+    assert_eq!(scene.materials[0].coverage.unwrap().mode, AlphaMode::Mask { cutoff: 0.7 });
+    let of_ball = scene.spheres[0].material;
+    assert_eq!(scene.materials[of_ball.0 as usize].coverage.unwrap().mode, AlphaMode::Blend);
 }
 
 #[test]

@@ -4,12 +4,13 @@ use glam::Vec3;
 
 use crate::geometry::{Found, Ids, LANES};
 use crate::integrator::counts::{Cause, WorkCounts};
+use crate::integrator::look::scattered;
 use crate::integrator::radiance::{Radiance, put};
 use crate::integrator::shade::sums::Sums;
-use crate::integrator::shade::{For, Light, Lit};
+use crate::integrator::shade::{Bounce, For, Light, Lit};
 use crate::integrator::{Integrator, Wave};
 use crate::shading::{self, Reflectance};
-use crate::surface::{Detail, Surface};
+use crate::surface;
 
 /// What the rays meet: background, emission, the surfaces to be lit, mirrors and glass.
 pub(super) struct Meet<'a> {
@@ -59,7 +60,7 @@ impl Integrator<'_> {
                     work.smooth_normals += found.id.geometry.iter().filter(is_face).count() as u64;
                 }
                 let to = &mut Sums { radiance, spoilt };
-                self.look::<DETAILS>(found, lit, to, bounces, work);
+                self.look::<DETAILS>(wave, found, lit, to, bounces, work);
                 *filled += usize::from(lit.here.contains(&true));
             }
         }
@@ -69,10 +70,11 @@ impl Integrator<'_> {
     #[inline(always)]
     fn look<const DETAILS: bool>(
         &self,
+        wave: &Wave,
         found: &Found,
         lit: &mut Lit,
         to: &mut Sums<'_>,
-        bounces: &mut Vec<(u32, Surface)>,
+        bounces: &mut Vec<Bounce>,
         work: &mut WorkCounts,
     ) {
         if !DETAILS && self.look_alike(found, lit, &mut to.radiance[lit.block]) {
@@ -80,6 +82,8 @@ impl Integrator<'_> {
         }
         lit.here = [false; LANES];
         lit.shines = false;
+        lit.is_bent = false;
+        lit.ambient = [1.0; LANES];
         let mut one_exponent = true;
         let mut exponent = None;
         for i in 0..LANES {
@@ -87,23 +91,31 @@ impl Integrator<'_> {
             let ray = lit.block * LANES + i;
             let material = lit.surfaces.material[i].0 as usize;
             let look = &self.looks[material];
-            let Reflectance { mut diffuse, specular, shininess } = look.reflectance;
-            let mut emission = look.emission;
-            let mut is_finite = look.is_finite;
+            let (mut finish, mut reflectance) = (look.finish, look.reflectance);
+            let (mut is_finite, mut is_followed) = (look.is_finite, look.is_followed);
             if DETAILS && self.details.are_asked(look, &hit) {
-                let (position, normal) =
-                    (lit.surfaces.position(i), lit.surfaces.geometric_normal(i));
-                let detail = Detail::new(self.scene, &hit, position, normal, look.is_textured);
+                let surface = lit.surfaces.surface(i, hit.id);
+                let detail = self.detail(wave, ray, &hit, &surface, work);
                 self.details.count(look, &hit, work);
                 let material = &self.scene.materials[material];
-                (emission, diffuse) = look.with(self.scene, material, &detail);
-                is_finite = emission.is_finite() && diffuse.is_finite();
+                finish = surface::finish(self.scene, material, &detail);
+                reflectance = scattered(&finish);
+                is_finite = finish.emission.is_finite() && reflectance.diffuse.is_finite();
+                is_followed &= finish.is_followed() || !material.is_followed();
+                lit.ambient[i] = surface::occlusion(self.scene, material, &detail);
+                if look.has_normals {
+                    work.normal_maps += 1;
+                    let normal = surface::mapped_normal(self.scene, &surface, &hit, &detail.point);
+                    lit.is_bent |= normal != surface.normal;
+                    lit.surfaces.set_normal(i, normal);
+                }
             }
+            let Reflectance { diffuse, specular, shininess } = reflectance;
             if !(is_finite && lit.surfaces.position(i).is_finite()) {
                 to.spoil(lit.block, i, Cause::Surface);
                 continue;
             }
-            put(&mut to.radiance[lit.block], i, emission);
+            put(&mut to.radiance[lit.block], i, finish.emission);
             lit.here[i] = diffuse != Vec3::ZERO || specular != Vec3::ZERO;
             put(&mut lit.diffuse, i, diffuse);
             put(&mut lit.specular, i, specular);
@@ -112,8 +124,9 @@ impl Integrator<'_> {
                 lit.shines = true;
                 one_exponent &= *exponent.get_or_insert(shininess) == shininess;
             }
-            if look.is_followed {
-                bounces.push((ray as u32, lit.surfaces.surface(i, hit.id)));
+            if is_followed {
+                let surface = lit.surfaces.surface(i, hit.id);
+                bounces.push(Bounce { ray: ray as u32, surface, finish });
             }
         }
         lit.exponent = exponent.filter(|_| one_exponent).and_then(shading::whole);
@@ -145,9 +158,11 @@ impl Integrator<'_> {
         }
         lit.here = [diffuse != Vec3::ZERO || specular != Vec3::ZERO; LANES];
         lit.shininess = [shininess; LANES];
+        lit.ambient = [1.0; LANES];
+        lit.is_bent = false;
         lit.shines = look.shines;
         lit.exponent = shading::whole(shininess);
-        *radiance = look.emission.to_array().map(|x| [x; LANES]);
+        *radiance = look.finish.emission.to_array().map(|x| [x; LANES]);
         true
     }
 }

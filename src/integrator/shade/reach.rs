@@ -212,6 +212,14 @@ impl Shares {
                 self.here[i] &= !((found.id.geometry[i] >= Ids::MESHES) & (facing <= 0.0));
             }
         }
+        if lit.is_bent {
+            // So may a normal that a picture bends on anything else.
+            for i in 0..LANES {
+                let facing = if surfaces.is_back[i] { -over[i] } else { over[i] };
+                let is_inside = surfaces.is_back[i] & (found.id.geometry[i] == Ids::SPHERES);
+                self.here[i] &= (facing > 0.0) | is_inside;
+            }
+        }
         if !any(&self.here) {
             return;
         }

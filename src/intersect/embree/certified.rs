@@ -31,6 +31,9 @@ pub trait Shape {
 
     fn blocks_light(&self) -> bool;
 
+    /// Whether a mask may cut holes into it, so that only the exact weights of a hit tell.
+    fn is_masked(&self) -> bool;
+
     /// Whether a line may meet it: false only where it certainly passes.
     fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
 
@@ -76,6 +79,11 @@ impl Shape for Ball {
     }
 
     #[inline(always)]
+    fn is_masked(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
     fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
         sphere::certified::Line::new(self.center, self.radius, origin, direction, inverse)
             .may_cross()
@@ -104,6 +112,7 @@ struct Face {
     id: PrimitiveId,
     corners: [DVec3; 3],
     blocks_light: bool,
+    is_masked: bool,
 }
 
 impl Shape for Face {
@@ -118,7 +127,8 @@ impl Shape for Face {
         let instance = if table.instance == INVALID { context.instance } else { table.instance };
         let id = PrimitiveId::triangle(table.mesh, index, instance);
         let blocks_light = context.scene.blocks_light(id);
-        Face { id, corners: context.scene.triangle(id), blocks_light }
+        let is_masked = context.is_masked(instance);
+        Face { id, corners: context.scene.triangle(id), blocks_light, is_masked }
     }
 
     #[inline(always)]
@@ -129,6 +139,11 @@ impl Shape for Face {
     #[inline(always)]
     fn blocks_light(&self) -> bool {
         self.blocks_light
+    }
+
+    #[inline(always)]
+    fn is_masked(&self) -> bool {
+        self.is_masked
     }
 
     #[inline(always)]

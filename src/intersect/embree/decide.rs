@@ -55,7 +55,7 @@ impl<const W: usize> Context<'_, W> {
             }
             let nearer = e.upper() < self.nearest.t[i] - self.nearest.error[i];
             let clear = e.lower() > 0.0 && nearer;
-            if !clear || (self.leaves && shape.may_be_left(self, i)) {
+            if !clear || shape.is_masked() || (self.leaves && shape.may_be_left(self, i)) {
                 self.settle(i, shape.id());
             } else {
                 self.nearest.set(i, e, shape.id());
@@ -111,7 +111,8 @@ impl<const W: usize> Context<'_, W> {
             if self.leaves && shape.is_left(self, i) {
                 continue;
             }
-            let clear = e.lower() > 0.0 && e.upper() < self.exact.tmax[i] && !self.goes_on;
+            let within = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];
+            let clear = within && !self.goes_on && !shape.is_masked();
             let blocked = if clear && !(self.leaves && shape.may_be_left(self, i)) {
                 true
             } else {

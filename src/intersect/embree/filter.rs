@@ -1,12 +1,12 @@
 //! The filter that secondary rays carry: it drops the surface that a ray left, triangles that f64
-//! says are not in its way, and, for shadow rays, what blocks no light.
+//! says are not in its way, what a mask cuts out, and, for shadow rays, what blocks no light.
 //!
-//! Primary rays carry none.
+//! Primary rays carry none, unless something has a mask.
 #![allow(unsafe_code)]
 
 use embree4_sys as sys;
 
-use crate::geometry::PrimitiveId;
+use crate::geometry::{PrimitiveId, triangle};
 use crate::intersect::Precision;
 use crate::intersect::embree::layout::{Context, INVALID};
 use crate::intersect::embree::user::{ID, TFAR, in_order};
@@ -67,7 +67,8 @@ unsafe fn look_at_all<const W: usize, const SHADOW: bool>(
             true => sure_of_all(context, ray, hit),
             false => [false; W],
         };
-        if n == W && !SHADOW | context.all_block && sure_are_valid(&sure, args.valid) {
+        let all_count = (!SHADOW | context.all_block) & context.masked.is_empty();
+        if n == W && all_count && sure_are_valid(&sure, args.valid) {
             return;
         }
         for slot in 0..n {
@@ -175,7 +176,7 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     sure: bool,
     [prim, geom, inst]: [u32; 3],
 ) -> bool {
-    if sure && (!SHADOW || context.all_block) {
+    if sure && (!SHADOW || context.all_block) && context.masked.is_empty() {
         return true;
     }
     let attached = if inst == INVALID { geom } else { inst };
@@ -185,7 +186,19 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
     if SHADOW && !context.scene.blocks_light(id) {
         return false;
     }
-    sure || stands_exactly(context, lane, id)
+    if !sure && !stands_exactly(context, lane, id) {
+        return false;
+    }
+    !(context.is_masked(instance) && is_cut_out(context, lane, id))
+}
+
+/// Whether a mask cuts a hole where the ray in `lane` meets a triangle, by the weights in f64 that
+/// `refine` gives.
+#[inline(never)]
+fn is_cut_out<const W: usize>(context: &Context<'_, W>, lane: usize, id: PrimitiveId) -> bool {
+    let (origin, direction) = context.exact.line(lane);
+    let (u, v) = triangle::Edges::new(context.scene.triangle(id), origin, direction).weights();
+    context.scene.is_cut_out(id, u, v)
 }
 
 /// Whether a triangle stands in the way of the ray in `lane` by the formulas in f64.

@@ -93,6 +93,8 @@ pub struct Context<'a, const W: usize> {
     pub end: [f32; W],
     /// Whether every triangle blocks light.
     pub all_block: bool,
+    /// Of which instances the alpha is tested; empty where it is of none.
+    pub masked: &'a [bool],
     /// Whether any ray of the packet left a surface, or went through one.
     pub leaves: bool,
     /// Whether any went straight through one.
@@ -114,7 +116,7 @@ impl<'a, const W: usize> Context<'a, W> {
         rays: Packet<'a>,
         instance_of: &'a [u32],
         (doubt, reach): (f32, f64),
-        all_block: bool,
+        (all_block, masked): (bool, &'a [bool]),
     ) -> Self {
         let exact = Exact::new();
         let nearest = Nearest::new(exact.tmax);
@@ -129,6 +131,7 @@ impl<'a, const W: usize> Context<'a, W> {
             doubt,
             end: [0.0; W],
             all_block,
+            masked,
             leaves: !rays.is_fresh(),
             goes_on: !rays.is_unbroken(),
             outward: [INVALID; W],
@@ -158,6 +161,12 @@ impl<'a, const W: usize> Context<'a, W> {
             (self.outward, self.inward) = rays.spheres_left();
         }
         entered
+    }
+
+    /// Whether the alpha of an instance is tested.
+    #[inline(always)]
+    pub fn is_masked(&self, instance: u32) -> bool {
+        !self.masked.is_empty() && self.masked[instance as usize]
     }
 
     /// Merges the spheres that the callbacks of precision `fast` found into the hits of the

@@ -85,6 +85,8 @@ pub struct Embree<'s> {
     planes: bool,
     /// Whether every triangle blocks light.
     all_block: bool,
+    /// Of which instances the alpha is tested; empty where it is of none.
+    masked: Vec<bool>,
     top: Arc<Top>,
 }
 
@@ -137,7 +139,8 @@ impl<'s> Embree<'s> {
             scene.blocks_light(PrimitiveId::triangle(instance.mesh.0, 0, i))
         };
         let all_block = (0..).zip(&scene.instances).all(blocks);
-        Self { scene, reach: leaving::scene_reach(scene, bounds), planes, all_block, top }
+        let masked = masked(scene, asked.skips);
+        Self { scene, reach: leaving::scene_reach(scene, bounds), planes, all_block, masked, top }
     }
 
     /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
@@ -166,6 +169,7 @@ impl<'s> Embree<'s> {
             reach: self.reach,
             planes: self.planes,
             all_block: self.all_block,
+            masked: &self.masked,
         }
     }
 }
@@ -262,6 +266,15 @@ fn is_outsized(mesh: &Bounds) -> bool {
     mesh.max_abs() > MAX_COORDINATE
 }
 
+/// Of which instances the alpha is tested: of those with a mask, or of all where that is not to be
+/// skipped; none at all where there is none.
+fn masked(scene: &Scene, skips: Skips) -> Vec<bool> {
+    let masked: Vec<bool> = (0..scene.instances.len() as u32)
+        .map(|i| skips.does(Work::AlphaTests, scene.is_masked(i)))
+        .collect();
+    if masked.contains(&true) { masked } else { Vec::new() }
+}
+
 /// How often each mesh stands in the scene.
 fn uses(scene: &Scene) -> Vec<u32> {
     let mut uses = vec![0; scene.meshes.len()];
@@ -299,7 +312,8 @@ impl Intersector for Embree<'_> {
     }
 
     fn closest_extras(&self, rays: &Rays) -> Extras {
-        let filters = self.top.precision == Precision::Fast && !rays.are_fresh();
+        let asked = !rays.are_fresh() || !self.masked.is_empty();
+        let filters = self.top.precision == Precision::Fast && asked;
         Extras { planes: self.planes, filters }
     }
 

@@ -31,6 +31,8 @@ pub struct Target<'a> {
     pub planes: bool,
     /// Whether every triangle blocks light.
     pub all_block: bool,
+    /// Of which instances the alpha is tested; empty where it is of none.
+    pub masked: &'a [bool],
 }
 
 impl Target<'_> {
@@ -40,7 +42,8 @@ impl Target<'_> {
 
     fn context<'a, const W: usize>(&'a self, rays: Packet<'a>) -> Context<'a, W> {
         let reaches = (self.frame.doubt(), self.reach);
-        Context::new(self.scene, rays, self.instance_of, reaches, self.all_block)
+        let solid = (self.all_block, self.masked);
+        Context::new(self.scene, rays, self.instance_of, reaches, solid)
     }
 
     /// What rays are left to that no f32 ray can stand for.
@@ -162,7 +165,8 @@ fn closest_in_packet<'a, const W: usize>(
     record.geom = [INVALID; W];
     record.inst = [INVALID; W];
     let valid = lanes(packet.count, &entry.inside);
-    let filtered = (context.leaves || target.careful) && target.precision == Precision::Fast;
+    let asked = context.leaves || target.careful || !target.masked.is_empty();
+    let filtered = asked && target.precision == Precision::Fast;
     let mut args = sys::RTCIntersectArguments {
         flags: query_flags(coherence, filtered),
         feature_mask: ALL_FEATURES,

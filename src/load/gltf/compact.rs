@@ -23,7 +23,10 @@ pub fn compact(mesh: &mut Mesh) {
     keep(&mut mesh.positions, &kept);
     keep(&mut mesh.normals, &kept);
     keep(&mut mesh.uvs, &kept);
+    keep(&mut mesh.second_uvs, &kept);
     keep(&mut mesh.colors, &kept);
+    keep(&mut mesh.alphas, &kept);
+    keep(&mut mesh.tangents, &kept);
 }
 
 /// Whether triangles use half of the vertices or more.

@@ -6,12 +6,13 @@ use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
 
 /// The extensions that are read, or that change nothing which is.
-const READ: [&str; 12] = [
+const READ: [&str; 13] = [
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_variants",

@@ -1,4 +1,4 @@
-//! glTF's metallic-roughness materials on a Lambert and Phong shader, as docs/formats.md explains.
+//! glTF's materials on a Lambert and Phong shader, as docs/formats.md explains.
 
 use std::collections::HashMap;
 
@@ -7,39 +7,45 @@ use gltf::json;
 use gltf::json::texture::Info;
 
 use super::buffers::get;
-use super::optics::{self, Transmission};
-use super::texture::{Textures, UvMap};
+use super::texture::{Slot, Textures};
 use crate::error::Result;
 use crate::load::tally::Tally;
-use crate::scene::{Material, MaterialId, Scene, TextureId, Transfer};
-
-/// The range of shininess: roughness 1 would give 0, and roughness 0 infinity.
-const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
-/// What is said of the means of textures.
-pub const NOT_SAMPLED: &str = "{} textures of roughness, metalness, gloss or transmission are not \
-                           sampled yet: their mean holds for all of the surface";
+use crate::scene::{
+    Channel, Material, MaterialId, Metallic, MetallicMaps, NormalMap, OcclusionMap, Scene,
+    ShininessMap, TextureId, Transfer, sharpness, shininess,
+};
 
 /// The materials of a file, made when a primitive first uses them.
 pub struct Materials<'a> {
     root: &'a json::Root,
     textures: Textures<'a>,
     made: HashMap<Option<usize>, Made>,
-    texture_ids: HashMap<usize, TextureId>,
 }
 
-/// A material of the scene, and how its textures take their coordinates.
+/// A material of the scene, and what it asks of a mesh.
 #[derive(Clone)]
 pub struct Made {
     /// The material.
     pub id: MaterialId,
-    /// Its texture coordinates, where it has a texture.
-    pub uv: Option<UvMap>,
+    /// What it asks of a mesh.
+    pub asks: Asks,
+}
+
+/// The attributes of vertices that a material asks for.
+#[derive(Clone, Debug, Default)]
+pub struct Asks {
+    /// The TEXCOORD sets that place its textures: at most two.
+    pub sets: Vec<u32>,
+    /// Whether it has a normal map.
+    pub tangents: bool,
+    /// Whether alpha counts.
+    pub alpha: bool,
 }
 
 impl<'a> Materials<'a> {
     /// The materials of a file.
     pub fn new(root: &'a json::Root, textures: Textures<'a>) -> Self {
-        Self { root, textures, made: HashMap::new(), texture_ids: HashMap::new() }
+        Self { root, textures, made: HashMap::new() }
     }
 
     /// The material of index `index`, or the one for primitives that name none.
@@ -56,14 +62,20 @@ impl<'a> Materials<'a> {
         let made = match index {
             // The standard's default is a rough white metal, which nobody means who names no
             // material; ours is the neutral grey of an OBJ without one.
-            None => Made { id: scene.add_material(Material::default()), uv: None },
+            None => Made { id: scene.add_material(Material::default()), asks: Asks::default() },
             Some(i) => {
                 let source = get(&self.root.materials, i, "material", by)?;
-                Maker { source, at: format!("materials[{i}]"), all: self, scene, tally }.make()?
+                let (at, asks) = (format!("materials[{i}]"), Asks::default());
+                Maker { source, at, asks, textures: &mut self.textures, scene, tally }.make()?
             }
         };
         self.made.insert(index, made.clone());
         Ok(made)
+    }
+
+    /// Decodes what the materials show.
+    pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
+        self.textures.decode(scene, tally);
     }
 }
 
@@ -71,8 +83,9 @@ impl<'a> Materials<'a> {
 pub struct Maker<'m, 'a> {
     pub source: &'a json::Material,
     pub at: String,
-    all: &'m mut Materials<'a>,
-    pub scene: &'m mut Scene,
+    pub asks: Asks,
+    textures: &'m mut Textures<'a>,
+    scene: &'m mut Scene,
     pub tally: &'m mut Tally,
 }
 
@@ -83,24 +96,28 @@ impl<'a> Maker<'_, 'a> {
             Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
         let extensions = source.extensions.as_ref();
         let old = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
-        let uv = match old {
+        let base_map = match old {
             Some(old) => self.specular_glossiness(old, &mut material)?,
             None => self.metallic_roughness(&mut material)?,
         };
-        let picture = material.diffuse_map;
-        let uv = if extensions.is_some_and(|e| e.unlit.is_some()) {
-            material.emission = self.base_color();
-            material.emission_map = material.diffuse_map.take();
-            (material.diffuse, material.specular) = (Vec3::ZERO, Vec3::ZERO);
-            (material.reflect, material.transmit) = (Vec3::ZERO, Vec3::ZERO);
-            uv
+        if extensions.is_some_and(|e| e.unlit.is_some()) {
+            material = Material {
+                name: material.name,
+                emission: self.base_color(),
+                emission_map: base_map,
+                unlit: true,
+                diffuse: Vec3::ZERO,
+                ..Material::default()
+            };
         } else {
-            self.emission(&mut material, uv)?
-        };
+            self.emission(&mut material)?;
+            self.normals(&mut material)?;
+            self.occlusion(&mut material)?;
+        }
         let base = self.source.pbr_metallic_roughness.base_color_factor.0;
         let [.., alpha] = old.map_or(base, |old| old.diffuse_factor.0);
-        self.alpha(unit(alpha), picture, &mut material);
-        Ok(Made { id: self.scene.add_material(material), uv })
+        self.alpha(unit(alpha), base_map, &mut material);
+        Ok(Made { id: self.scene.add_material(material), asks: self.asks })
     }
 
     fn base_color(&mut self) -> Vec3 {
@@ -108,131 +125,161 @@ impl<'a> Maker<'_, 'a> {
         self.color([r, g, b], "pbrMetallicRoughness.baseColorFactor")
     }
 
-    fn metallic_roughness(&mut self, material: &mut Material) -> Result<Option<UvMap>> {
+    /// The core's material, with KHR_materials_specular, _transmission, _volume and _ior; and its
+    /// base colour texture.
+    fn metallic_roughness(&mut self, material: &mut Material) -> Result<Option<TextureId>> {
         let pbr = &self.source.pbr_metallic_roughness;
-        let base = self.base_color();
-        let (mut metallic, mut roughness) = (pbr.metallic_factor.0, pbr.roughness_factor.0);
+        let base_map = match &pbr.base_color_texture {
+            Some(info) => {
+                let place = "pbrMetallicRoughness.baseColorTexture";
+                Some(self.texture(Slot::of(info), Transfer::Srgb, place)?)
+            }
+            None => None,
+        };
+        let factors = Metallic {
+            base: self.base_color(),
+            metallic: unit(pbr.metallic_factor.0),
+            roughness: unit(pbr.roughness_factor.0),
+            specular: 1.0,
+            specular_color: Vec3::ONE,
+            transmission: 0.0,
+            ior: self.ior(),
+        };
+        let mut maps = MetallicMaps { base: base_map, ..MetallicMaps::new(factors) };
         if let Some(info) = &pbr.metallic_roughness_texture {
-            let [r, m] = self.mean_roughness_and_metalness(info)?;
-            roughness *= r;
-            metallic *= m;
+            let place = "pbrMetallicRoughness.metallicRoughnessTexture";
+            // A factor of 0 leaves nothing of the map.
+            if factors.roughness > 0.0 {
+                maps.roughness = Some(self.channel(info, 1, place)?);
+            }
+            if factors.metallic > 0.0 {
+                maps.metallic = Some(self.channel(info, 2, place)?);
+            }
         }
-        let metallic = unit(metallic);
-        let transmission = self.transmission()?;
-        material.specular = Vec3::splat(optics::head_on(transmission.ior)).lerp(base, metallic);
-        material.shininess = shininess(roughness);
-        let mirror = metallic * optics::sharpness(roughness);
-        let through = (1.0 - metallic) * transmission.share;
-        if mirror > 0.0 || through > 0.0 {
-            let tint = self.tint(base)?;
-            material.reflect = tint * mirror;
-            Transmission { share: through, ..transmission }.apply(tint, material);
+        self.specular(&mut maps)?;
+        self.transmission(&mut maps)?;
+        let finish = maps.factors.finish();
+        material.diffuse = finish.diffuse;
+        material.specular = finish.specular;
+        material.shininess = finish.shininess;
+        material.reflect = finish.reflect;
+        material.transmit = finish.transmit;
+        let is_plain = MetallicMaps { base: None, ..maps.clone() }
+            == MetallicMaps::new(maps.factors)
+            && maps.factors.metallic == 0.0
+            && maps.factors.transmission == 0.0;
+        match is_plain {
+            // Then the base colour is the diffuse one, and nothing else depends on it.
+            true => material.diffuse_map = base_map,
+            false => material.metallic = Some(Box::new(maps)),
         }
-        if through > 0.0 && optics::sharpness(roughness) == 0.0 {
-            let at = &self.at;
-            self.tally.unsupported("{} frosted materials are drawn clear", 1, || at.clone());
-        }
-        // What is left of the whole is scattered; the share that glTF means is within it.
-        let rest = Vec3::ONE - material.reflect - material.transmit;
-        let scattered = (1.0 - metallic) * (1.0 - transmission.share);
-        material.diffuse =
-            base * rest.map(|x| if x > 0.0 { (scattered / x).min(1.0) } else { 0.0 });
-        let Some(info) = &pbr.base_color_texture else { return Ok(None) };
-        material.diffuse_map = Some(self.texture(info, "pbrMetallicRoughness.baseColorTexture")?);
-        Ok(Some(UvMap::of(info)))
+        self.inside(material);
+        Ok(base_map)
     }
 
-    /// KHR_materials_pbrSpecularGlossiness, which is close to Phong as it stands.
+    /// KHR_materials_specular.
+    fn specular(&mut self, maps: &mut MetallicMaps) -> Result<()> {
+        let extensions = self.source.extensions.as_ref();
+        let Some(source) = extensions.and_then(|e| e.specular.as_ref()) else { return Ok(()) };
+        let place = |key: &str| format!("extensions.KHR_materials_specular.{key}");
+        maps.factors.specular = unit(source.specular_factor.0);
+        maps.factors.specular_color =
+            self.color(source.specular_color_factor.0, &place("specularColorFactor"));
+        if let Some(info) = &source.specular_texture {
+            maps.specular = Some(self.channel(info, 3, &place("specularTexture"))?);
+        }
+        if let Some(info) = &source.specular_color_texture {
+            let place = place("specularColorTexture");
+            maps.specular_color = Some(self.texture(Slot::of(info), Transfer::Srgb, &place)?);
+        }
+        Ok(())
+    }
+
+    /// KHR_materials_pbrSpecularGlossiness, which is close to Phong as it stands; and its diffuse
+    /// texture.
     fn specular_glossiness(
         &mut self,
         old: &'a json::extensions::material::PbrSpecularGlossiness,
         material: &mut Material,
-    ) -> Result<Option<UvMap>> {
+    ) -> Result<Option<TextureId>> {
         let [r, g, b, _] = old.diffuse_factor.0;
         let extension = "extensions.KHR_materials_pbrSpecularGlossiness";
         material.diffuse = self.color([r, g, b], &format!("{extension}.diffuseFactor"));
         material.specular =
             self.color(old.specular_factor.0, &format!("{extension}.specularFactor"));
-        material.shininess = shininess(1.0 - old.glossiness_factor.0);
+        let gloss = unit(old.glossiness_factor.0);
+        material.shininess = shininess(1.0 - gloss);
         if let Some(info) = &old.specular_glossiness_texture {
-            let place = format!("{}.{extension}.specularGlossinessTexture", self.at);
-            let [r, g, b, a] = self.mean(info, Transfer::Srgb, &place, NOT_SAMPLED)?;
-            material.specular *= Vec3::new(r, g, b);
-            material.shininess = shininess(1.0 - old.glossiness_factor.0 * a);
+            let place = format!("{extension}.specularGlossinessTexture");
+            let texture = self.texture(Slot::of(info), Transfer::Srgb, &place)?;
+            material.specular_map = Some(texture);
+            material.shininess_map =
+                Some(ShininessMap::Gloss(Channel { texture, channel: 3 }, gloss));
         }
         let Some(info) = &old.diffuse_texture else { return Ok(None) };
-        material.diffuse_map = Some(self.texture(info, &format!("{extension}.diffuseTexture"))?);
-        Ok(Some(UvMap::of(info)))
+        let place = format!("{extension}.diffuseTexture");
+        material.diffuse_map = Some(self.texture(Slot::of(info), Transfer::Srgb, &place)?);
+        Ok(material.diffuse_map)
     }
 
-    fn emission(&mut self, material: &mut Material, uv: Option<UvMap>) -> Result<Option<UvMap>> {
+    fn emission(&mut self, material: &mut Material) -> Result<()> {
         let extensions = self.source.extensions.as_ref();
         let strength = extensions
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |e| e.emissive_strength.0);
         let factor = self.source.emissive_factor.0.map(|f| f * strength);
         material.emission = self.color(factor, "emissiveFactor");
-        let Some(info) = &self.source.emissive_texture else { return Ok(uv) };
-        if material.emission == Vec3::ZERO {
-            return Ok(uv);
+        if material.emission != Vec3::ZERO
+            && let Some(info) = &self.source.emissive_texture
+        {
+            let map = self.texture(Slot::of(info), Transfer::Srgb, "emissiveTexture")?;
+            material.emission_map = Some(map);
         }
-        let own = UvMap::of(info);
-        if uv.as_ref().is_some_and(|uv| *uv != own) {
-            self.tally.say(format!(
-                "{}: the emissive texture is laid on by the base colour's texture coordinates, \
-                 not by its own",
-                self.at
-            ));
-        }
-        material.emission_map = Some(self.texture(info, "emissiveTexture")?);
-        Ok(uv.or(Some(own)))
+        Ok(())
     }
 
-    fn texture(&mut self, info: &Info, place: &str) -> Result<TextureId> {
-        let index = info.index.value();
-        if let Some(&id) = self.all.texture_ids.get(&index) {
-            return Ok(id);
-        }
-        let by = format!("{}.{place}.index", self.at);
-        let texture = self.all.textures.get(index, Transfer::Srgb, &by, self.tally)?;
-        let id = self.scene.add_texture(texture);
-        self.all.texture_ids.insert(index, id);
-        Ok(id)
+    fn normals(&mut self, material: &mut Material) -> Result<()> {
+        let Some(info) = &self.source.normal_texture else { return Ok(()) };
+        let texture = self.texture(Slot::of_normal(info), Transfer::None, "normalTexture")?;
+        let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
+        material.normal_map = Some(NormalMap { texture, scale });
+        self.asks.tangents = true;
+        Ok(())
     }
 
-    /// The texture gives roughness in green and metalness in blue. It isn't sampled yet; its mean
-    /// is nearer to what the file means than its factors alone, which are usually 1.
-    fn mean_roughness_and_metalness(&mut self, info: &Info) -> Result<[f32; 2]> {
-        let place = format!("{}.pbrMetallicRoughness.metallicRoughnessTexture", self.at);
-        let [_, green, blue, _] = self.mean(info, Transfer::None, &place, NOT_SAMPLED)?;
-        Ok([green, blue])
+    fn occlusion(&mut self, material: &mut Material) -> Result<()> {
+        let Some(info) = &self.source.occlusion_texture else { return Ok(()) };
+        let slot = Slot::of_occlusion(info);
+        let texture = self.texture(slot, Transfer::None, "occlusionTexture")?;
+        let map = Channel { texture, channel: 0 };
+        material.occlusion_map = Some(OcclusionMap { map, strength: unit(info.strength.0) });
+        Ok(())
     }
 
-    /// The mean of a texture's four channels; `reason` is why no more of it is used.
-    pub fn mean(
-        &mut self,
-        info: &Info,
-        transfer: Transfer,
-        place: &str,
-        reason: &str,
-    ) -> Result<[f32; 4]> {
-        let by = format!("{place}.index");
-        let texture = self.all.textures.get(info.index.value(), transfer, &by, self.tally)?;
-        self.tally.unsupported(reason, 1, || place.to_owned());
-        let mut counts = [[0u64; 256]; 4];
-        for texel in &texture.image.texels {
-            for (count, &value) in counts.iter_mut().zip(texel) {
-                count[usize::from(value)] += 1;
+    /// A texture of the scene.
+    fn texture(&mut self, slot: Slot, transfer: Transfer, place: &str) -> Result<TextureId> {
+        let set = self.asks.sets.iter().position(|&set| set == slot.set).unwrap_or_else(|| {
+            match self.asks.sets.len() {
+                2 => {
+                    let at = &self.at;
+                    let reason = "{} textures are laid on by the first of more than two sets of \
+                                  texture coordinates";
+                    self.tally.unsupported(reason, 1, || format!("{at}.{place}"));
+                    0
+                }
+                next => {
+                    self.asks.sets.push(slot.set);
+                    next
+                }
             }
-        }
-        let total = texture.image.texels.len().max(1) as f64;
-        Ok(std::array::from_fn(|channel| {
-            let curve = if channel == 3 { Transfer::None } else { transfer };
-            let value = |i: usize| f64::from(curve.decode(i as f32 / 255.0));
-            let sum: f64 =
-                counts[channel].iter().enumerate().map(|(i, &n)| n as f64 * value(i)).sum();
-            (sum / total) as f32
-        }))
+        });
+        let by = format!("{}.{place}.index", self.at);
+        self.textures.get(slot, set as u8, transfer, &by, self.scene, self.tally)
+    }
+
+    /// A channel of a texture of data.
+    pub fn channel(&mut self, info: &Info, channel: u8, place: &str) -> Result<Channel> {
+        Ok(Channel { texture: self.texture(Slot::of(info), Transfer::None, place)?, channel })
     }
 
     /// A colour that the scene accepts: finite and not negative.
@@ -248,24 +295,12 @@ impl<'a> Maker<'_, 'a> {
     }
 }
 
-/// α = roughness², and the Phong exponent whose highlight is as wide: 2/α² − 2.
-fn shininess(roughness: f32) -> f32 {
-    let alpha = unit(roughness) * unit(roughness);
-    (2.0 / (alpha * alpha) - 2.0).clamp(*SHININESS.start(), *SHININESS.end())
+/// Whether what a surface of this roughness sends on is too blurred to be drawn sharp.
+pub fn is_frosted(roughness: f32) -> bool {
+    sharpness(roughness) == 0.0
 }
 
 /// A factor within [0, 1]; what is no number is 1, the default.
 pub fn unit(x: f32) -> f32 {
     if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shininess_follows_the_formula_within_its_range() {
-        assert!((shininess(0.5) - 30.0).abs() < 1e-4);
-        assert_eq!([0.0, 1.0, -3.0, f32::NAN].map(shininess), [1e4, 1.0, 1e4, 1.0]);
-    }
 }

@@ -160,13 +160,8 @@ impl Importer<'_> {
             let material = primitive.material.map(|m| m.value());
             let place = format!("{at}.material");
             let made = self.materials.get(material, &place, &mut self.scene, &mut self.tally)?;
-            let read = primitive::read(
-                primitive,
-                &self.accessors,
-                made.uv.as_ref(),
-                &mut self.tally,
-                &at,
-            )?;
+            let read =
+                primitive::read(primitive, &self.accessors, &made.asks, &mut self.tally, &at)?;
             if primitive.targets.as_ref().is_some_and(|t| !t.is_empty()) {
                 let reason = "{} meshes with morph targets keep their base shape";
                 self.tally.unsupported(reason, 1, || at);
@@ -182,6 +177,7 @@ impl Importer<'_> {
 
     fn finish(mut self, path: &Path) -> Scene {
         self.scene.animation = self.clip.finish();
+        self.materials.decode(&mut self.scene, &mut self.tally);
         if self.scene.instances.is_empty() {
             self.tally.say("there is no triangle in the scene that the file shows");
         }

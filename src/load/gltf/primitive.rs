@@ -6,19 +6,18 @@ use gltf::json::validation::Checked;
 
 use super::accessor::Accessors;
 use super::compact::compact;
-use super::texture::UvMap;
+use super::material::Asks;
 use super::topology;
 use crate::error::{Error, Place, Result};
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
 use crate::scene::{DropReason, Mesh};
 
-/// Reads a primitive, with the texture coordinates that `uv` chooses; nothing where there is no
-/// triangle in it.
+/// Reads a primitive, with what its material asks for; nothing where there is no triangle in it.
 pub fn read(
     primitive: &Primitive,
     accessors: &Accessors,
-    uv: Option<&UvMap>,
+    asks: &Asks,
     tally: &mut Tally,
     at: &str,
 ) -> Result<Option<Mesh>> {
@@ -46,8 +45,14 @@ pub fn read(
     tally.read(mesh.triangles.len() as u64 + u64::from(incomplete));
     tally.drop(DropReason::Incomplete, u64::from(incomplete), place);
     mesh.normals = reader.normals(mesh.positions.len(), tally)?;
-    mesh.colors = reader.colors(mesh.positions.len(), tally)?;
-    mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
+    (mesh.colors, mesh.alphas) = reader.colors(asks.alpha, mesh.positions.len(), tally)?;
+    mesh.uvs = reader.uvs(asks.sets.first(), mesh.positions.len(), tally)?;
+    if let Some(second) = asks.sets.get(1) {
+        mesh.second_uvs = reader.uvs(Some(second), mesh.positions.len(), tally)?;
+    }
+    if asks.tangents && !mesh.normals.is_empty() {
+        mesh.tangents = reader.tangents(mesh.positions.len(), tally)?;
+    }
     repair(&mut mesh, tally, at);
     compact(&mut mesh);
     Ok((!mesh.triangles.is_empty()).then_some(mesh))
@@ -108,34 +113,50 @@ impl Reader<'_> {
         }
     }
 
-    fn colors(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 3]>> {
+    fn tangents(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 4]>> {
+        let semantic = Semantic::Tangents;
+        match self.fitting(&semantic, count, tally) {
+            Some(index) => self.accessors.floats(index, &self.place(&semantic)),
+            None => Ok(Vec::new()),
+        }
+    }
+
+    /// The colours, and, where `alpha` counts and is not 1 everywhere, the alphas.
+    fn colors(
+        &self,
+        alpha: bool,
+        count: usize,
+        tally: &mut Tally,
+    ) -> Result<(Vec<[f32; 3]>, Vec<f32>)> {
         let semantic = Semantic::Colors(0);
-        let Some(index) = self.fitting(&semantic, count, tally) else { return Ok(Vec::new()) };
+        let Some(index) = self.fitting(&semantic, count, tally) else {
+            return Ok(Default::default());
+        };
         let place = self.place(&semantic);
         if self.accessors.width(index) != 4 {
-            return self.accessors.colors(index, &place);
+            return Ok((self.accessors.colors(index, &place)?, Vec::new()));
         }
-        // The fourth is alpha, which is not drawn yet.
         let colors = self.accessors.colors::<4>(index, &place)?;
-        Ok(colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
+        let alphas = match alpha && colors.iter().any(|color| color[3] != 1.0) {
+            true => colors.iter().map(|color| color[3]).collect(),
+            false => Vec::new(),
+        };
+        Ok((colors.into_iter().map(|[r, g, b, _]| [r, g, b]).collect(), alphas))
     }
 
     /// Without a texture that asks for them the first set is kept, for who lays another material
     /// on the model.
-    fn uvs(&self, uv: Option<&UvMap>, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
-        let is_needed = uv.is_some();
-        let first = UvMap::default();
-        let uv = uv.unwrap_or(&first);
-        let semantic = Semantic::TexCoords(uv.set);
-        let Some(index) = self.fitting(&semantic, count, tally) else {
-            if is_needed && self.index(semantic.clone()).is_none() {
-                let reason = "{} primitives have a texture but lack its texture coordinates";
-                tally.add(reason, 1, || self.place(&semantic));
+    fn uvs(&self, set: Option<&u32>, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
+        let semantic = Semantic::TexCoords(set.copied().unwrap_or(0));
+        match self.fitting(&semantic, count, tally) {
+            Some(index) => self.accessors.floats(index, &self.place(&semantic)),
+            None => {
+                if set.is_some() && self.index(semantic.clone()).is_none() {
+                    let reason = "{} primitives have a texture but lack its texture coordinates";
+                    tally.add(reason, 1, || self.place(&semantic));
+                }
+                Ok(Vec::new())
             }
-            return Ok(Vec::new());
-        };
-        let mut uvs = self.accessors.floats(index, &self.place(&semantic))?;
-        uvs.iter_mut().for_each(|x| *x = uv.apply(*x));
-        Ok(uvs)
+        }
     }
 }

@@ -1,88 +1,163 @@
 //! Textures: samplers, pictures, and where on them a surface's coordinates fall.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use glam::{Affine2, Mat2, Vec2};
 use gltf::json;
 use gltf::json::texture::{Info, MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
+use rayon::prelude::*;
 
 use super::buffers::{Buffers, Target, get};
 use crate::error::{Error, Place, Result};
 use crate::load::picture;
 use crate::load::tally::Tally;
-use crate::scene::{Filter, Image, Texture, Transfer, Wrap};
+use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
-/// Which texture coordinates a texture uses, and KHR_texture_transform's change to them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct UvMap {
+/// What a material's reference to a texture says: which one, by which coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slot {
+    /// The number of the texture in the file.
+    pub index: usize,
     /// The number of the TEXCOORD set.
     pub set: u32,
-    transform: Option<Transform>,
+    /// KHR_texture_transform.
+    transform: Affine2,
 }
 
-#[derive(Clone, Debug, PartialEq)]
+const TRANSFORM: &str = "KHR_texture_transform";
+
+/// KHR_texture_transform, as far as a reference gives it.
+#[derive(serde::Deserialize)]
+#[serde(default, rename_all = "camelCase")]
 struct Transform {
     offset: [f32; 2],
     rotation: f32,
     scale: [f32; 2],
+    tex_coord: Option<u32>,
 }
 
-impl UvMap {
-    /// What a reference to a texture says of its coordinates.
+impl Default for Transform {
+    fn default() -> Self {
+        Self { offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2], tex_coord: None }
+    }
+}
+
+impl Transform {
+    /// From a set of coordinates to those on the picture.
+    ///
+    /// Scale, then rotate, then offset. Positive angles turn counter-clockwise as one sees the
+    /// picture, whose v runs down: so do Khronos' viewer and its TextureTransformTest, while the
+    /// GLSL in the extension's text has the sign the other way.
+    fn affine(&self) -> Affine2 {
+        let (sin, cos) = self.rotation.sin_cos();
+        let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
+        Affine2::from_mat2_translation(
+            turn * Mat2::from_diagonal(self.scale.into()),
+            self.offset.into(),
+        )
+    }
+}
+
+impl Slot {
+    /// That of a plain reference.
     pub fn of(info: &Info) -> Self {
         let extension = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
         let transform = extension.map(|t| Transform {
             offset: t.offset.0,
             rotation: t.rotation.0,
             scale: t.scale.0,
+            tex_coord: t.tex_coord,
         });
-        let set = extension.and_then(|t| t.tex_coord).unwrap_or(info.tex_coord);
-        Self { set, transform }
+        Self::with(info.index.value(), info.tex_coord, transform)
     }
 
-    /// The coordinates on the picture of a vertex's coordinates.
-    ///
-    /// Scale, then rotate, then offset. Positive angles turn counter-clockwise as one sees the
-    /// picture, whose v runs down: so do Khronos' viewer and its TextureTransformTest, while the
-    /// GLSL in the extension's text has the sign the other way.
-    pub fn apply(&self, [u, v]: [f32; 2]) -> [f32; 2] {
-        let Some(t) = &self.transform else { return [u, v] };
-        let (sin, cos) = t.rotation.sin_cos();
-        let (u, v) = (u * t.scale[0], v * t.scale[1]);
-        [cos * u + sin * v + t.offset[0], -sin * u + cos * v + t.offset[1]]
+    /// That of a normal texture.
+    pub fn of_normal(info: &json::material::NormalTexture) -> Self {
+        let others = info.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+        Self::with(info.index.value(), info.tex_coord, parsed(others))
+    }
+
+    /// That of an occlusion texture.
+    pub fn of_occlusion(info: &json::material::OcclusionTexture) -> Self {
+        let others = info.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+        Self::with(info.index.value(), info.tex_coord, parsed(others))
+    }
+
+    fn with(index: usize, set: u32, transform: Option<Transform>) -> Self {
+        let transform = transform.unwrap_or_default();
+        let set = transform.tex_coord.unwrap_or(set);
+        Self { index, set, transform: transform.affine() }
     }
 }
 
-/// The pictures of a file, decoded when they are first asked for.
+/// A transform that the `gltf` crate leaves as it stands in the JSON; what is no transform is none.
+fn parsed(extension: Option<&json::Value>) -> Option<Transform> {
+    json::deserialize::from_value(extension?.clone()).ok()
+}
+
+/// The textures of a file. What they show is decoded when all are known, each picture once.
 pub struct Textures<'a> {
     root: &'a json::Root,
     buffers: &'a Buffers<'a>,
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
-    images: HashMap<usize, Arc<Image>>,
-    /// Pictures that name the same file are decoded once.
-    by_uri: HashMap<&'a str, Arc<Image>>,
+    /// Those that are in the scene, with what makes them different.
+    made: Vec<((Slot, Transfer, u8), TextureId)>,
+    /// Pictures that are still to be decoded.
+    pictures: Vec<Picture<'a>>,
+    numbers: HashMap<Key<'a>, usize>,
+}
+
+/// What makes two pictures one.
+#[derive(PartialEq, Eq, Hash)]
+enum Key<'a> {
+    Data(&'a str),
+    File(PathBuf),
+    View(usize),
+}
+
+/// A picture that is still to be decoded, and the textures that show it.
+struct Picture<'a> {
+    source: Result<Source<'a>>,
+    at: String,
+    shown_by: Vec<TextureId>,
+}
+
+/// Where a picture's bytes are.
+enum Source<'a> {
+    Bytes(Cow<'a, [u8]>),
+    File(PathBuf),
 }
 
 impl<'a> Textures<'a> {
     /// The textures of a file, whose pictures are read where they are `wanted`.
     pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>, wanted: bool) -> Self {
-        Self { root, buffers, wanted, images: HashMap::new(), by_uri: HashMap::new() }
+        let (made, pictures, numbers) = Default::default();
+        Self { root, buffers, wanted, made, pictures, numbers }
     }
 
-    /// A texture, its picture decoded. A picture that cannot be had is a warning, and a
-    /// placeholder takes its place.
+    /// A texture that is placed by the scene's texture coordinates `set`.
     ///
     /// # Errors
     /// When the file's own references lead nowhere.
     pub fn get(
         &mut self,
-        index: usize,
+        slot: Slot,
+        set: u8,
         transfer: Transfer,
         by: &str,
+        scene: &mut Scene,
         tally: &mut Tally,
-    ) -> Result<Texture> {
+    ) -> Result<TextureId> {
+        let key = (slot, transfer, set);
+        if let Some(&(_, id)) = self.made.iter().find(|(made, _)| *made == key) {
+            return Ok(id);
+        }
+        let Slot { index, transform, .. } = slot;
         let texture = get(&self.root.textures, index, "texture", by)?;
         let sampler = match texture.sampler {
             Some(s) => Some(get(
@@ -93,53 +168,83 @@ impl<'a> Textures<'a> {
             )?),
             None => None,
         };
-        let wrap = sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]);
-        let filter = sampler.map_or(Filter::Linear, filter);
-        let image = match source(texture) {
-            Some(source) => self.image(source, &format!("textures[{index}].source"), tally)?,
+        let picture = match source(texture) {
+            Some(source) => Some(self.picture(source, &format!("textures[{index}].source"))?),
             None => {
                 tally.placeholder(format!("textures[{index}] has no picture that can be read"));
-                Arc::new(picture::placeholder(&format!("textures[{index}]")))
+                None
             }
         };
-        Ok(Texture { image, transfer, wrap, filter })
-    }
-
-    fn image(&mut self, index: usize, by: &str, tally: &mut Tally) -> Result<Arc<Image>> {
-        if let Some(image) = self.images.get(&index) {
-            return Ok(image.clone());
-        }
-        let image = get(&self.root.images, index, "image", by)?;
-        let uri = image.uri.as_deref();
-        let decoded = match uri.and_then(|uri| self.by_uri.get(uri)) {
-            Some(decoded) => decoded.clone(),
-            None => Arc::new(self.decode(image, index).unwrap_or_else(|error| {
-                tally.placeholder(format!("{error}; a magenta checker takes its place"));
-                picture::placeholder(&format!("images[{index}]"))
-            })),
+        let transform = match transform.is_finite() {
+            true => transform,
+            false => {
+                tally.say(format!("textures[{index}]: a transform that is not finite is left out"));
+                Affine2::IDENTITY
+            }
         };
-        if let Some(uri) = uri {
-            self.by_uri.insert(uri, decoded.clone());
+        let image = picture::placeholder(&format!("textures[{index}]"));
+        let id = scene.add_texture(Texture {
+            transfer,
+            wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
+            filter: sampler.map_or(Filter::Linear, filter),
+            mipmap: sampler.is_none_or(has_mipmaps),
+            set,
+            transform,
+            ..Texture::new(Arc::new(image))
+        });
+        if let Some(picture) = picture {
+            self.pictures[picture].shown_by.push(id);
         }
-        self.images.insert(index, decoded.clone());
-        Ok(decoded)
+        self.made.push((key, id));
+        Ok(id)
     }
 
-    fn decode(&self, image: &json::Image, index: usize) -> Result<Image> {
+    /// The picture of an image, to be decoded; one that several images name is one.
+    fn picture(&mut self, index: usize, by: &str) -> Result<usize> {
+        let image = get(&self.root.images, index, "image", by)?;
         let at = format!("images[{index}]");
-        let read = match (&image.uri, image.buffer_view) {
+        let (key, source) = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.buffers.resolve(uri) {
-                Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, self.wanted),
-                Ok(Target::File(path)) => picture::read(&path, self.wanted),
-                Err(error) => Err(error),
+                Ok(Target::Data(bytes)) => (Some(Key::Data(uri)), Ok(Source::Bytes(bytes.into()))),
+                Ok(Target::File(path)) => (Some(Key::File(path.clone())), Ok(Source::File(path))),
+                Err(error) => (None, Err(error)),
             },
             (None, Some(view)) => {
-                let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"))?;
-                picture::decode(bytes, &at, self.wanted)
+                let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"));
+                (Some(Key::View(view.value())), bytes.map(|bytes| Source::Bytes(bytes.into())))
             }
-            (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
+            (None, None) => {
+                (None, Err(Error::input("the image has neither a URI nor a buffer view")))
+            }
         };
-        read.map_err(|e| e.place(Place::Json(at)))
+        let next = self.pictures.len();
+        let number = key.map_or(next, |key| *self.numbers.entry(key).or_insert(next));
+        if number == next {
+            self.pictures.push(Picture { source, at, shown_by: Vec::new() });
+        }
+        Ok(number)
+    }
+
+    /// Decodes the pictures, side by side, and gives them to the textures of the scene that show
+    /// them. One that cannot be had is a warning, and a placeholder takes its place.
+    pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
+        let (wanted, pictures) = (self.wanted, self.pictures);
+        let decode = |picture: Picture| {
+            let Picture { source, at, shown_by } = picture;
+            let image = source.and_then(|source| match source {
+                Source::Bytes(bytes) => picture::decode(&bytes, &at, wanted),
+                Source::File(path) => picture::read(&path, wanted),
+            });
+            (image.map_err(|e| e.place(Place::Json(at.clone()))), at, shown_by)
+        };
+        let decoded: Vec<_> = pictures.into_par_iter().map(decode).collect();
+        for (image, at, shown_by) in decoded {
+            let image = Arc::new(image.unwrap_or_else(|error| {
+                tally.placeholder(format!("{error}; a magenta checker takes its place"));
+                picture::placeholder(&at)
+            }));
+            shown_by.iter().for_each(|id| scene.textures[id.0 as usize].image = image.clone());
+        }
     }
 }
 
@@ -177,16 +282,31 @@ fn filter(sampler: &json::texture::Sampler) -> Filter {
     }
 }
 
+/// Whether pictures seen from afar are averaged: unless the sampler says that they are not.
+fn has_mipmaps(sampler: &json::texture::Sampler) -> bool {
+    use MinFilter::{Linear, Nearest};
+    !matches!(sampler.min_filter, Some(Checked::Valid(Linear | Nearest)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn transform_scales_then_turns_then_shifts() {
-        let quarter = std::f32::consts::FRAC_PI_2;
-        let transform = Transform { offset: [10.0, 20.0], rotation: quarter, scale: [2.0, 3.0] };
-        let [u, v] = UvMap { set: 0, transform: Some(transform) }.apply([1.0, 0.0]);
+        let rotation = std::f32::consts::FRAC_PI_2;
+        let (offset, scale) = ([10.0, 20.0], [2.0, 3.0]);
+        let transform = Transform { offset, rotation, scale, tex_coord: None }.affine();
+        let [u, v] = transform.transform_point2(Vec2::X).to_array();
         // (1, 0) becomes (2, 0), turns to (0, −2), which is up, and is shifted.
         assert!((u - 10.0).abs() < 1e-6 && (v - 18.0).abs() < 1e-6, "{u} {v}");
+    }
+
+    #[test]
+    fn a_transform_may_choose_another_set() {
+        let transform = serde_json::json!({"texCoord": 1, "scale": [2, 2]});
+        let slot = Slot::with(3, 0, parsed(Some(&transform)));
+        assert_eq!((slot.index, slot.set), (3, 1));
+        assert_eq!(slot.transform.transform_point2(Vec2::ONE), Vec2::splat(2.0));
     }
 }

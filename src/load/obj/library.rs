@@ -14,7 +14,7 @@ use super::map::Map;
 use super::mtl::{UNNAMED, clean};
 use crate::load::picture;
 use crate::load::tally::Tally;
-use crate::scene::{Filter, Material, MaterialId, Scene, Texture, TextureId, Transfer, Wrap};
+use crate::scene::{Material, MaterialId, Scene, Texture, TextureId, Wrap};
 
 /// The range of shininess that is drawn.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
@@ -166,10 +166,8 @@ impl Library {
             picture::placeholder(&map.file)
         });
         let id = scene.add_texture(Texture {
-            image: Arc::new(image),
-            transfer: Transfer::Srgb,
             wrap: [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2],
-            filter: Filter::Linear,
+            ..Texture::new(Arc::new(image))
         });
         self.textures.insert(key, id);
         Some(id)

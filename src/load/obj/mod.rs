@@ -89,6 +89,7 @@ fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
         uvs: per_vertex(uvs, count),
         colors: per_vertex(colors, count),
         positions,
+        ..Mesh::default()
     };
     if mesh.normals.is_empty() && part.setting.smoothing.is_some() {
         mesh.normals = smooth::normals(&mesh);

@@ -6,7 +6,7 @@ use glam::DAffine3;
 
 use crate::geometry::Bounds;
 use crate::scene::animation::{Animation, NodeId};
-use crate::scene::{Camera, Instance, Light, LightKind, MaterialId, MeshId, Scene, TextureId};
+use crate::scene::{Camera, Instance, Light, LightKind, MaterialId, MeshId, Scene};
 
 /// A model whose meshes, materials and textures are in a scene, where it can be placed any number
 /// of times without being stored again.
@@ -52,9 +52,7 @@ impl Part {
         scene.textures.extend(model.textures);
         scene.meshes.append(&mut model.meshes);
         scene.materials.extend(model.materials.into_iter().map(|mut material| {
-            for map in [&mut material.diffuse_map, &mut material.emission_map] {
-                *map = map.map(|texture| TextureId(texture.0 + first_texture));
-            }
+            material.textures_mut().for_each(|texture| texture.0 += first_texture);
             material
         }));
         let mut instances = model.instances;
@@ -128,20 +126,15 @@ fn bounds(model: &Scene) -> Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, Image, Lens, Material, Mesh, Shadow, Texture, Transfer};
+    use crate::scene::{Falloff, Image, Lens, Material, Mesh, Shadow, Texture, TextureId};
     use glam::{DMat3, DVec3, Vec3};
     use std::sync::Arc;
 
     /// One triangle with a textured material, a spot light and a camera.
     fn model() -> Scene {
         let mut model = Scene::default();
-        let image = Image { name: String::new(), width: 1, height: 1, texels: vec![[9; 4]] };
-        let texture = model.add_texture(Texture {
-            image: Arc::new(image),
-            transfer: Transfer::Srgb,
-            wrap: Default::default(),
-            filter: Default::default(),
-        });
+        let image = Image::bytes("", [1, 1], vec![[9; 4]]);
+        let texture = model.add_texture(Texture::new(Arc::new(image)));
         let material = Material { diffuse_map: Some(texture), ..Material::default() };
         let material = model.add_material(material);
         let mesh = model.add_mesh(Mesh {

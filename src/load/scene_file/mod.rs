@@ -13,6 +13,7 @@ mod light;
 mod model;
 mod mover;
 mod names;
+mod pictures;
 mod report;
 mod resolve;
 mod schema;

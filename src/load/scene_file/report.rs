@@ -4,9 +4,6 @@ use super::source::{Source, Span};
 use super::suggest;
 use crate::error::Error;
 
-/// Keys that a material will have one day.
-const NOT_YET: &[&str] = &["normal_map"];
-
 /// Tables that are written under double brackets.
 const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];
 
@@ -50,12 +47,6 @@ impl Report<'_> {
             let key = self.key()?;
             let advice = suggest::advice(found, &candidates, "it is one of");
             return Some(self.error(format!("`{key}` cannot be \"{found}\"")).help(advice));
-        }
-        if NOT_YET.contains(&found) && candidates.contains(&"diffuse") {
-            return Some(
-                self.error(format!("`{found}` is not supported yet"))
-                    .help("leave it out: materials are diffuse, specular and emissive so far"),
-            );
         }
         let table = if self.path.is_empty() { "a scene file" } else { &self.table() };
         let error = self.error(format!("{table} has no key `{found}`"));

@@ -2,8 +2,6 @@
 //! together is checked.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
-use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -14,21 +12,22 @@ use super::light;
 use super::model::Models;
 use super::mover;
 use super::names::Names;
+use super::pictures::Pictures;
 use super::shown::Shown;
 use super::source::{Source, Span};
 use super::spanned::{At, Table};
 use super::suggest;
 use super::tables::{
-    CameraTable, FilmTable, LightTable, MaterialTable, PlaneTable, SceneTable, SphereTable,
+    CameraTable, FilmTable, LightTable, MapAlpha, MapFilter, MaterialTable, PlaneTable, SceneTable,
+    SphereTable,
 };
 use super::values::SampleRange;
 use crate::error::Result;
-use crate::load::picture;
 use crate::scene::animation::Mover;
 use crate::scene::check::{self, MAX_COORDINATE};
 use crate::scene::{
-    Adaptive, Checker, FilmSettings, Filter, Material, MaterialId, Plane, Scene, Sphere, Texture,
-    TextureId, Transfer, Wrap,
+    Adaptive, AlphaMode, Channel, Checker, Coverage, FilmSettings, Material, MaterialId, NormalMap,
+    Plane, Scene, Sphere, TextureId, Transfer,
 };
 
 /// The scene that the tables of a file describe, with `all` pictures or those that something shows.
@@ -50,7 +49,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
         scene: Scene { film, animation, ..Scene::default() },
         materials: HashMap::new(),
         plain: None,
-        pictures: HashMap::new(),
+        pictures: Pictures::default(),
     };
     tables.camera.0.iter().try_for_each(|c| resolver.camera(c))?;
     tables.material.0.iter().try_for_each(|m| resolver.material(m))?;
@@ -59,7 +58,8 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
     tables.light.0.iter().try_for_each(|l| resolver.light(&l.value.0))?;
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
-    let scene = resolver.scene;
+    let mut scene = resolver.scene;
+    resolver.pictures.decode(source, &mut scene)?;
     Ok(scene)
 }
 
@@ -105,6 +105,14 @@ fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adapti
     Ok((*min, Some(Adaptive { max: *max, threshold })))
 }
 
+/// How a picture is read, if it is.
+#[derive(Clone, Copy)]
+struct Reading {
+    transfer: Transfer,
+    filter: MapFilter,
+    wanted: bool,
+}
+
 /// What is under way while a scene is put together.
 pub struct Resolver<'a> {
     /// The file.
@@ -121,8 +129,8 @@ pub struct Resolver<'a> {
     materials: HashMap<String, (MaterialId, Span)>,
     /// The material of what names none, once there is such a thing.
     plain: Option<MaterialId>,
-    /// The pictures so far, by their canonical paths and whether they were read.
-    pictures: HashMap<(PathBuf, bool), TextureId>,
+    /// The pictures so far.
+    pictures: Pictures,
 }
 
 impl Resolver<'_> {
@@ -165,21 +173,32 @@ impl Resolver<'_> {
         let At { span, value: name } = &table.name;
         let default = Material::default();
         let wanted = self.shown.material(name);
+        let filter = table.filter.unwrap_or_default();
+        let colors = Reading { transfer: Transfer::Srgb, filter, wanted };
+        let data = Reading { transfer: Transfer::None, ..colors };
+        let diffuse_map = self.picture(table.diffuse_map.as_ref(), &colors);
+        let coverage = self.coverage(table, diffuse_map)?;
+        let is_blended = coverage.is_some_and(|c| c.mode == AlphaMode::Blend);
+        let normal_map = self.picture(table.normal_map.as_ref(), &data);
         let material = Material {
             name: name.clone(),
             diffuse: self.color(table.diffuse.as_ref().map(|c| c.value), default.diffuse),
-            diffuse_map: self.picture(table.diffuse_map.as_ref(), wanted)?,
+            diffuse_map,
             specular: self.color(table.specular, default.specular),
+            specular_map: self.picture(table.specular_map.as_ref(), &colors),
             shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
             emission: self.color(table.emission, default.emission),
-            emission_map: self.picture(table.emission_map.as_ref(), wanted)?,
+            emission_map: self.picture(table.emission_map.as_ref(), &colors),
+            normal_map: normal_map.map(|texture| NormalMap { texture, scale: 1.0 }),
+            coverage,
             reflect: self.color(table.reflect.as_ref().map(|c| c.value), default.reflect),
             transmit: self.color(table.transmit.as_ref().map(|c| c.value), default.transmit),
-            ior: table.ior.map_or(default.ior, |ior| ior.0),
+            ior: if is_blended { 1.0 } else { table.ior.map_or(default.ior, |ior| ior.0) },
             absorption: table.absorption.map_or(default.absorption, |a| a.0),
-            thin: table.thin.unwrap_or(default.thin),
+            thin: is_blended || table.thin.unwrap_or(default.thin),
             priority: table.priority.map_or(default.priority, |p| p.0),
             double_sided: table.double_sided.unwrap_or(default.double_sided),
+            ..default
         };
         if let Some(At { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
@@ -209,30 +228,43 @@ impl Resolver<'_> {
         }
     }
 
-    /// The texture for a picture that a material names; a picture named twice is read once, if it is
-    /// `wanted`.
-    fn picture(&mut self, file: Option<&At<String>>, wanted: bool) -> Result<Option<TextureId>> {
-        let Some(At { span, value: name }) = file else {
-            return Ok(None);
-        };
-        let path = self.source.file(name);
-        let same = (path.canonicalize().unwrap_or_else(|_| path.clone()), wanted);
-        if let Some(&texture) = self.pictures.get(&same) {
-            return Ok(Some(texture));
+    /// The texture for a picture that a material names.
+    fn picture(&mut self, file: Option<&At<String>>, read: &Reading) -> Option<TextureId> {
+        let Reading { transfer, filter, wanted } = *read;
+        let Self { pictures, source, scene, .. } = self;
+        file.map(|file| pictures.texture(source, file, transfer, filter, wanted, scene))
+    }
+
+    /// What the alpha of a material's picture means, if it means anything.
+    fn coverage(
+        &self,
+        table: &MaterialTable,
+        picture: Option<TextureId>,
+    ) -> Result<Option<Coverage>> {
+        let mode = table.alpha_mode.as_ref();
+        let is_mask = mode.is_some_and(|mode| mode.value == MapAlpha::Mask);
+        if let Some(At { span, .. }) = table.alpha_cutoff.as_ref().filter(|_| !is_mask) {
+            let message = "`alpha_cutoff` is about a mask, and there is none";
+            return Err(self.source.error(span, message).help("add `alpha_mode = \"mask\"`"));
         }
-        let image = picture::read(&path, wanted).map_err(|e| {
-            let message = format!("the picture {}: {}", path.display(), e.message());
-            self.source.error(span, message).help("a path is relative to the scene file's folder")
-        })?;
-        let texture = Texture {
-            image: Arc::new(image),
-            transfer: Transfer::Srgb,
-            wrap: [Wrap::Repeat; 2],
-            filter: Filter::Linear,
+        let Some(At { span, value }) = mode else { return Ok(None) };
+        let mode = match value {
+            MapAlpha::Opaque => return Ok(None),
+            MapAlpha::Mask => {
+                let cutoff = table.alpha_cutoff.as_ref().map_or(0.5, |at| at.value.0 as f32);
+                AlphaMode::Mask { cutoff }
+            }
+            MapAlpha::Blend if table.transmit.is_some() => {
+                let message = "`transmit` and a blended alpha both say what is seen through it";
+                return Err(self.source.error(span, message).help("leave one of them out"));
+            }
+            MapAlpha::Blend => AlphaMode::Blend,
         };
-        let texture = self.scene.add_texture(texture);
-        self.pictures.insert(same, texture);
-        Ok(Some(texture))
+        let Some(texture) = picture else {
+            let message = "`alpha_mode` is about the alpha of a picture, and there is none";
+            return Err(self.source.error(span, message).help("add a `diffuse_map`"));
+        };
+        Ok(Some(Coverage { alpha: 1.0, map: Some(Channel { texture, channel: 3 }), mode }))
     }
 
     /// The material with a name.

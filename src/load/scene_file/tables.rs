@@ -115,11 +115,14 @@ pub struct MaterialTable {
     /// Share of the light that is scattered to all sides.
     #[schemars(extend("default" = 0.8))]
     pub diffuse: Option<At<Color>>,
-    /// Picture file (PNG, JPEG, WebP, TGA or BMP, in sRGB) multiplied with `diffuse`.
+    /// Picture file (PNG, JPEG, WebP, TGA or BMP, in sRGB; HDR or EXR, linear) multiplied with
+    /// `diffuse`.
     pub diffuse_map: Option<At<String>>,
     /// Share of the light in the highlight.
     #[schemars(extend("default" = 0))]
     pub specular: Option<Color>,
+    /// Picture file, in sRGB, multiplied with `specular`.
+    pub specular_map: Option<At<String>>,
     /// Phong's exponent: the greater, the smaller the highlight.
     #[schemars(extend("default" = 50))]
     pub shininess: Option<Shininess>,
@@ -128,6 +131,18 @@ pub struct MaterialTable {
     pub emission: Option<Color>,
     /// Picture file, in sRGB, multiplied with `emission`.
     pub emission_map: Option<At<String>>,
+    /// Picture file of normals in tangent space, as in glTF: linear, y up in the picture.
+    pub normal_map: Option<At<String>>,
+    /// How the pictures are read: `"nearest"`, `"linear"`, or `"mipmap"`, which averages what each
+    /// sample sees of them.
+    #[schemars(extend("default" = "linear"))]
+    pub filter: Option<MapFilter>,
+    /// What the alpha of `diffuse_map` means: nothing, a hole where it is below `alpha_cutoff`, or
+    /// how much is covered of what lies behind.
+    #[schemars(extend("default" = "opaque"))]
+    pub alpha_mode: Option<At<MapAlpha>>,
+    /// The alpha below which `alpha_mode = "mask"` cuts holes; 0.5 unless it is said.
+    pub alpha_cutoff: Option<At<Share>>,
     /// Share of what is seen in it as in a mirror.
     #[schemars(extend("default" = 0))]
     pub reflect: Option<At<Color>>,
@@ -151,6 +166,31 @@ pub struct MaterialTable {
     /// Whether a sphere is lit on its inside too; planes and meshes always are.
     #[schemars(extend("default" = false))]
     pub double_sided: Option<bool>,
+}
+
+/// How pictures are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MapFilter {
+    /// The pixel that holds the point.
+    Nearest,
+    /// The four around it, in proportion.
+    #[default]
+    Linear,
+    /// The mean of what a sample sees.
+    Mipmap,
+}
+
+/// What the alpha of a picture means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MapAlpha {
+    /// Nothing.
+    Opaque,
+    /// A hole where it is below a cutoff.
+    Mask,
+    /// How much is covered of what lies behind.
+    Blend,
 }
 
 /// A sphere.

@@ -77,6 +77,9 @@ impl<'s> Oracle<'s> {
                 if starts_on(self.scene, corners, ray) {
                     return None;
                 }
+                if self.scene.is_cut_out(id, crossing.u, crossing.v) {
+                    return None;
+                }
                 (crossing.t, crossing.u, crossing.v)
             }
         };

@@ -1,0 +1,106 @@
+//! What surfaces cover: alpha, and the holes that a mask cuts.
+
+use crate::geometry::{Geometry, PrimitiveId};
+use crate::scene::{AlphaMode, Coverage, Scene, Texture, TexturePoint};
+
+impl Coverage {
+    /// The alpha at a point, where that of the mesh's vertices is `vertex`.
+    #[inline]
+    pub fn at(&self, textures: &[Texture], point: &TexturePoint, vertex: f32) -> f32 {
+        let map = self.map.map_or(1.0, |map| {
+            textures[map.texture.0 as usize].at(point)[usize::from(map.channel)]
+        });
+        let alpha = self.alpha * map * vertex;
+        // What is not a number becomes 0.
+        if alpha > 0.0 { alpha.min(1.0) } else { 0.0 }
+    }
+}
+
+impl Scene {
+    /// Whether the mask of its material cuts the point (`u`, `v`) out of a triangle, so that no ray
+    /// meets it there: the one alpha test, for every intersector.
+    ///
+    /// The alpha is that of the picture itself, whatever is averaged where it is shaded.
+    ///
+    /// # Panics
+    /// When `id` is not a primitive of this scene.
+    #[inline]
+    pub fn is_cut_out(&self, id: PrimitiveId, u: f64, v: f64) -> bool {
+        let Geometry::Mesh(mesh) = id.geometry else { return false };
+        // A scene that is not checked yet may have an instance without a material.
+        let material = self.instances[id.instance as usize].material.0 as usize;
+        let Some(coverage) = self.materials.get(material).and_then(|m| m.coverage.as_ref()) else {
+            return false;
+        };
+        let AlphaMode::Mask { cutoff } = coverage.mode else { return false };
+        let mesh = &self.meshes[mesh as usize];
+        let weights = [1.0 - u - v, u, v];
+        let uv = mesh.uv(id.primitive, weights);
+        let point = TexturePoint { uv, ..TexturePoint::default() };
+        coverage.at(&self.textures, &point, mesh.alpha(id.primitive, weights)) < cutoff
+    }
+
+    /// Whether the material of an instance cuts holes into its mesh.
+    pub(crate) fn is_masked(&self, instance: u32) -> bool {
+        let material = self.instances[instance as usize].material.0 as usize;
+        self.materials.get(material).is_some_and(|m| m.is_masked())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Channel, Filter, Image, Instance, Material, Mesh};
+    use glam::DAffine3;
+
+    /// A triangle whose picture is solid on its left half only.
+    fn half() -> Scene {
+        let mut scene = Scene::default();
+        let image = Image::bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);
+        let texture = Texture { filter: Filter::Nearest, ..Texture::new(image.into()) };
+        let map = Some(Channel { texture: scene.add_texture(texture), channel: 3 });
+        let coverage = Coverage { alpha: 1.0, map, mode: AlphaMode::Mask { cutoff: 0.5 } };
+        let material = Material { coverage: Some(coverage), ..Material::default() };
+        let material = scene.add_material(material);
+        let mesh = scene.add_mesh(Mesh {
+            positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]],
+            uvs: vec![[0., 0.], [1., 0.], [0., 1.]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        });
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+        scene
+    }
+
+    const ID: PrimitiveId = PrimitiveId::triangle(0, 0, 0);
+
+    #[test]
+    fn a_mask_cuts_where_alpha_is_below_the_cutoff() {
+        let scene = half();
+        assert_eq!([0.4, 0.6].map(|u| scene.is_cut_out(ID, u, 0.1)), [false, true]);
+    }
+
+    #[test]
+    fn alpha_at_the_cutoff_is_solid() {
+        let mut scene = half();
+        let mode = AlphaMode::Mask { cutoff: 100.0 / 255.0 };
+        scene.materials[0].coverage.as_mut().unwrap().mode = mode;
+        assert!(!scene.is_cut_out(ID, 0.6, 0.1));
+    }
+
+    #[test]
+    fn the_factor_and_the_vertices_count() {
+        let mut scene = half();
+        std::sync::Arc::make_mut(&mut scene.meshes[0]).alphas = vec![1.0, 1.0, 0.0];
+        assert_eq!([0.1, 0.9].map(|v| scene.is_cut_out(ID, 0.0, v)), [false, true]);
+        scene.materials[0].coverage.as_mut().unwrap().alpha = 0.4;
+        assert!(scene.is_cut_out(ID, 0.0, 0.1));
+    }
+
+    #[test]
+    fn what_is_blended_is_not_cut() {
+        let mut scene = half();
+        scene.materials[0].coverage.as_mut().unwrap().mode = AlphaMode::Blend;
+        assert!(!scene.is_cut_out(ID, 0.6, 0.1));
+    }
+}
