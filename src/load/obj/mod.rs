@@ -5,10 +5,12 @@
 //! docs/formats.md.
 
 mod corners;
+mod files;
 mod illumination;
 mod library;
 mod lines;
 mod map;
+mod material;
 mod mtl;
 mod plain;
 mod polygon;
@@ -17,6 +19,7 @@ mod segments;
 mod smooth;
 mod sorter;
 mod stream;
+mod textures;
 mod vertices;
 
 use std::path::Path;
@@ -50,19 +53,20 @@ fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
         tobj::load_obj_buf(made, &options, |_| Err(tobj::LoadError::GenericFailure))
     })?;
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut library = Library::read(&made.libraries, folder, wanted, &mut tally);
+    let mut library = Library::read(&made.libraries, path, &mut tally);
     let mut scene = Scene::default();
+    let unit = unit_of_colors(&models);
     for model in models {
         let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
             continue;
         };
-        let Some(mesh) = mesh(&model.mesh, part, &mut tally) else { continue };
+        let Some(mesh) = mesh(&model.mesh, part, unit, &mut tally) else { continue };
         let name = part.setting.material.as_deref().unwrap_or_default();
         let material = library.get(name, &mut scene, &mut tally);
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }
+    library.decode(wanted, &mut scene, &mut tally);
     if scene.instances.is_empty() {
         tally.say("there is no face in the file");
     }
@@ -70,8 +74,14 @@ fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The mesh of a part; nothing where it has no triangle.
-fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
+/// What stands for a full vertex colour: 1, or 255 where a value is above 1.
+fn unit_of_colors(models: &[tobj::Model]) -> f32 {
+    let mut values = models.iter().flat_map(|model| &model.mesh.vertex_color);
+    if values.any(|&x| x > 1.0) { 255.0 } else { 1.0 }
+}
+
+/// The mesh of a part; nothing where it has no triangle. Its vertices' colours go up to `unit`.
+fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Tally) -> Option<Mesh> {
     let name = part.setting.name.as_deref();
     let place = name.unwrap_or("the object without a name");
     let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
@@ -80,7 +90,7 @@ fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
     let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x));
+    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / unit));
     let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
     let mut mesh = Mesh {
         name: name.unwrap_or_default().to_owned(),
