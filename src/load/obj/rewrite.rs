@@ -192,7 +192,7 @@ impl Counts {
         }
         // Six numbers, whatever their form.
         self.colored |= kind == 0 && {
-            let spaces = line.bytes().filter(|b| matches!(b, b' ' | b'\t')).count();
+            let spaces = line.bytes().fold(0u32, |n, b| n + u32::from((b == b' ') | (b == b'\t')));
             spaces > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
         };
     }
