@@ -12,6 +12,7 @@ mod place;
 mod repair;
 mod scene_file;
 mod settle;
+mod studio;
 mod tally;
 mod tangents;
 
@@ -21,14 +22,16 @@ use crate::error::{Error, Result};
 use crate::scene::{Scene, Skips, Work, closed};
 
 pub use scene_file::schema;
+pub use studio::add_ground;
 
 /// Samples per pixel of a bare model file, which has no setting of its own.
 pub const BARE_MODEL_SPP: u32 = 16;
 
 /// Loads a scene file or a bare model file, by its extension.
 ///
-/// A bare model gets a camera that frames it and default lights where it has none of its own, and
-/// [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does not name.
+/// A bare model gets a camera that frames it and lights where it has none of its own, a neutral
+/// background, and [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does
+/// not name.
 ///
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
@@ -60,7 +63,7 @@ pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Sc
     framing::frame(&mut scene);
     if !from_file {
         scene.film.spp = BARE_MODEL_SPP;
-        framing::light(&mut scene);
+        studio::light(&mut scene);
     }
     settle::settle(&mut scene);
     scene.check().map_err(|e| e.at(path))?;

@@ -76,6 +76,17 @@ impl Tally {
         }
     }
 
+    /// Adds what another one has counted, which comes after.
+    pub fn append(&mut self, later: Self) {
+        for entry in later.entries {
+            match self.entries.iter_mut().find(|e| e.reason == entry.reason) {
+                Some(own) => own.count += entry.count,
+                None => self.entries.push(entry),
+            }
+        }
+        self.report.add(later.report);
+    }
+
     fn state(&mut self, kind: Kind, reason: String) {
         if !self.entries.iter().any(|e| e.reason == reason) {
             self.entries.push(Entry { kind, reason, count: 1, first: String::new() });
