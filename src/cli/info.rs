@@ -96,7 +96,8 @@ impl fmt::Display for Motion {
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
-    let scene = load::load(&arguments.scene)?;
+    let scene =
+        load::load_with(&arguments.scene, &arguments.trust.options(None, Skips::default()))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);

@@ -7,8 +7,9 @@ use gltf::json;
 use gltf::json::texture::{Info, MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
 
-use super::buffers::{Buffers, Target, get};
+use super::buffers::{Buffers, Target, cannot_have, get};
 use crate::error::{Error, Place, Result};
+use crate::load::guard::Guard;
 use crate::load::picture;
 use crate::load::tally::Tally;
 use crate::scene::{Filter, Image, Texture, Transfer, Wrap};
@@ -57,6 +58,7 @@ impl UvMap {
 /// The pictures of a file, decoded when they are first asked for.
 pub struct Textures<'a> {
     root: &'a json::Root,
+    guard: &'a Guard,
     buffers: &'a Buffers<'a>,
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
@@ -67,8 +69,13 @@ pub struct Textures<'a> {
 
 impl<'a> Textures<'a> {
     /// The textures of a file, whose pictures are read where they are `wanted`.
-    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>, wanted: bool) -> Self {
-        Self { root, buffers, wanted, images: HashMap::new(), by_uri: HashMap::new() }
+    pub fn new(
+        root: &'a json::Root,
+        guard: &'a Guard,
+        buffers: &'a Buffers<'a>,
+        wanted: bool,
+    ) -> Self {
+        Self { root, guard, buffers, wanted, images: HashMap::new(), by_uri: HashMap::new() }
     }
 
     /// A texture, its picture decoded. A picture that cannot be had is a warning, and a
@@ -129,13 +136,13 @@ impl<'a> Textures<'a> {
         let at = format!("images[{index}]");
         let read = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.buffers.resolve(uri) {
-                Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, self.wanted),
-                Ok(Target::File(path)) => picture::read(&path, self.wanted),
-                Err(error) => Err(error),
+                Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, self.guard, self.wanted),
+                Ok(Target::File(file)) => picture::read(file, self.guard, self.wanted),
+                Err(error) => Err(cannot_have("picture", uri, &error)),
             },
             (None, Some(view)) => {
                 let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"))?;
-                picture::decode(bytes, &at, self.wanted)
+                picture::decode(bytes, &at, self.guard, self.wanted)
             }
             (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
         };

@@ -22,7 +22,8 @@ use super::tables::{
     CameraTable, FilmTable, LightTable, MaterialTable, PlaneTable, SceneTable, SphereTable,
 };
 use super::values::SampleRange;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::load::guard::Guard;
 use crate::load::picture;
 use crate::scene::animation::Mover;
 use crate::scene::check::{self, MAX_COORDINATE};
@@ -32,7 +33,7 @@ use crate::scene::{
 };
 
 /// The scene that the tables of a file describe, with `all` pictures or those that something shows.
-pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene> {
+pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -44,6 +45,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
     let (animation, rigs) = animation::animation(source, &tables, &names)?;
     let mut resolver = Resolver {
         source,
+        guard,
         names: &names,
         shown: Shown::of(source, &tables, all),
         rigs: &rigs,
@@ -109,6 +111,8 @@ fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adapti
 pub struct Resolver<'a> {
     /// The file.
     pub source: &'a Source<'a>,
+    /// The bounds of the load.
+    pub guard: &'a Guard,
     /// Which pictures something shows.
     pub shown: Shown,
     /// Its objects with names.
@@ -215,15 +219,13 @@ impl Resolver<'_> {
         let Some(At { span, value: name }) = file else {
             return Ok(None);
         };
-        let path = self.source.file(name);
-        let same = (path.canonicalize().unwrap_or_else(|_| path.clone()), wanted);
+        let fail = |e: Error| self.source.cannot_have(span, "picture", name, &e);
+        let file = self.guard.open(self.source.folder(), &[name]).map_err(fail)?;
+        let same = (file.identity.clone(), wanted);
         if let Some(&texture) = self.pictures.get(&same) {
             return Ok(Some(texture));
         }
-        let image = picture::read(&path, wanted).map_err(|e| {
-            let message = format!("the picture {}: {}", path.display(), e.message());
-            self.source.error(span, message).help("a path is relative to the scene file's folder")
-        })?;
+        let image = picture::read(file, self.guard, wanted).map_err(fail)?;
         let texture = Texture {
             image: Arc::new(image),
             transfer: Transfer::Srgb,
