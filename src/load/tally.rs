@@ -1,11 +1,21 @@
 //! What an importer drops or changes, counted by reason, so that nothing is lost in silence and a
 //! broken file doesn't print a million lines.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 /// Counts, by reason, with the first place of each.
 #[derive(Debug, Default)]
-pub struct Tally(Vec<Entry>);
+pub struct Tally {
+    entries: Vec<Entry>,
+    /// Where among them each reason stands.
+    known: HashMap<String, usize>,
+    /// How many sentences were one too many.
+    left_out: u64,
+}
+
+/// The most sentences that are said of a file; who wants more can mend these first.
+const MAX_SENTENCES: usize = 100;
 
 #[derive(Debug)]
 struct Entry {
@@ -20,17 +30,22 @@ impl Tally {
         if count == 0 {
             return;
         }
-        match self.0.iter_mut().find(|e| e.reason == reason) {
-            Some(entry) => entry.count += count,
-            None => self.0.push(Entry { reason: reason.to_owned(), count, first: place() }),
-        }
+        self.count(reason, count, place);
     }
 
     /// Adds a sentence that stands alone, once however often it is said.
     pub fn say(&mut self, sentence: impl Into<String>) {
-        let sentence = sentence.into();
-        if !self.0.iter().any(|e| e.reason == sentence) {
-            self.0.push(Entry { reason: sentence, count: 1, first: String::new() });
+        self.count(&sentence.into(), 1, String::new);
+    }
+
+    fn count(&mut self, reason: &str, count: u64, first: impl FnOnce() -> String) {
+        if let Some(&known) = self.known.get(reason) {
+            self.entries[known].count += count;
+        } else if self.entries.len() < MAX_SENTENCES {
+            self.known.insert(reason.to_owned(), self.entries.len());
+            self.entries.push(Entry { reason: reason.to_owned(), count, first: first() });
+        } else {
+            self.left_out += 1;
         }
     }
 
@@ -44,7 +59,9 @@ impl Tally {
                 (false, _) => format!("{}: {text}, first at {}", file.display(), e.first),
             }
         };
-        self.0.into_iter().map(sentence).collect()
+        let left_out = (self.left_out > 0)
+            .then(|| format!("{}: {} more warnings are left out", file.display(), self.left_out));
+        self.entries.into_iter().map(sentence).chain(left_out).collect()
     }
 }
 
@@ -67,6 +84,15 @@ mod tests {
         tally.say("animations are not played");
         tally.say("animations are not played");
         assert_eq!(tally.sentences(Path::new("a")), ["a: animations are not played"]);
+    }
+
+    #[test]
+    fn what_is_said_over_and_over_in_other_words_is_counted() {
+        let mut tally = Tally::default();
+        (0..MAX_SENTENCES + 7).for_each(|i| tally.say(format!("picture {i} is missing")));
+        let said = tally.sentences(Path::new("a"));
+        assert_eq!(said.len(), MAX_SENTENCES + 1);
+        assert_eq!(said.last().unwrap(), "a: 7 more warnings are left out");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! glTF's metallic-roughness materials on a Lambert and Phong shader, as docs/formats.md explains.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::Vec3;
 use gltf::json;
@@ -11,7 +12,7 @@ use super::optics::{self, Transmission};
 use super::texture::{Textures, UvMap};
 use crate::error::Result;
 use crate::load::tally::Tally;
-use crate::scene::{Material, MaterialId, Scene, TextureId, Transfer};
+use crate::scene::{Image, Material, MaterialId, Scene, TextureId, Transfer};
 
 /// The range of shininess: roughness 1 would give 0, and roughness 0 infinity.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
@@ -25,6 +26,8 @@ pub struct Materials<'a> {
     textures: Textures<'a>,
     made: HashMap<Option<usize>, Made>,
     texture_ids: HashMap<usize, TextureId>,
+    /// How often each value of each channel stands in a picture, by its address.
+    counts: HashMap<*const Image, Box<[[u64; 256]; 4]>>,
 }
 
 /// A material of the scene, and how its textures take their coordinates.
@@ -39,7 +42,13 @@ pub struct Made {
 impl<'a> Materials<'a> {
     /// The materials of a file.
     pub fn new(root: &'a json::Root, textures: Textures<'a>) -> Self {
-        Self { root, textures, made: HashMap::new(), texture_ids: HashMap::new() }
+        Self {
+            root,
+            textures,
+            made: HashMap::new(),
+            texture_ids: HashMap::new(),
+            counts: HashMap::new(),
+        }
     }
 
     /// The material of index `index`, or the one for primitives that name none.
@@ -219,12 +228,16 @@ impl<'a> Maker<'_, 'a> {
         let by = format!("{place}.index");
         let texture = self.all.textures.get(info.index.value(), transfer, &by, self.tally)?;
         self.tally.add(reason, 1, || place.to_owned());
-        let mut counts = [[0u64; 256]; 4];
-        for texel in &texture.image.texels {
-            for (count, &value) in counts.iter_mut().zip(texel) {
-                count[usize::from(value)] += 1;
+        // Any number of materials can name one picture.
+        let counts = self.all.counts.entry(Arc::as_ptr(&texture.image)).or_insert_with(|| {
+            let mut counts = Box::new([[0u64; 256]; 4]);
+            for texel in &texture.image.texels {
+                for (count, &value) in counts.iter_mut().zip(texel) {
+                    count[usize::from(value)] += 1;
+                }
             }
-        }
+            counts
+        });
         let total = texture.image.texels.len().max(1) as f64;
         Ok(std::array::from_fn(|channel| {
             let curve = if channel == 3 { Transfer::None } else { transfer };

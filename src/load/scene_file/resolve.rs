@@ -32,6 +32,9 @@ use crate::scene::{
     TextureId, Transfer, Wrap,
 };
 
+/// So many materials that are too bright are named; the others are counted.
+const MAX_NAMED: u64 = 100;
+
 /// The scene that the tables of a file describe, with `all` pictures or those that something shows.
 pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
@@ -53,6 +56,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) 
         materials: HashMap::new(),
         plain: None,
         pictures: HashMap::new(),
+        too_bright: 0,
     };
     tables.camera.0.iter().try_for_each(|c| resolver.camera(c))?;
     tables.material.0.iter().try_for_each(|m| resolver.material(m))?;
@@ -61,7 +65,11 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) 
     tables.light.0.iter().try_for_each(|l| resolver.light(&l.value.0))?;
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
-    let scene = resolver.scene;
+    let mut scene = resolver.scene;
+    if let more @ 1.. = resolver.too_bright.saturating_sub(MAX_NAMED) {
+        let file = source.shown(&(0..0));
+        scene.warnings.push(format!("{file}: {more} more materials scatter more than they get"));
+    }
     Ok(scene)
 }
 
@@ -127,6 +135,8 @@ pub struct Resolver<'a> {
     plain: Option<MaterialId>,
     /// The pictures so far, by their canonical paths and whether they were read.
     pictures: HashMap<(PathBuf, bool), TextureId>,
+    /// How many materials scatter more light than they get.
+    too_bright: u64,
 }
 
 impl Resolver<'_> {
@@ -188,11 +198,15 @@ impl Resolver<'_> {
         if let Some(At { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
         {
-            self.scene.warnings.push(format!(
-                "{}: the material `{name}` scatters more light than it gets (numbers in \
-                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
-                self.source.shown(span)
-            ));
+            self.too_bright += 1;
+            // To find a line takes as long as there are lines before it.
+            if self.too_bright <= MAX_NAMED {
+                self.scene.warnings.push(format!(
+                    "{}: the material `{name}` scatters more light than it gets (numbers in \
+                     `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
+                    self.source.shown(span)
+                ));
+            }
         }
         if let Some(At { span, .. }) = table.transmit.as_ref().or(table.reflect.as_ref())
             && (material.reflect + material.transmit).max_element() > 1.0 + 1e-6

@@ -1,0 +1,363 @@
+//! glTF files that are small and ask for much, or go round in circles.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::common::{Model, data_uri, png};
+use super::{Case, Error, Expect, Loads, Warning};
+
+fn text(model: &Model) -> String {
+    model.to_json(Some(&data_uri(model.bin()))).to_string()
+}
+
+fn case(name: &str, text: impl AsRef<[u8]>, expect: Expect) -> Case {
+    Case::new(format!("gltf {name}"), "hostile.gltf", text, expect)
+}
+
+/// The triangle with other nodes.
+fn nodes(name: &str, nodes: Vec<Value>, expect: Expect) -> Case {
+    let mut model = Model::triangle();
+    model.json["nodes"] = nodes.into();
+    case(name, text(&model), expect)
+}
+
+/// The triangle after a change.
+fn changed(name: &str, expect: Expect, change: impl FnOnce(&mut Model)) -> Case {
+    let mut model = Model::triangle();
+    change(&mut model);
+    case(name, text(&model), expect)
+}
+
+/// A triangle with a texture by a picture.
+fn textured(image: Value) -> Model {
+    let mut model = Model::triangle();
+    let uvs = model.floats("VEC2", &[0.0; 6]);
+    model.primitive()["attributes"]["TEXCOORD_0"] = uvs.into();
+    model.material(json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}));
+    model.json["textures"] = json!([{"source": 0}]);
+    model.json["images"] = json!([image]);
+    model
+}
+
+pub fn cases() -> Vec<Case> {
+    let chain = |n: usize, last: Value| {
+        let link = |i: usize| json!({"children": [i + 1]});
+        (0..n - 1).map(link).chain([last]).collect::<Vec<_>>()
+    };
+    let mut cases = vec![
+        case("of no bytes", "", Error("empty")),
+        case("of spaces", " ".repeat(4096), Error("no JSON")),
+        case("of a zero byte", "\0", Error("JSON")),
+        case("in UTF-16", b"\xFF\xFE{\0}\0", Error("UTF-16")),
+        case("that is a list", "[]", Error("")),
+        case("that is a number", "1e999", Error("")),
+        case("of a million brackets", "[".repeat(1 << 20), Error("")),
+        case("of a million braces", "{\"a\":".repeat(1 << 20), Error("")),
+        case("that is not closed", "{\"asset\": {\"version\": \"2.0\"}", Error("JSON")),
+        case("with half a surrogate", r#"{"asset": {"version": "\ud800"}}"#, Error("JSON")),
+        case(
+            "that is not UTF-8",
+            b"{\"asset\": {\"version\": \"2.0\", \"a\": \"\xFF\"}}",
+            Expect::Any,
+        ),
+        case(
+            "with every key twice",
+            r#"{"asset":{"version":"2.0"},"asset":{"version":"2.0"}}"#,
+            Expect::Any,
+        ),
+        case(
+            "with a version of a megabyte",
+            format!(r#"{{"asset":{{"version":"{}"}}}}"#, "9".repeat(1 << 20)),
+            Error(""),
+        ),
+        nodes("loop of one node", vec![json!({"children": [0]})], Error("its own ancestor")),
+        nodes(
+            "loop of two nodes",
+            vec![json!({"children": [1]}), json!({"children": [0]})],
+            Error("its own ancestor"),
+        ),
+        nodes(
+            "loop of 100000 nodes",
+            chain(100_000, json!({"children": [0]})),
+            Error("its own ancestor"),
+        ),
+        nodes(
+            "loop beside the root",
+            vec![json!({"mesh": 0}), json!({"children": [2]}), json!({"children": [1]})],
+            Error("its own ancestor"),
+        ),
+        nodes("chain of 4096 nodes", chain(4096, json!({"mesh": 0})), Loads),
+        nodes(
+            "chain of 4097 nodes",
+            chain(4097, json!({"mesh": 0})),
+            Error("`--limit depth=4097`"),
+        ),
+        nodes("chain of a million nodes", chain(1_000_000, json!({"mesh": 0})), Error("depth")),
+        nodes(
+            "of 2^30 paths",
+            (0..30)
+                .map(|i| json!({"children": [i + 1, i + 1]}))
+                .chain([json!({"mesh": 0})])
+                .collect(),
+            Warning("stand twice"),
+        ),
+        nodes(
+            "that 50000 nodes have for a child",
+            {
+                let mut all: Vec<_> = (2..50_001).map(|_| json!({"children": [1]})).collect();
+                all.insert(0, json!({"children": (2..50_001).collect::<Vec<_>>()}));
+                all.insert(1, json!({"mesh": 0}));
+                all
+            },
+            Warning("stand twice"),
+        ),
+        nodes(
+            "of more than 2^20 nodes",
+            vec![json!({}); (1 << 20) + 1],
+            Error("`--limit nodes=1048577`"),
+        ),
+        nodes(
+            "transforms that overflow together",
+            {
+                let mut all = chain(20, json!({"mesh": 0}));
+                all.iter_mut().for_each(|node| node["scale"] = json!([1e30, 1e30, 1e30]));
+                all
+            },
+            Error("overflow"),
+        ),
+    ];
+    cases.extend(amounts());
+    cases.extend(links());
+    cases
+}
+
+fn amounts() -> Vec<Case> {
+    let deep = |n: usize| format!("{}{}", "[".repeat(n), "]".repeat(n));
+    vec![
+        changed("extras nested 100 deep", Loads, |m| m.json["extras"] = serde_json::from_str(&deep(100)).unwrap()),
+        case("extras nested 100000 deep", format!(r#"{{"asset":{{"version":"2.0"}},"extras":{}}}"#, deep(100_000)), Error("")),
+        case("extension nested 100000 deep", format!(r#"{{"asset":{{"version":"2.0"}},"extensions":{{"A":{}}}}}"#, deep(100_000)), Error("")),
+        changed("key of a megabyte over 100000 numbers", Expect::Any, |m| {
+            let numbers: Vec<u64> = (0..100_000).map(|_| 1 << 40).collect();
+            m.json["extensions"] = json!({"x".repeat(1 << 20): numbers});
+        }),
+        changed("accessor without a view of 4e9 elements", Error("elements"), |m| {
+            *m.accessor_mut(0) = json!({"componentType": 5126, "type": "VEC3", "count": 4_000_000_000u64});
+        }),
+        changed("accessor without a view at the limit", Expect::Any, |m| {
+            *m.accessor_mut(0) = json!({"componentType": 5126, "type": "VEC3", "count": 1 << 25});
+        }),
+        changed("sparse accessor without a view of 4e9 elements", Error("elements"), |m| {
+            let (at, values) = (m.view(&[0, 0]), m.view(&[0; 12]));
+            *m.accessor_mut(0) = json!({"componentType": 5126, "type": "VEC3", "count": 4_000_000_000u64,
+                "sparse": {"count": 1, "indices": {"bufferView": at, "componentType": 5123}, "values": {"bufferView": values}}});
+        }),
+        changed("100000 primitives of one accessor", Expect::Any, |m| {
+            let primitive = m.primitive().clone();
+            m.json["meshes"][0]["primitives"] = vec![primitive; 100_000].into();
+        }),
+        changed("64 meshes of a million vertices each on the same megabyte", Expect::Any, |m| {
+            let view = m.view(&vec![0x3f; 1 << 20]);
+            m.last_view()["byteStride"] = 1.into();
+            let count = (1 << 20) - 11;
+            let all = m.accessor(json!({"bufferView": view, "componentType": 5126, "type": "VEC3", "count": count}));
+            let primitive = json!({"attributes": {"POSITION": all, "NORMAL": all}});
+            m.json["meshes"][0]["primitives"] = vec![primitive; 64].into();
+        }),
+        changed("indices that all name the last of many vertices", Expect::Any, |m| {
+            let positions = m.accessor(json!({"componentType": 5126, "type": "VEC3", "count": 1 << 23}));
+            let indices = m.accessor(json!({"componentType": 5125, "type": "SCALAR", "count": 1 << 23}));
+            *m.primitive() = json!({"attributes": {"POSITION": positions}, "indices": indices});
+        }),
+        changed("strip of many vertices", Expect::Any, |m| {
+            let positions = m.accessor(json!({"componentType": 5126, "type": "VEC3", "count": 1 << 23}));
+            *m.primitive() = json!({"attributes": {"POSITION": positions}, "mode": 5});
+        }),
+        changed("vertices that are no numbers", Warning("not a finite number"), |m| {
+            let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY].repeat(3);
+            let positions = m.floats("VEC3", &bad);
+            m.primitive()["attributes"]["POSITION"] = positions.into();
+        }),
+        changed("vertices at the edge of what floats hold", Error(""), |m| {
+            let positions = m.floats("VEC3", &[f32::MAX, f32::MIN, 0., f32::MIN_POSITIVE, 1e-45, 0., 0., f32::MAX, 1.]);
+            m.primitive()["attributes"]["POSITION"] = positions.into();
+        }),
+        changed("triangle whose corners are one point", Expect::Any, |m| {
+            let positions = m.floats("VEC3", &[0.5; 9]);
+            m.primitive()["attributes"]["POSITION"] = positions.into();
+        }),
+        changed("100000 textures without a picture", Warning("picture"), |m| {
+            let uvs = m.floats("VEC2", &[0.0; 6]);
+            let texture = |i: usize| json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}});
+            m.json["materials"] = (0..100_000).map(texture).collect();
+            m.json["textures"] = vec![json!({}); 100_000].into();
+            let mut primitive = m.primitive().clone();
+            primitive["attributes"]["TEXCOORD_0"] = uvs.into();
+            let with = |i: usize| { let mut p = primitive.clone(); p["material"] = i.into(); p };
+            m.json["meshes"][0]["primitives"] = (0..100_000).map(with).collect();
+        }),
+        changed("100000 extensions with names of their own", Warning("extension"), |m| {
+            m.json["extensionsUsed"] = (0..100_000).map(|i| format!("EXT_{i}")).collect();
+        }),
+        changed("name of a megabyte", Loads, |m| m.json["meshes"][0]["name"] = "x".repeat(1 << 20).into()),
+        changed("name that clears the screen", Expect::Any, |m| {
+            m.json["materials"] = json!([{"name": "\u{1b}[2J\u{1b}]0;owned\u{7}", "alphaMode": "BLEND",
+                "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0]}}]);
+            m.primitive()["material"] = 0.into();
+        }),
+        changed("20000 lights and cameras", Expect::Any, |m| {
+            m.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+            m.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+            m.json["cameras"] = json!([{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}]);
+            let node = json!({"camera": 0, "mesh": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}});
+            m.json["nodes"] = vec![node; 20_000].into();
+            m.json["scenes"][0]["nodes"] = (0..20_000).collect();
+        }),
+        changed("animation of keys without a view", Expect::Any, |m| {
+            let times = m.accessor(json!({"componentType": 5126, "type": "SCALAR", "count": 1 << 22}));
+            let values = m.accessor(json!({"componentType": 5126, "type": "VEC3", "count": 1 << 22}));
+            m.json["animations"] = json!([{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": times, "output": values}]}]);
+        }),
+        changed("animation of two counts that overflow together", Expect::Any, |m| {
+            let times = m.accessor(json!({"componentType": 5126, "type": "SCALAR", "count": 1u64 << 63}));
+            let channel = |path: &str| json!({"sampler": 0, "target": {"node": 0, "path": path}});
+            m.json["animations"] = json!([{"channels": [channel("translation"), channel("scale"), channel("rotation")],
+                "samplers": [{"input": times, "output": times}]}]);
+        }),
+        changed("animation of 100000 channels that lead nowhere", Warning("left out"), |m| {
+            let channel = json!({"sampler": 7, "target": {"node": 0, "path": "translation"}});
+            m.json["animations"] = json!([{"channels": vec![channel; 100_000], "samplers": []}]);
+        }),
+        changed("animation at times beyond all clocks", Expect::Any, |m| {
+            let times = m.floats("SCALAR", &[0.0, f32::MAX]);
+            let values = m.floats("VEC3", &[0.0; 6]);
+            m.json["animations"] = json!([{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": times, "output": values}]}]);
+        }),
+        changed("2000 buffers of one large file", Expect::Any, |_| {}).instead(&{
+            let mut json = Model::triangle().to_json(None);
+            let uri = |i: usize| json!({"byteLength": 1 << 22, "uri": format!("{}large.bin", "./".repeat(i))});
+            json["buffers"] = (0..2000).map(uri).collect();
+            let view = |i: usize| json!({"buffer": i, "byteLength": 36});
+            json["bufferViews"] = (0..2000).map(view).collect();
+            let accessor = |i: usize| json!({"bufferView": i, "componentType": 5126, "type": "VEC3", "count": 3});
+            json["accessors"] = (0..2000).map(accessor).collect();
+            let primitive = |i: usize| json!({"attributes": {"POSITION": i}});
+            json["meshes"][0]["primitives"] = (0..2000).map(primitive).collect();
+            json.to_string()
+        }).with("large.bin", vec![0; 1 << 22]),
+    ]
+}
+
+fn links() -> Vec<Case> {
+    let buffer = |name: &str, uri: &str, expect, prepare: fn(&Path)| {
+        let json = Model::triangle().to_json(Some(uri)).to_string();
+        case(name, json, expect).after(prepare)
+    };
+    let picture = |name: &str, uri: &str, expect, prepare: fn(&Path)| {
+        case(name, text(&textured(json!({"uri": uri}))), expect).after(prepare)
+    };
+    let fifo: fn(&Path) = |folder| {
+        let made = std::process::Command::new("mkfifo").arg(folder.join("pipe")).status();
+        assert!(made.unwrap().success());
+    };
+    let zero: fn(&Path) = |f| std::os::unix::fs::symlink("/dev/zero", f.join("link")).unwrap();
+    let itself: fn(&Path) = |f| std::os::unix::fs::symlink("link", f.join("link")).unwrap();
+    let nowhere: fn(&Path) = |f| std::os::unix::fs::symlink("gone", f.join("link")).unwrap();
+    let memory: fn(&Path) =
+        |f| std::os::unix::fs::symlink("/proc/self/mem", f.join("link")).unwrap();
+    let folder: fn(&Path) = |f| std::fs::create_dir(f.join("link")).unwrap();
+    let sparse: fn(&Path) = |f| {
+        std::fs::File::create(f.join("link")).unwrap().set_len(1 << 40).unwrap();
+    };
+    vec![
+        buffer("buffer that is a pipe", "pipe", Error("a pipe or a device"), fifo),
+        buffer("buffer that is an endless device", "/dev/zero", Error("not in the folder"), |_| {}),
+        buffer("buffer that links to an endless device", "link", Error("not in the folder"), zero),
+        buffer("buffer that links to itself", "link", Error("buffers[0].uri"), itself),
+        buffer("buffer that links to nothing", "link", Error("buffers[0].uri"), nowhere),
+        buffer(
+            "buffer that links to the memory of the process",
+            "link",
+            Error("not in the folder"),
+            memory,
+        ),
+        buffer("buffer that is a folder", "link", Error("a folder"), folder),
+        buffer("buffer of a tebibyte of nothing", "link", Error("`--limit bytes="), sparse),
+        buffer(
+            "buffer at an address",
+            "http://127.0.0.1:1/x",
+            Error("addresses are not read"),
+            |_| {},
+        ),
+        picture("picture that is a pipe", "pipe", Warning("a pipe or a device"), fifo),
+        picture(
+            "picture that links to an endless device",
+            "link",
+            Warning("not in the folder"),
+            zero,
+        ),
+        picture("picture that links to itself", "link", Warning("images[0]"), itself),
+        picture("picture of a tebibyte of nothing", "link", Warning("`--limit bytes="), sparse),
+        picture("picture that is the file itself", "hostile.gltf", Warning("images[0]"), |_| {}),
+        case(
+            "20000 pictures of one large bomb",
+            {
+                let mut model = textured(json!({"uri": "x"}));
+                let images: Vec<_> = (0..20_000)
+                    .map(|i| json!({"uri": format!("{}bomb.png", "./".repeat(i % 50 + 1))}))
+                    .collect();
+                let materials: Vec<_> = (0..20_000)
+                    .map(|i| json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}}))
+                    .collect();
+                let primitive = model.primitive().clone();
+                let primitives: Vec<_> = (0..20_000)
+                    .map(|i| {
+                        let mut p = primitive.clone();
+                        p["material"] = i.into();
+                        p
+                    })
+                    .collect();
+                model.json["images"] = images.into();
+                model.json["textures"] = (0..20_000).map(|i| json!({"source": i})).collect();
+                model.json["materials"] = materials.into();
+                model.json["meshes"][0]["primitives"] = primitives.into();
+                text(&model)
+            },
+            Expect::Any,
+        )
+        .with("bomb.png", super::pictures::flat_png(4096, 4096)),
+        case(
+            "100 buffer views that are the same bomb",
+            {
+                let mut model = textured(json!({"uri": "x"}));
+                let view = model.view(&super::pictures::flat_png(4096, 4096));
+                let materials: Vec<_> = (0..100)
+                    .map(|i| json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}}))
+                    .collect();
+                let primitive = model.primitive().clone();
+                let primitives: Vec<_> = (0..100)
+                    .map(|i| {
+                        let mut p = primitive.clone();
+                        p["material"] = i.into();
+                        p
+                    })
+                    .collect();
+                model.json["images"] =
+                    vec![json!({"bufferView": view, "mimeType": "image/png"}); 100].into();
+                model.json["textures"] = (0..100).map(|i| json!({"source": i})).collect();
+                model.json["materials"] = materials.into();
+                model.json["meshes"][0]["primitives"] = primitives.into();
+                text(&model)
+            },
+            Warning("`--limit pixels="),
+        ),
+        case(
+            "picture of one pixel",
+            text(&textured(json!({"uri": data_uri(&png(&[[1; 4]]))}))),
+            Loads,
+        ),
+    ]
+}
