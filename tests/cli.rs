@@ -22,6 +22,8 @@ mod skips;
 mod stress;
 #[path = "cli/tone.rs"]
 mod tone;
+#[path = "cli/trust.rs"]
+mod trust;
 #[path = "cli/warnings.rs"]
 mod warnings;
 #[path = "cli/work.rs"]

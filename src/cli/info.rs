@@ -102,7 +102,7 @@ pub fn run(arguments: &Info) -> Outcome {
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);
     if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&summary.to_string())?;
+        output::print(&report::printable(&summary.to_string()))?;
         summary.warnings.iter().for_each(|w| report::warning(w));
     }
     if let Some(path) = &arguments.json {

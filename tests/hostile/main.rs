@@ -16,8 +16,10 @@ mod obj;
 mod pictures;
 mod scene;
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// What the command should make of a file.
@@ -100,16 +102,19 @@ fn run(file: &Path) -> Result<(i32, String), String> {
     let mut child = Command::new("sh")
         .args(["-c", limited, env!("CARGO_BIN_EXE_envers")])
         .arg(file)
-        .stdout(Stdio::null())
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut stderr = child.stderr.take().unwrap();
-    let reader = std::thread::spawn(move || {
-        let mut bytes = Vec::new();
-        std::io::Read::read_to_end(&mut stderr, &mut bytes).unwrap();
-        String::from_utf8_lossy(&bytes).into_owned()
-    });
+    fn text(mut pipe: impl Read + Send + 'static) -> JoinHandle<String> {
+        std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            pipe.read_to_end(&mut bytes).unwrap();
+            String::from_utf8_lossy(&bytes).into_owned()
+        })
+    }
+    let stdout = text(child.stdout.take().unwrap());
+    let stderr = text(child.stderr.take().unwrap());
     let start = Instant::now();
     let status = loop {
         if let Some(status) = child.try_wait().unwrap() {
@@ -122,7 +127,10 @@ fn run(file: &Path) -> Result<(i32, String), String> {
         }
         std::thread::sleep(Duration::from_millis(2));
     };
-    let said = reader.join().unwrap();
+    let (said, shown) = (stderr.join().unwrap(), stdout.join().unwrap());
+    if [&said, &shown].iter().any(|text| text.contains(|c: char| c.is_control() && c != '\n')) {
+        return Err(format!("it sends codes to the terminal: {said:?}"));
+    }
     match status.code() {
         Some(code) => Ok((code, said)),
         None => Err(format!("{status}: {said}")),

@@ -155,7 +155,7 @@ pub fn cases() -> Vec<Case> {
     );
     case(
         "one library line of 100000 names",
-        { after(format!("mtllib{}\nf 1 2 3\n", " a.mtl".repeat(100_000))) },
+        after(format!("mtllib{}\nf 1 2 3\n", " a.mtl".repeat(100_000))),
         Warning("missing"),
     );
     case(
@@ -168,7 +168,7 @@ pub fn cases() -> Vec<Case> {
     );
     case(
         "number of a megabyte",
-        { after(format!("v {} 0 0\nf 1 2 4\n", "9".repeat(1 << 20))) },
+        after(format!("v {} 0 0\nf 1 2 4\n", "9".repeat(1 << 20))),
         Expect::Any,
     );
     case(

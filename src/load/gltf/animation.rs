@@ -72,7 +72,8 @@ impl Clip {
             });
             if let Err(error) = read {
                 let reason = "{} animation channels are left out: they are damaged";
-                tally.add(reason, 1, || format!("{at} ({})", error.message()));
+                let advice = error.advice().map(|advice| format!("; {advice}")).unwrap_or_default();
+                tally.add(reason, 1, || format!("{at} ({}{advice})", error.message()));
             }
         }
         Ok(clip)

@@ -125,7 +125,7 @@ impl Maker<'_, '_> {
     /// What shines through by alpha: by the factor alone, since the picture's is not read yet.
     pub fn alpha(&mut self, factor: f32, picture: Option<TextureId>, material: &mut Material) {
         let picture = picture.map(|id| &self.scene.textures[id.0 as usize].image.texels);
-        let pictured = picture.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 255));
+        let pictured = || picture.is_some_and(|texels| texels.iter().any(|texel| texel[3] < 255));
         let (alpha, reason) = match self.source.alpha_mode {
             Checked::Valid(AlphaMode::Mask) => {
                 let cutoff = self.source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
@@ -138,7 +138,7 @@ impl Maker<'_, '_> {
             Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => return,
         };
         let at = &self.at;
-        if pictured && alpha > 0.0 {
+        if alpha > 0.0 && pictured() {
             self.tally.add(reason, 1, || at.clone());
         }
         if alpha == 1.0 {
