@@ -1,5 +1,7 @@
 //! The picture while it is made: linear f32 pixels.
 
+use rayon::iter::ParallelIterator;
+
 /// What a picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
@@ -46,7 +48,13 @@ impl Film {
     /// A black picture.
     pub fn new(size: [u32; 2], view: View) -> Self {
         let count = size[0] as usize * size[1] as usize;
-        Self { size, view, pixels: vec![[0.0; 3]; count] }
+        // On all threads: touching so much memory for the first time takes a while.
+        const PART: usize = 64;
+        let parts: Vec<[Pixel; PART]> =
+            rayon::iter::repeat_n([[0.0; 3]; PART], count.div_ceil(PART)).collect();
+        let mut pixels = parts.into_flattened();
+        pixels.truncate(count);
+        Self { size, view, pixels }
     }
 
     /// The pixel in column `x` and row `y`.

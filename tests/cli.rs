@@ -20,6 +20,8 @@ mod reports;
 mod skips;
 #[path = "cli/stress.rs"]
 mod stress;
+#[path = "cli/strict.rs"]
+mod strict;
 #[path = "cli/tone.rs"]
 mod tone;
 #[path = "cli/trust.rs"]

@@ -159,7 +159,10 @@ fn empty_usemtl_means_no_material() {
 fn lines_and_points_are_counted_and_not_drawn() {
     let scene = load(format!("{VERTICES}l 1 2\np 1\nl 2 3 1\nf 1 2 3"));
     assert_eq!(scene.triangle_count(), 1);
-    assert_warns(&scene, "3 points and lines are not drawn, first at line 4");
+    assert_warns(
+        &scene,
+        "3 points, lines or curves are left out: only faces are drawn, first at line 4",
+    );
 }
 
 #[test]
@@ -224,7 +227,10 @@ fn vertex_that_is_not_finite_drops_its_faces() {
 
 #[test]
 fn face_of_two_corners_is_dropped() {
-    assert_warns(&load(format!("{VERTICES}f 1 2\nf 1 2 3")), "1 faces have fewer than three");
+    assert_warns(
+        &load(format!("{VERTICES}f 1 2\nf 1 2 3")),
+        "1 faces are left out: they have fewer than three",
+    );
 }
 
 // Materials

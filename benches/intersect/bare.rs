@@ -2,9 +2,11 @@
 //! callbacks for spheres. No f64, no hit records, no batches: the ceiling.
 #![allow(unsafe_code)]
 
+use std::ffi::CStr;
+
 use embree4_sys as sys;
 use envers::geometry::Ray;
-use envers::scene::Scene;
+use envers::scene::{Instance, Scene, Sphere};
 use glam::DVec3;
 
 /// A packet as Embree takes it, laid out and with room to spare as in `envers::intersect::embree`.
@@ -98,41 +100,60 @@ pub struct Bare {
 // SAFETY: Embree lets any thread trace a committed scene.
 unsafe impl Sync for Bare {}
 
-impl Bare {
-    /// The same geometry, build quality and scene flags as envers's own Embree scene.
-    pub fn build(scene: &Scene, width: usize) -> Self {
+/// Vertices and triangles.
+type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+/// What a scene of the bare library is built of, about a centre, as f32 numbers that lie ready.
+pub struct Shapes {
+    /// Each mesh as it stands.
+    meshes: Vec<Mesh>,
+    /// Centre and radius of each sphere.
+    spheres: Vec<[f32; 4]>,
+}
+
+impl Shapes {
+    pub fn of(scene: &Scene) -> Self {
         let center = scene.bounds().center();
-        let spheres: Vec<[f32; 4]> = scene
-            .spheres
-            .iter()
-            .map(|s| (s.center - center).as_vec3().extend(s.radius as f32).to_array())
-            .collect();
+        let mesh = |instance: &Instance| {
+            let mesh = &scene.meshes[instance.mesh.0 as usize];
+            let place = |p: &[f32; 3]| (instance.bake(*p) - center).as_vec3().to_array();
+            (mesh.positions.iter().map(place).collect(), mesh.triangles.clone())
+        };
+        let sphere = |s: &Sphere| (s.center - center).as_vec3().extend(s.radius as f32).to_array();
+        Self {
+            meshes: scene.instances.iter().map(mesh).collect(),
+            spheres: scene.spheres.iter().map(sphere).collect(),
+        }
+    }
+
+    /// Builds a scene by a device of this configuration.
+    pub fn build(&self, width: usize, config: &CStr, quality: sys::RTCBuildQuality) -> Bare {
+        let spheres = self.spheres.clone();
         // SAFETY: the calls follow the library's manual; buffers are filled before the commit.
         unsafe {
-            let device = sys::rtcNewDevice(c"threads=1".as_ptr());
-            let target = sys::rtcNewScene(device);
+            let device = sys::rtcNewDevice(config.as_ptr());
+            let scene = sys::rtcNewScene(device);
             let flags =
                 sys::RTCSceneFlags::ROBUST | sys::RTCSceneFlags::FILTER_FUNCTION_IN_ARGUMENTS;
-            sys::rtcSetSceneFlags(target, flags);
-            for instance in &scene.instances {
-                let mesh = &scene.meshes[instance.mesh.0 as usize];
+            sys::rtcSetSceneFlags(scene, flags);
+            sys::rtcSetSceneBuildQuality(scene, quality);
+            for (vertices, triangles) in &self.meshes {
                 let geometry = sys::rtcNewGeometry(device, sys::RTCGeometryType::TRIANGLE);
+                sys::rtcSetGeometryBuildQuality(geometry, quality);
                 let (vertex, index) = (sys::RTCBufferType::VERTEX, sys::RTCBufferType::INDEX);
                 let (float3, uint3) = (sys::RTCFormat::FLOAT3, sys::RTCFormat::UINT3);
-                let (nv, nt) = (mesh.positions.len(), mesh.triangles.len());
+                let (nv, nt) = (vertices.len(), triangles.len());
                 let v = sys::rtcSetNewGeometryBuffer(geometry, vertex, 0, float3, 12, nv);
-                for (i, p) in mesh.positions.iter().enumerate() {
-                    let p = instance.bake(*p) - center;
-                    v.cast::<[f32; 3]>().add(i).write(p.as_vec3().to_array());
-                }
+                v.cast::<[f32; 3]>().copy_from(vertices.as_ptr(), nv);
                 let t = sys::rtcSetNewGeometryBuffer(geometry, index, 0, uint3, 12, nt);
-                t.cast::<[u32; 3]>().copy_from(mesh.triangles.as_ptr(), nt);
+                t.cast::<[u32; 3]>().copy_from(triangles.as_ptr(), nt);
                 sys::rtcCommitGeometry(geometry);
-                sys::rtcAttachGeometry(target, geometry);
+                sys::rtcAttachGeometry(scene, geometry);
                 sys::rtcReleaseGeometry(geometry);
             }
             if !spheres.is_empty() {
                 let geometry = sys::rtcNewGeometry(device, sys::RTCGeometryType::USER);
+                sys::rtcSetGeometryBuildQuality(geometry, quality);
                 sys::rtcSetGeometryUserPrimitiveCount(geometry, spheres.len() as u32);
                 let data = spheres.as_ptr().cast_mut().cast();
                 sys::rtcSetGeometryUserData(geometry, data);
@@ -141,13 +162,20 @@ impl Bare {
                 sys::rtcSetGeometryIntersectFunction(geometry, Some(intersect));
                 sys::rtcSetGeometryOccludedFunction(geometry, Some(occluded));
                 sys::rtcCommitGeometry(geometry);
-                sys::rtcAttachGeometry(target, geometry);
+                sys::rtcAttachGeometry(scene, geometry);
                 sys::rtcReleaseGeometry(geometry);
             }
-            sys::rtcCommitScene(target);
+            sys::rtcCommitScene(scene);
             assert_eq!(sys::rtcGetDeviceError(device), sys::RTCError::NONE);
-            Self { device, scene: target, _spheres: spheres }
+            Bare { device, scene, _spheres: spheres }
         }
+    }
+}
+
+impl Bare {
+    /// The same geometry, build quality and scene flags as envers's own Embree scene.
+    pub fn build(scene: &Scene, width: usize) -> Self {
+        Shapes::of(scene).build(width, c"threads=1", sys::RTCBuildQuality::MEDIUM)
     }
 
     /// Whether the processor has packets of `width` natively.

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cli::bench::Bench;
-use crate::cli::files;
 use crate::cli::range::Range;
 use crate::cli::values::{
     BackendName, BvhName, PrecisionName, SampleRange, ToneName, ViewName, finite, goal,
     not_negative, sample_range, seconds, share, size,
 };
+use crate::cli::{files, loss};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::load::{Limits, NamedLimit, Options};
@@ -107,6 +107,10 @@ pub struct Tracing {
     pub threads: Option<u16>,
     #[command(flatten)]
     pub trust: Trust,
+    /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
+    /// by a placeholder
+    #[arg(long)]
+    pub strict: bool,
     /// Print no progress and no warnings
     #[arg(short, long)]
     pub quiet: bool,
@@ -245,6 +249,10 @@ pub struct Info {
     pub scene: PathBuf,
     #[command(flatten)]
     pub trust: Trust,
+    /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
+    /// by a placeholder
+    #[arg(long)]
+    pub strict: bool,
     /// Write it as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
@@ -291,6 +299,9 @@ impl Tracing {
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let mut scene = crate::load::load_with(&self.scene, &self.trust.options(self.size, skips))?;
+        if self.strict {
+            loss::check_strictly(&scene, &self.scene)?;
+        }
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);
         }

@@ -126,6 +126,7 @@ fn tracing(arguments: &Bench) -> Tracing {
         precision: PrecisionName::Fast,
         threads: arguments.threads,
         trust: arguments.trust.clone(),
+        strict: false,
         quiet: arguments.quiet,
     }
 }

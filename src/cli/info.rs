@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::args::Info;
 use crate::cli::json::Geometry;
+use crate::cli::loss::{self, Loaded};
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load;
@@ -36,6 +37,11 @@ struct Summary {
     needed: BTreeMap<&'static str, String>,
     /// Which it does not need, and why: these are not done.
     skipped: BTreeMap<&'static str, String>,
+    /// What became of its files.
+    report: Loaded,
+    /// The same, as it is printed.
+    #[serde(skip)]
+    faces: String,
     warnings: Vec<String>,
 }
 
@@ -108,6 +114,9 @@ pub fn run(arguments: &Info) -> Outcome {
     if let Some(path) = &arguments.json {
         output::write_json(path, &summary)?;
     }
+    if arguments.strict {
+        loss::check_strictly(&scene, &arguments.scene)?;
+    }
     Ok(Verdict::Good)
 }
 
@@ -132,6 +141,8 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
         needed: needs.done().map(|(work, why)| (work.name(), why)).collect(),
         skipped: needs.skipped().map(|(work, why)| (work.name(), why)).collect(),
+        report: (&scene.report).into(),
+        faces: scene.report.to_string(),
         warnings,
     }
 }
@@ -171,6 +182,7 @@ impl fmt::Display for Summary {
             "triangles  {} in {} instances of {} meshes ({} stored)",
             g.triangles, g.instances, self.meshes, self.mesh_triangles
         )?;
+        writeln!(f, "faces      {}", self.faces)?;
         writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
         writeln!(f, "lights     {}", or_none(&self.lights))?;
         writeln!(f, "cameras    {}", or_none(&self.cameras))?;

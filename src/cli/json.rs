@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use crate::cli::loss::Loaded;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
 use crate::intersect::{BuildQuality, Built};
 use crate::render::Statistics;
@@ -38,6 +39,8 @@ pub struct Stats {
     pub peak_memory_bytes: Option<u64>,
     /// What of it Embree had, at its own peak; null without Embree.
     pub embree_peak_memory_bytes: Option<u64>,
+    /// What became of the scene's files.
+    pub report: Loaded,
     pub warnings: Vec<String>,
 }
 
@@ -196,6 +199,7 @@ impl Stats {
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),
             embree_peak_memory_bytes: embree_peak_memory(statistics),
+            report: (&scene.report).into(),
             warnings,
         }
     }

@@ -96,6 +96,15 @@ impl Found {
         }
     }
 
+    /// Makes `W` lanes from lane `at` on hit nothing.
+    #[inline(always)]
+    pub fn clear<const W: usize>(&mut self, at: usize) {
+        for i in at..at + W {
+            self.t[i] = f64::INFINITY;
+            self.id.geometry[i] = Ids::NONE;
+        }
+    }
+
     /// Sets lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, hit: Option<Hit>) {
@@ -116,15 +125,17 @@ pub struct Hits {
 impl Hits {
     /// Makes it `count` hits on nothing.
     pub fn reset(&mut self, count: usize) {
+        self.fill(count).iter_mut().for_each(|found| found.clear::<LANES>(0));
+    }
+
+    /// Makes it `count` hits, to be set to whatever they are, sixteen by sixteen.
+    pub fn fill(&mut self, count: usize) -> &mut [Found] {
         let blocks = count.div_ceil(LANES);
         if self.found.len() < blocks {
             self.found.resize(blocks, Found::NOTHING);
         }
         self.len = count;
-        for found in &mut self.found[..blocks] {
-            found.t = [f64::INFINITY; LANES];
-            found.id.geometry = [Ids::NONE; LANES];
-        }
+        &mut self.found[..blocks]
     }
 
     /// How many there are.

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::film::Pixel;
 use crate::geometry::{Ids, LANES, Lanes};
+use crate::integrator::radiance::{DARK, Radiance, at, put};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::scene::Scene;
 use crate::surface::Surfaces;
@@ -57,14 +58,15 @@ impl Notes {
     }
 
     /// Compares the radiance of a sample of each pixel.
-    pub fn take_colors(&mut self, samples: &[Vec3], threshold: f32) {
+    pub fn take_colors(&mut self, samples: &[Radiance], threshold: f32) {
+        let lane = |i: usize| root(at(&samples[i / LANES], i % LANES));
         if !self.has_begun {
-            self.roots.extend(samples.iter().map(|&sample| root(sample)));
+            self.roots.extend((0..self.seen.len()).map(lane));
             self.has_begun = true;
             return;
         }
-        for ((seen, &a), &b) in self.seen.iter_mut().zip(&self.roots).zip(samples) {
-            let b = root(b);
+        for (i, (seen, &a)) in self.seen.iter_mut().zip(&self.roots).enumerate() {
+            let b = lane(i);
             let close = |a: f32, b: f32| (a - b).abs() < threshold;
             seen.disagrees |= !(close(a.x, b.x) & close(a.y, b.y) & close(a.z, b.z));
         }
@@ -283,23 +285,25 @@ impl Integrator<'_> {
             let mut still = Vec::new();
             for part in open.chunks(TILE) {
                 scratch.tile.pick(part.iter().map(|([x, y], _)| [*x, first + y]));
-                let before = part.iter().map(|([x, y], _)| pixels[y * width + x]);
+                let before = part.iter().map(|([x, y], _)| Vec3::from(pixels[y * width + x]));
                 scratch.sum.clear();
-                scratch.sum.extend(before);
+                scratch.sum.resize(part.len().div_ceil(LANES), DARK);
                 let notes = &mut scratch.notes;
                 notes.begin();
                 notes.seen.extend(part.iter().map(|(_, seen)| *seen));
-                let means = scratch.sum.iter().map(|&sum| Vec3::from(sum) * shares[step - 1]);
-                notes.roots.extend(means.map(root));
+                for (i, sum) in before.enumerate() {
+                    put(&mut scratch.sum[i / LANES], i % LANES, sum);
+                    notes.roots.push(root(sum * shares[step - 1]));
+                }
                 notes.has_begun = true;
                 for sample in &self.series.offsets[steps[step - 1]..steps[step]] {
                     self.sample(*sample, scratch, &mut counts);
                 }
-                let found = scratch.sum.iter().zip(&scratch.notes.seen);
-                for (&([x, y], _), (&sum, &seen)) in part.iter().zip(found) {
+                for (i, (&([x, y], _), &seen)) in part.iter().zip(&scratch.notes.seen).enumerate() {
+                    let sum = at(&scratch.sum[i / LANES], i % LANES);
                     let goes_on = seen.disagrees && step + 1 < steps.len();
                     let share = if goes_on { 1.0 } else { shares[step] };
-                    pixels[y * width + x] = sum.map(|value| value * share);
+                    pixels[y * width + x] = (sum * share).to_array();
                     if goes_on {
                         still.push(([x, y], seen));
                     }

@@ -2,8 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Departure, Hit, Hits, Ray, Rays, Side};
+use crate::geometry::{Departure, Hit, Hits, LANES, Ray, Rays, Side};
 use crate::integrator::bodies::{Around, Interiors};
+use crate::integrator::radiance::{DARK, at, put};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
 use crate::scene::{Material, Scene};
@@ -51,7 +52,7 @@ impl Integrator<'_> {
         if self.may_pass_first {
             wave.paths = (0..wave.rays.len()).map(|i| self.path(wave, i)).collect();
             sample.clear();
-            sample.resize(wave.rays.len(), Vec3::ZERO);
+            sample.resize(wave.rays.lines().len(), DARK);
         }
         self.finish(scratch, counts);
         let mut waiting = vec![std::mem::take(&mut scratch.next)];
@@ -97,20 +98,23 @@ impl Integrator<'_> {
         }
         self.shade(wave, light, counts);
         if wave.paths.is_empty() {
-            light.take_samples(wave.rays.len(), sample, counts);
+            light.take_samples(sample, counts);
         }
         for (i, path) in wave.paths.iter().enumerate() {
             let radiance = light.radiance(i);
-            let to = &mut sample[path.sample as usize];
-            if !to.is_nan() && !radiance.is_nan() {
-                *to += (path.throughput * radiance.as_dvec3()).as_vec3();
+            let (block, lane) = (path.sample as usize / LANES, path.sample as usize % LANES);
+            let so_far = at(&sample[block], lane);
+            if !so_far.is_nan() && !radiance.is_nan() {
+                let with = (path.throughput * radiance.as_dvec3()).as_vec3();
+                put(&mut sample[block], lane, so_far + with);
             }
         }
         for (i, cause) in light.spoilt.drain(..) {
-            let to = &mut sample[wave.paths[i as usize].sample as usize];
-            if !to.is_nan() {
+            let spoilt = wave.paths[i as usize].sample as usize;
+            let to = &mut sample[spoilt / LANES];
+            if !at(to, spoilt % LANES).is_nan() {
                 cause.count(counts);
-                *to = Vec3::NAN;
+                put(to, spoilt % LANES, Vec3::NAN);
             }
         }
         for (i, surface) in &light.bounces {

@@ -13,6 +13,7 @@ mod clearance;
 mod counts;
 mod follow;
 mod look;
+mod radiance;
 #[cfg(test)]
 mod reversal;
 mod samples;
@@ -35,6 +36,7 @@ use clearance::Clearance;
 pub use counts::{Counts, NotFinite, RayCounts, WorkCounts};
 use follow::Path;
 use look::{Details, Look};
+use radiance::{Add, DARK, Develop, Radiance, put};
 use samples::Series;
 pub use samples::{sample_positions, sample_steps};
 use shade::Light;
@@ -88,8 +90,8 @@ pub struct Scratch {
     light: Light,
     next: Wave,
     /// The radiance of the tile's pixels: of one sample, and the sum of all.
-    sample: Vec<Vec3>,
-    sum: Vec<Pixel>,
+    sample: Vec<Radiance>,
+    sum: Vec<Radiance>,
     notes: Notes,
 }
 
@@ -178,14 +180,15 @@ impl<'a> Integrator<'a> {
         for (left, columns) in self.tiles(width) {
             scratch.tile.set([left, first], [columns, rows], self.tiling.block);
             self.tile(scratch, &mut counts);
-            let mut done = 0;
-            for [x, y, length] in scratch.tile.runs.iter().map(|run| run.map(|n| n as usize)) {
-                let (at, from) = (y * width + left + x, done..done + length);
-                pixels[at..at + length].copy_from_slice(&scratch.sum[from.clone()]);
-                if self.is_adaptive() {
-                    seen[at..at + length].copy_from_slice(&scratch.notes.seen[from]);
+            let Scratch { tile, sum: sums, notes, .. } = &*scratch;
+            let share = if self.is_adaptive() { 1.0 } else { 1.0 / self.series.steps[0] as f32 };
+            self.arch.dispatch(Develop { tile, sums, share, left, width, pixels });
+            if self.is_adaptive() {
+                let mut of_tile = notes.seen.iter();
+                for [x, y, length] in tile.runs.iter().map(|run| run.map(|n| n as usize)) {
+                    let to = &mut seen[y * width + left + x..][..length];
+                    to.iter_mut().zip(&mut of_tile).for_each(|(to, seen)| *to = *seen);
                 }
-                done += length;
             }
         }
         counts
@@ -200,15 +203,11 @@ impl<'a> Integrator<'a> {
     /// Works out the pixels of a tile: the first samples of each.
     fn tile(&self, scratch: &mut Scratch, counts: &mut Counts) {
         scratch.sum.clear();
-        scratch.sum.resize(scratch.tile.count, [0.0; 3]);
+        scratch.sum.resize(scratch.tile.places.len(), DARK);
         scratch.notes.begin();
         let samples = self.series.steps[0];
         for sample in &self.series.offsets[..samples] {
             self.sample(*sample, scratch, counts);
-        }
-        if samples > 1 && !self.is_adaptive() {
-            let share = 1.0 / samples as f32;
-            scratch.sum.iter_mut().flatten().for_each(|value| *value *= share);
         }
     }
 
@@ -222,8 +221,9 @@ impl<'a> Integrator<'a> {
         counts.rays.primary += wave.rays.len() as u64;
         counts.hits += wave.hits.count() as u64;
         if self.view != View::Beauty {
-            for (i, sum) in sum.iter_mut().enumerate() {
-                *sum = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
+            for i in 0..wave.rays.len() {
+                let value = self.debug(&wave.rays.ray(i), wave.hits.get(i).as_ref());
+                put(&mut sum[i / LANES], i % LANES, value);
             }
             return;
         }
@@ -235,19 +235,18 @@ impl<'a> Integrator<'a> {
         } else {
             let Scratch { wave, light, sample, .. } = scratch;
             self.shade(wave, light, counts);
-            light.take_samples(wave.rays.len(), sample, counts);
+            light.take_samples(sample, counts);
         }
         if let Some(threshold) = self.threshold {
             scratch.notes.take_colors(&scratch.sample, threshold);
         }
-        for (to, &radiance) in scratch.sum.iter_mut().zip(&scratch.sample) {
-            let sum = Vec3::from(*to) + radiance;
-            if sum.is_finite() {
-                *to = sum.to_array();
-            } else if !radiance.is_nan() {
-                counts.not_finite.sum += 1; // A sample that is NaN was counted where it arose.
-            }
+        if self.series.offsets.len() == 1 && !self.follows {
+            // The one sample is the sum; what is not a number becomes dark at the end.
+            std::mem::swap(&mut scratch.sum, &mut scratch.sample);
+            return;
         }
+        let infinite = &mut counts.not_finite.sum;
+        self.arch.dispatch(Add { samples: &scratch.sample, sums: &mut scratch.sum, infinite });
     }
 
     /// Finds what rays hit.
@@ -263,16 +262,14 @@ impl<'a> Integrator<'a> {
     }
 
     /// The value of a debug view.
-    fn debug(&self, ray: &Ray, hit: Option<&Hit>) -> Pixel {
+    fn debug(&self, ray: &Ray, hit: Option<&Hit>) -> Vec3 {
         match (self.view, hit) {
-            (View::Depth, None) => [f32::INFINITY; 3],
-            (_, None) | (View::Beauty, _) => [0.0; 3],
-            (View::Normal, Some(hit)) => {
-                Surface::new(self.scene, ray, hit).normal.as_vec3().to_array()
-            }
+            (View::Depth, None) => Vec3::INFINITY,
+            (_, None) | (View::Beauty, _) => Vec3::ZERO,
+            (View::Normal, Some(hit)) => Surface::new(self.scene, ray, hit).normal.as_vec3(),
             (View::Depth, Some(hit)) => {
                 // Infinite is what nothing is.
-                [(hit.t * ray.direction.length()).min(f64::from(f32::MAX)) as f32; 3]
+                Vec3::splat((hit.t * ray.direction.length()).min(f64::from(f32::MAX)) as f32)
             }
             (View::Id, Some(hit)) => {
                 let geometry = match hit.id.geometry {
@@ -280,7 +277,7 @@ impl<'a> Integrator<'a> {
                     Geometry::Planes => 2.0,
                     Geometry::Mesh(i) => 3.0 + i as f32,
                 };
-                [geometry, hit.id.primitive as f32, hit.id.instance as f32]
+                Vec3::new(geometry, hit.id.primitive as f32, hit.id.instance as f32)
             }
         }
     }

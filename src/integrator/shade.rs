@@ -8,6 +8,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::{LANES, Lanes, Rays};
 use crate::integrator::counts::Cause;
+use crate::integrator::radiance::{Radiance, at};
 use crate::integrator::shadow::Through;
 use crate::integrator::{Counts, Integrator, Wave};
 use crate::scene::LightKind;
@@ -46,9 +47,6 @@ struct Lit {
     /// The exponent of all highlights, where they have one, and it is whole.
     exponent: Option<u32>,
 }
-
-/// The radiance along sixteen rays.
-pub(super) type Radiance = [Lanes<f32>; 3];
 
 /// Shadow rays, side by side with what waits on them.
 #[derive(Default)]
@@ -153,26 +151,9 @@ impl Light {
         at(&self.radiance[i / LANES], i % LANES)
     }
 
-    /// Takes the radiance along each of `count` rays as its sample, and counts what spoilt any.
-    pub fn take_samples(&mut self, count: usize, samples: &mut Vec<Vec3>, counts: &mut Counts) {
-        samples.resize(count, Vec3::ZERO);
-        for (samples, radiance) in samples.chunks_mut(LANES).zip(&self.radiance) {
-            for (i, sample) in samples.iter_mut().enumerate() {
-                *sample = at(radiance, i);
-            }
-        }
+    /// Takes the radiance along each ray as its sample, and counts what spoilt any.
+    pub fn take_samples(&mut self, samples: &mut Vec<Radiance>, counts: &mut Counts) {
+        std::mem::swap(&mut self.radiance, samples);
         self.spoilt.drain(..).for_each(|(_, cause)| cause.count(counts));
-    }
-}
-
-#[inline(always)]
-fn at(v: &[Lanes<f32>; 3], i: usize) -> Vec3 {
-    Vec3::new(v[0][i], v[1][i], v[2][i])
-}
-
-#[inline(always)]
-fn put(v: &mut [Lanes<f32>; 3], i: usize, value: Vec3) {
-    for axis in 0..3 {
-        v[axis][i] = value[axis];
     }
 }

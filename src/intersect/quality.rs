@@ -15,7 +15,7 @@ pub enum BuildQuality {
 
 /// From how many rays for each primitive on the better tree pays: measured, as docs/performance.md
 /// says.
-const RAYS_PER_PRIMITIVE: u64 = 8;
+const RAYS_PER_PRIMITIVE: u64 = 32;
 
 impl BuildQuality {
     /// What it is called: `low` or `medium`.

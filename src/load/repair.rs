@@ -1,9 +1,10 @@
 //! What importers do alike to a mesh just read: make it valid, and count what that cost.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::tally::Tally;
-use crate::scene::Mesh;
+use crate::scene::{DropReason, GRAIN, Mesh};
 
 /// Drops triangles that cannot be had, and mends normals, texture coordinates and colours, so
 /// that the mesh is valid.
@@ -14,7 +15,7 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| t.iter().all(|&i| (i as usize) < count));
         let dropped = (before - mesh.triangles.len()) as u64;
-        tally.add("{} triangles are left out: they name vertices that are not there", dropped, at);
+        tally.drop(DropReason::IndexOutOfRange, dropped, at);
     }
     if !mesh.is_finite() {
         let finite: Vec<bool> =
@@ -22,13 +23,14 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| t.iter().all(|&i| finite.get(i as usize) == Some(&true)));
         let dropped = (before - mesh.triangles.len()) as u64;
-        tally.add("{} triangles are left out: a corner is not a finite number", dropped, at);
+        tally.drop(DropReason::NotFinite, dropped, at);
         for (position, finite) in mesh.positions.iter_mut().zip(finite) {
             if !finite {
                 *position = [0.0; 3];
             }
         }
     }
+    drop_degenerate(mesh, tally, place);
     for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len()] {
         debug_assert!(length == 0 || length == count);
     }
@@ -45,6 +47,22 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         bad += 1;
     }
     tally.add("{} vertex colours are negative or not finite and become 0", bad, at);
+}
+
+/// Drops triangles with two corners at one place. Those whose corners only stand in line are kept:
+/// they close the seams between large faces and several small ones.
+fn drop_degenerate(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
+    let Mesh { positions, triangles, .. } = mesh;
+    let is_degenerate = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
+        (a == b) | (b == c) | (c == a)
+    };
+    if triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
+        let before = triangles.len();
+        triangles.retain(|t| !is_degenerate(t));
+        let dropped = (before - triangles.len()) as u64;
+        tally.drop(DropReason::Degenerate, dropped, || place.to_owned());
+    }
 }
 
 /// Gives a normal of length 0 (or none at all) the mean of the triangles around its vertex.
@@ -117,7 +135,7 @@ mod tests {
         let (mesh, said) =
             repaired(Mesh { triangles: vec![[0, 1, 2], [0, 2, 4], [u32::MAX, 1, 2]], ..square() });
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
-        assert!(said.len() == 1 && said[0].contains("2 triangles"), "{said:?}");
+        assert!(said.len() == 1 && said[0].contains("2 faces"), "{said:?}");
     }
 
     #[test]
@@ -128,6 +146,23 @@ mod tests {
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
         assert!(mesh.positions.as_flattened().iter().all(|x| x.is_finite()));
         assert_eq!(said.len(), 1);
+    }
+
+    #[test]
+    fn triangle_with_two_corners_at_one_place_is_dropped_and_counted() {
+        let mut mesh = square();
+        mesh.positions.push([-0.0, 1.0, 0.0]);
+        mesh.triangles = vec![[0, 1, 2], [2, 3, 4], [1, 1, 2]];
+        let (mesh, said) = repaired(mesh);
+        assert_eq!(mesh.triangles, [[0, 1, 2]]);
+        assert!(said.len() == 1 && said[0].contains("2 faces"), "{said:?}");
+    }
+
+    #[test]
+    fn triangle_whose_corners_stand_in_line_is_kept() {
+        let mut mesh = square();
+        mesh.positions[2] = [2.0, 0.0, 0.0];
+        assert_eq!(repaired(mesh.clone()), (mesh, vec![]));
     }
 
     #[test]

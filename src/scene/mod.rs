@@ -12,6 +12,7 @@ mod material;
 mod mesh;
 mod needs;
 mod object;
+mod report;
 mod texture;
 mod tone;
 
@@ -24,6 +25,7 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
+pub use report::{DropReason, Report};
 pub use texture::{Filter, Image, Texel, Texture, TextureId, Wrap};
 pub use tone::Tone;
 
@@ -61,6 +63,8 @@ pub struct Scene {
     pub animation: Option<Animation>,
     /// What the loader could not do as the files ask, or found odd; one sentence each.
     pub warnings: Vec<String>,
+    /// What became of its files: what was read, dropped, and not supported.
+    pub report: Report,
 }
 
 impl Scene {

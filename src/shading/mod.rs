@@ -3,11 +3,13 @@
 
 mod interface;
 mod power;
+mod unit;
 
 use glam::{DVec3, Vec3};
 
 pub use interface::{Interface, transmittance};
 pub use power::{power, power_of_all, whole};
+pub use unit::{unit, unit_of_all};
 
 /// Colours of a surface at one point, with its textures applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,6 +30,7 @@ pub struct Reflectance {
 /// *Illumination for Computer Generated Pictures*, 1975). Nothing when the surface faces away
 /// from the light.
 pub fn direct(reflectance: &Reflectance, normal: DVec3, view: DVec3, light: DVec3) -> Vec3 {
+    let (view, light) = (unit(view), unit(light));
     let cosine = lambert(normal, light);
     if cosine <= 0.0 {
         return Vec3::ZERO;
@@ -40,17 +43,17 @@ pub fn direct(reflectance: &Reflectance, normal: DVec3, view: DVec3, light: DVec
     sum
 }
 
-/// The cosine n·l of the angle between a normal of length 1 and the way to a light.
+/// The cosine n·l of the angle between a normal and the way to a light, both of length 1.
 #[inline(always)]
 pub fn lambert(normal: DVec3, light: DVec3) -> f64 {
-    normal.dot(light) / light.length_squared().sqrt()
+    normal.dot(light)
 }
 
-/// The cosine max(0, r·l) of the angle between what a mirror would send on and the way to a light.
+/// The cosine max(0, r·l) of the angle between what a mirror would send on and the way to a light;
+/// all of length 1.
 #[inline(always)]
 pub fn phong(normal: DVec3, view: DVec3, light: DVec3) -> f64 {
-    let lengths = view.length_squared().sqrt() * light.length_squared().sqrt();
-    (reflect(view, normal).dot(light) / lengths).max(0.0)
+    reflect(view, normal).dot(light).clamp(0.0, 1.0)
 }
 
 /// The direction u − 2(u·n)n in which a mirror with unit normal `normal` sends `incoming`.

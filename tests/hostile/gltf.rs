@@ -200,6 +200,18 @@ fn amounts() -> Vec<Case> {
         changed("100000 extensions with names of their own", Warning("extension"), |m| {
             m.json["extensionsUsed"] = (0..100_000).map(|i| format!("EXT_{i}")).collect();
         }),
+        changed("50000 materials with an extension each of 50000 that are used", Expect::Any, |m| {
+            let name = |i: usize| format!("EXT_{i}");
+            let material = |i: usize| json!({"extensions": {name(i): {}}});
+            m.json["extensionsUsed"] = (0..50_000).map(name).collect();
+            m.json["materials"] = (0..50_000).map(material).collect();
+        }),
+        changed("scene that names 100000 times the same node", Warning("stand twice"), |m| {
+            m.json["scenes"][0]["nodes"] = vec![0; 100_000].into();
+        }),
+        changed("300000 required extensions that are the same", Expect::Any, |m| {
+            m.json["extensionsRequired"] = vec!["KHR_texture_transform"; 300_000].into();
+        }),
         changed("name of a megabyte", Loads, |m| m.json["meshes"][0]["name"] = "x".repeat(1 << 20).into()),
         changed("name that clears the screen", Expect::Any, |m| {
             m.json["materials"] = json!([{"name": "\u{1b}[2J\u{1b}]0;owned\u{7}", "alphaMode": "BLEND",

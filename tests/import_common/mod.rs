@@ -166,6 +166,17 @@ impl Model {
     /// The whole JSON, with the buffer's URI or without one.
     pub fn to_json(&self, uri: Option<&str>) -> Value {
         let mut json = self.json.clone();
+        if json.get("extensionsUsed").is_none() {
+            let mut used: Vec<String> = json["extensionsRequired"].as_array().map_or(vec![], |r| {
+                r.iter().filter_map(Value::as_str).map(str::to_owned).collect()
+            });
+            name_extensions(&json, &mut used);
+            used.sort();
+            used.dedup();
+            if !used.is_empty() {
+                json["extensionsUsed"] = used.into();
+            }
+        }
         if !self.bin.is_empty() {
             let mut buffer = json!({"byteLength": self.bin.len()});
             if let Some(uri) = uri {
@@ -216,6 +227,16 @@ impl Model {
     pub fn load_in(&self, folder: &Folder) -> Result<Scene> {
         folder.load("model.gltf", self.to_json(Some(&data_uri(&self.bin))).to_string())
     }
+}
+
+/// The extensions that objects have, anywhere in a value.
+fn name_extensions(value: &Value, names: &mut Vec<String>) {
+    if let Some(extensions) = value.get("extensions").and_then(Value::as_object) {
+        names.extend(extensions.keys().cloned());
+    }
+    let objects = value.as_object().into_iter().flat_map(|o| o.values());
+    let items = value.as_array().into_iter().flatten();
+    objects.chain(items).for_each(|value| name_extensions(value, names));
 }
 
 /// The JSON path of an error, and its whole text.

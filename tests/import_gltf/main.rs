@@ -12,7 +12,9 @@ mod lights;
 mod materials;
 mod nodes;
 mod optics;
+mod report;
 mod textures;
+mod validation;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};
 use envers::scene::{Material, Scene};

@@ -188,7 +188,9 @@ fn a_volume_at_no_distance_absorbs_nothing() {
             "thicknessFactor": 1.0, "attenuationDistance": distance,
             "attenuationColor": [0.5, 0.5, 0.5],
         });
-        assert_eq!(made(glass([1.0; 4], extensions)).absorption, Vec3::ZERO);
+        // The standard wants it above 0, which is a warning.
+        let scene = glass([1.0; 4], extensions).load().unwrap();
+        assert_eq!(material(&scene).absorption, Vec3::ZERO);
     }
 }
 

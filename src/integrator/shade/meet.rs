@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use crate::geometry::{Found, Ids, LANES};
 use crate::integrator::counts::{Cause, WorkCounts};
+use crate::integrator::radiance::{Radiance, put};
 use crate::integrator::shade::sums::Sums;
-use crate::integrator::shade::{For, Light, Lit, Radiance, put};
+use crate::integrator::shade::{For, Light, Lit};
 use crate::integrator::{Integrator, Wave};
 use crate::shading::{self, Reflectance};
 use crate::surface::{Detail, Surface};

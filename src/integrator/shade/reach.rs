@@ -6,8 +6,9 @@ use glam::{DVec3, Vec3};
 use crate::geometry::{Found, Ids, LANES, Lanes, Rays};
 use crate::integrator::Wave;
 use crate::integrator::counts::WorkCounts;
+use crate::integrator::radiance::{all_finite, any, at, put};
 use crate::integrator::shade::sums::Sums;
-use crate::integrator::shade::{For, Lit, Shadows, Waiting, at, put};
+use crate::integrator::shade::{For, Lit, Shadows, Waiting};
 use crate::scene::LightKind;
 use crate::shading;
 
@@ -45,7 +46,7 @@ impl Reach<'_, '_> {
             let found = &wave.hits.found()[lit.block];
             arrivals.set(light, lit);
             shares.set::<HIGHLIGHTS>(lit, &arrivals, &wave.rays, found, work);
-            if !shares.any {
+            if !any(&shares.here) {
                 continue;
             }
             let mut bright = [false; LANES];
@@ -55,16 +56,13 @@ impl Reach<'_, '_> {
                     with[axis][i] = shares.share[axis][i] * arrivals.intensity[axis][i];
                 }
             }
-            let (mut odd, mut any) = (false, false);
             for i in 0..LANES {
                 let [x, y, z] = [with[0][i], with[1][i], with[2][i]];
                 bright[i] = shares.here[i] & ((x != 0.0) | (y != 0.0) | (z != 0.0));
-                odd |= shares.here[i] & !(x + y + z).is_finite();
-                any |= bright[i];
             }
-            if odd {
+            if !all_finite(&with) {
                 mark_odd(&arrivals, &shares, &mut with, &mut bright);
-            } else if !any {
+            } else if !any(&bright) {
                 continue;
             }
             if !asks {
@@ -170,8 +168,6 @@ struct Shares {
     share: [Lanes<f32>; 3],
     /// Those that face the light.
     here: Lanes<bool>,
-    /// Whether any does.
-    any: bool,
     /// Whether the light is on the side of the geometric normal.
     on_front: Lanes<bool>,
 }
@@ -189,23 +185,21 @@ impl Shares {
     ) {
         let surfaces = &lit.surfaces;
         let (mut cosines, mut over, mut mirrored) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let light = shading::unit_of_all(&arrivals.toward, &arrivals.here);
+        let light = |i: usize| DVec3::new(light[0][i], light[1][i], light[2][i]);
+        for i in 0..LANES {
+            cosines[i] = shading::lambert(surfaces.normal(i), light(i));
+        }
         if HIGHLIGHTS && lit.shines {
-            // In one loop, since both ask for the way's length.
-            let lines = &rays.lines()[lit.block];
+            let view = shading::unit_of_all(&rays.lines()[lit.block].direction, &arrivals.here);
             for i in 0..LANES {
-                let (normal, toward) = (surfaces.normal(i), arrivals.toward(i));
-                cosines[i] = shading::lambert(normal, toward);
-                mirrored[i] = shading::phong(normal, lines.line(i).1, toward);
-            }
-        } else {
-            for i in 0..LANES {
-                cosines[i] = shading::lambert(surfaces.normal(i), arrivals.toward(i));
+                let view = DVec3::new(view[0][i], view[1][i], view[2][i]);
+                mirrored[i] = shading::phong(surfaces.normal(i), view, light(i));
             }
         }
         for i in 0..LANES {
             over[i] = surfaces.geometric_normal(i).dot(arrivals.toward(i));
         }
-        self.any = false;
         for i in 0..LANES {
             self.here[i] = arrivals.here[i] & ((cosines[i] > 0.0) | cosines[i].is_nan());
             self.on_front[i] = over[i] > 0.0;
@@ -218,10 +212,7 @@ impl Shares {
                 self.here[i] &= !((found.id.geometry[i] >= Ids::MESHES) & (facing <= 0.0));
             }
         }
-        for i in 0..LANES {
-            self.any |= self.here[i];
-        }
-        if !self.any {
+        if !any(&self.here) {
             return;
         }
         for axis in 0..3 {

@@ -4,7 +4,8 @@ use glam::Vec3;
 
 use crate::geometry::{LANES, Lanes};
 use crate::integrator::counts::Cause;
-use crate::integrator::shade::{Radiance, Shadows, Waiting, at, put};
+use crate::integrator::radiance::{Radiance, all_finite, at, put};
+use crate::integrator::shade::{Shadows, Waiting};
 
 /// The radiance along the rays of a wave, and which of it is spoilt.
 pub(super) struct Sums<'a> {
@@ -18,17 +19,13 @@ impl Sums<'_> {
     pub fn add_all(&mut self, block: usize, with: &Radiance, here: &Lanes<bool>) {
         let radiance = &mut self.radiance[block];
         let mut sum = *radiance;
-        let mut odd = false;
         for axis in 0..3 {
             for i in 0..LANES {
                 let more = sum[axis][i] + with[axis][i];
                 sum[axis][i] = if here[i] { more } else { sum[axis][i] };
             }
         }
-        for i in 0..LANES {
-            odd |= here[i] & !(sum[0][i] + sum[1][i] + sum[2][i]).is_finite();
-        }
-        if !odd {
+        if all_finite(&sum) {
             *radiance = sum;
             return;
         }

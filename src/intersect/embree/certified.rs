@@ -185,7 +185,7 @@ unsafe fn intersect<S: Shape, const W: usize>(args: *const sys::RTCIntersectFunc
             let lane = *floats.add(ID * n + slot).cast::<u32>() as usize;
             context.settle(lane, shape.id());
             let tfar = floats.add(TFAR * n + slot);
-            *tfar = context.clip.narrow(lane, context.nearest.upper(lane)).min(*tfar);
+            *tfar = context.exact.clip.narrow(lane, context.nearest.upper(lane)).min(*tfar);
         }
     }
 }

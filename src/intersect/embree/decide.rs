@@ -44,7 +44,7 @@ impl<const W: usize> Context<'_, W> {
             // What is ahead of a ray that went through surfaces is not the first root.
             if self.goes_on && valid[i] != 0 {
                 self.settle(i, shape.id());
-                tfar[i] = self.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
+                tfar[i] = self.exact.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
                 continue;
             }
             if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
@@ -60,7 +60,7 @@ impl<const W: usize> Context<'_, W> {
             } else {
                 self.nearest.set(i, e, shape.id());
             }
-            tfar[i] = self.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
+            tfar[i] = self.exact.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
         }
     }
 

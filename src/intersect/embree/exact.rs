@@ -106,6 +106,19 @@ impl<const W: usize> Exact<W> {
         }
     }
 
+    /// The largest absolute coordinate of the rays' origins.
+    #[inline(always)]
+    pub fn farthest(&self) -> f64 {
+        // Positive floats are ordered as their bits, which compilers fold side by side.
+        let mut farthest = [0u64; W];
+        for axis in 0..3 {
+            for i in 0..W {
+                farthest[i] = farthest[i].max(self.origin[axis][i].abs().to_bits());
+            }
+        }
+        f64::from_bits(farthest.into_iter().fold(0, u64::max))
+    }
+
     /// Sets up the f32 rays: where they start, how long their directions are, where they end.
     #[inline(always)]
     pub fn set_up(

@@ -9,6 +9,7 @@ use embree4_sys as sys;
 use crate::geometry::PrimitiveId;
 use crate::intersect::Precision;
 use crate::intersect::embree::layout::{Context, INVALID};
+use crate::intersect::embree::user::{ID, TFAR, in_order};
 use crate::intersect::primitive::Primitives;
 
 /// The fields of a hit: the normal, of any length, in the space of the triangle's own mesh.
@@ -18,11 +19,41 @@ const GEOM: usize = 6;
 const INST: usize = 7;
 /// The fields of a ray.
 const DIR: usize = 4;
-const TFAR: usize = 8;
-const ID: usize = 10;
+
+/// What Embree calls for each hit that it finds.
+pub type Filter = unsafe extern "C" fn(*const sys::RTCFilterFunctionNArguments);
 
 /// The filter for packets of `W`; `SHADOW` for occlusion calls.
-pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
+pub fn filter<const W: usize, const SHADOW: bool>() -> Filter {
+    match W {
+        #[cfg(target_arch = "x86_64")]
+        8 => compiled!(W, SHADOW, target_feature(enable = "avx2,fma")),
+        #[cfg(target_arch = "x86_64")]
+        16 => {
+            compiled!(W, SHADOW, target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma"))
+        }
+        _ => compiled!(W, SHADOW, inline(never)),
+    }
+}
+
+/// The filter, compiled for the processor features that a width comes with.
+macro_rules! compiled {
+    ($w:ident, $shadow:ident, $attribute:meta) => {{
+        // SAFETY: as of `look_at_all`; those with target features are only chosen for widths that
+        // `Width::native` chose, which asks the processor.
+        #[$attribute]
+        unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
+            args: *const sys::RTCFilterFunctionNArguments,
+        ) {
+            unsafe { look_at_all::<W, SHADOW>(args) }
+        }
+        filter::<$w, $shadow>
+    }};
+}
+use compiled;
+
+#[inline(always)]
+unsafe fn look_at_all<const W: usize, const SHADOW: bool>(
     args: *const sys::RTCFilterFunctionNArguments,
 ) {
     // SAFETY: Embree passes pointers to `N` rays and hits and the context of the call, which
@@ -32,6 +63,13 @@ pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
         let n = args.N as usize;
         let context = &*args.context.cast::<Context<'_, W>>();
         let (ray, hit) = (args.ray.cast::<u32>(), args.hit.cast::<u32>());
+        let sure = match n == W && in_order(&*ray.add(ID * W).cast::<[u32; W]>()) {
+            true => sure_of_all(context, ray, hit),
+            false => [false; W],
+        };
+        if n == W && !SHADOW | context.all_block && sure_are_valid(&sure, args.valid) {
+            return;
+        }
         for slot in 0..n {
             let valid = args.valid.add(slot);
             if *valid == 0 {
@@ -39,19 +77,54 @@ pub unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
             }
             let field = |base: *const u32, field: usize| *base.add(field * n + slot);
             let lane = field(ray, ID) as usize;
-            let t = f32::from_bits(field(ray, TFAR));
             let ids = [PRIM, GEOM, INST].map(|f| field(hit, f));
             let vector = |base, at| [0, 1, 2].map(|axis| f32::from_bits(field(base, at + axis)));
-            // In an instance normal and direction stand in two spaces.
-            let sure = ids[2] == INVALID && {
+            let is_sure = if n == W {
+                sure[slot]
+            } else {
+                let t = f32::from_bits(field(ray, TFAR));
                 let rise = Rise::new(vector(hit, NG), vector(ray, DIR));
-                is_sure(context, lane, t, &rise)
+                is_sure(context, lane, t, &rise, ids[2])
             };
-            if !stands_in_the_way::<W, SHADOW>(context, lane, sure, ids) {
+            if !stands_in_the_way::<W, SHADOW>(context, lane, is_sure, ids) {
                 *valid = 0;
             }
         }
     }
+}
+
+/// Which candidates certainly count, of a packet that came as it was sent.
+#[inline(always)]
+unsafe fn sure_of_all<const W: usize>(
+    context: &Context<'_, W>,
+    ray: *const u32,
+    hit: *const u32,
+) -> [bool; W] {
+    // SAFETY: by the caller's word there are `W` rays and hits, each field side by side.
+    unsafe {
+        let all = |base: *const u32, field: usize| &*base.add(field * W).cast::<[f32; W]>();
+        let (normal, direction) =
+            ([0, 1, 2].map(|axis| all(hit, NG + axis)), [0, 1, 2].map(|axis| all(ray, DIR + axis)));
+        let (t, inst) = (all(ray, TFAR), &*hit.add(INST * W).cast::<[u32; W]>());
+        let mut sure = [false; W];
+        for i in 0..W {
+            let rise = Rise::new(normal.map(|x| x[i]), direction.map(|x| x[i]));
+            sure[i] = is_sure(context, i, t[i], &rise, inst[i]);
+        }
+        sure
+    }
+}
+
+/// Whether all candidates that there are certainly count.
+#[inline(always)]
+unsafe fn sure_are_valid<const W: usize>(sure: &[bool; W], valid: *const i32) -> bool {
+    // SAFETY: by the caller's word there are `W` of them.
+    let valid = unsafe { &*valid.cast::<[i32; W]>() };
+    let mut open = 0;
+    for i in 0..W {
+        open |= if sure[i] { 0 } else { valid[i] };
+    }
+    open == 0
 }
 
 /// How far a ray rises over a triangle for each unit of t: the quotient of two numbers, squared.
@@ -79,11 +152,19 @@ impl Rise {
 ///
 /// [`Frame::doubt`]: crate::intersect::embree::frame::Frame::doubt
 #[inline(always)]
-fn is_sure<const W: usize>(context: &Context<'_, W>, lane: usize, t: f32, rise: &Rise) -> bool {
+fn is_sure<const W: usize>(
+    context: &Context<'_, W>,
+    lane: usize,
+    t: f32,
+    rise: &Rise,
+    inst: u32,
+) -> bool {
     let height = context.doubt / 512.0;
-    let clear =
-        |way: f32| way > context.doubt && (way * way) * rise.way > (height * height) * rise.normal;
-    !context.goes_on && clear(t) && clear(context.end[lane] - t)
+    let clear = |way: f32| {
+        (way > context.doubt) & ((way * way) * rise.way > (height * height) * rise.normal)
+    };
+    // In an instance normal and direction stand in two spaces.
+    (inst == INVALID) & !context.goes_on & clear(t) & clear(context.end[lane] - t)
 }
 
 /// Whether a candidate counts for the ray in `lane`.

@@ -6,7 +6,7 @@
 //! `canary` proves at start that the library agrees.
 
 use crate::geometry::{Found, Ids};
-use crate::intersect::embree::exact::{Clip, Entered, Exact};
+use crate::intersect::embree::exact::{Entered, Exact};
 use crate::intersect::embree::frame::Frame;
 use crate::intersect::embree::nearest::Nearest;
 use crate::intersect::embree::packet::Packet;
@@ -77,11 +77,9 @@ pub struct Context<'a, const W: usize> {
     pub scene: &'a Scene,
     /// The rays of the packet as they were asked; fewer than `W` in the last one.
     pub rays: Packet<'a>,
-    /// The same, side by side.
+    /// The same, side by side, and where on them the f32 rays lie that are being traced; within an
+    /// instance these are its own.
     pub exact: Exact<W>,
-    /// Where on the exact rays the f32 rays lie that are being traced; within an instance they
-    /// are its own.
-    pub clip: Clip<W>,
     /// The instance whose mesh is being traced in its own space.
     pub instance: u32,
     /// For each geometry of the Embree scene the instance that stands there.
@@ -106,7 +104,7 @@ pub struct Context<'a, const W: usize> {
     /// The largest absolute coordinate in the scene.
     reach: f64,
     /// How far from a surface a ray may start that starts on it to within rounding.
-    slack: f64,
+    pub slack: f64,
 }
 
 impl<'a, const W: usize> Context<'a, W> {
@@ -119,13 +117,12 @@ impl<'a, const W: usize> Context<'a, W> {
         all_block: bool,
     ) -> Self {
         let exact = Exact::new();
-        let (clip, nearest) = (exact.clip, Nearest::new(exact.tmax));
+        let nearest = Nearest::new(exact.tmax);
         Self {
             embree: [INVALID; 16],
             scene,
             rays,
             exact,
-            clip,
             instance: INVALID,
             instance_of,
             nearest,
@@ -154,15 +151,10 @@ impl<'a, const W: usize> Context<'a, W> {
         self.rays = rays;
         self.exact.load(&rays);
         let entered = self.exact.set_up(frame, org, dir, tfar);
-        self.clip = self.exact.clip;
         self.end = *tfar;
         self.nearest.begin(&self.exact.tmax);
         if self.leaves {
-            let mut farthest = self.reach;
-            for i in 0..W {
-                farthest = farthest.max(self.exact.line(i).0.abs().max_element());
-            }
-            self.slack = greatest_slack(farthest);
+            self.slack = greatest_slack(self.exact.farthest().max(self.reach));
             (self.outward, self.inward) = rays.spheres_left();
         }
         entered

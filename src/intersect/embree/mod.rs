@@ -324,7 +324,7 @@ impl Intersector for Embree<'_> {
     }
 
     fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
-        hits.reset(rays.len());
+        hits.fill(rays.len());
         self.target().closest(rays, coherence, hits);
     }
 

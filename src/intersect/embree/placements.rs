@@ -154,7 +154,7 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
             for slot in (0..n).filter(|&slot| *valid.add(slot) != 0) {
                 let lane = *ids.add(slot) as usize;
                 (*context).settle_all(lane, placement.instance);
-                let end = (*context).clip.narrow(lane, (*context).nearest.upper(lane));
+                let end = (*context).exact.clip.narrow(lane, (*context).nearest.upper(lane));
                 *tfar.add(slot) = end.min(*tfar.add(slot));
             }
             return;
@@ -171,7 +171,7 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
             }
         }
         if inside.any {
-            let around = std::mem::replace(&mut (*context).clip, inside.exact.clip);
+            let around = std::mem::replace(&mut (*context).exact.clip, inside.exact.clip);
             (*context).instance = placement.instance;
             let (valid, ray) = (inside.valid.0.as_ptr(), std::ptr::from_mut(&mut inside.ray));
             let (scene, id) = (placement.inner, placement.instance);
@@ -181,10 +181,10 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
                 8 => sys::rtcForwardIntersect8(valid, args, scene, ray.cast(), id),
                 _ => sys::rtcForwardIntersect16(valid, args, scene, ray.cast(), id),
             }
-            (*context).clip = around;
+            (*context).exact.clip = around;
         }
         for i in 0..W {
-            let end = (*context).clip.narrow(i, (*context).nearest.upper(i));
+            let end = (*context).exact.clip.narrow(i, (*context).nearest.upper(i));
             *tfar.add(i) = end.min(outer[i]);
         }
     }
@@ -225,7 +225,7 @@ unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArgumen
             *tfar.add(i) = inside.tfar[i];
         }
         if inside.any {
-            let around = std::mem::replace(&mut (*context).clip, inside.exact.clip);
+            let around = std::mem::replace(&mut (*context).exact.clip, inside.exact.clip);
             (*context).instance = placement.instance;
             let (valid, ray) = (inside.valid.0.as_ptr(), std::ptr::from_mut(&mut inside.ray));
             let (args, scene, id) = (args.cast(), placement.inner, placement.instance);
@@ -235,7 +235,7 @@ unsafe fn occluded<const W: usize>(args: *const sys::RTCOccludedFunctionNArgumen
                 8 => sys::rtcForwardOccluded8(valid, args, scene, ray.cast(), id),
                 _ => sys::rtcForwardOccluded16(valid, args, scene, ray.cast(), id),
             }
-            (*context).clip = around;
+            (*context).exact.clip = around;
         }
         for i in 0..W {
             let met = if inside.astray[i] {

@@ -1,6 +1,8 @@
 //! The infinite planes beside a packet: they stand in no tree, since nothing infinite can be
 //! bounded.
 
+use glam::DVec3;
+
 use crate::geometry::{Found, LANES, PrimitiveId, plane};
 use crate::intersect::Precision;
 use crate::intersect::embree::exact::Exact;
@@ -10,12 +12,14 @@ use crate::scene::Plane;
 
 impl Primitives<'_> {
     /// Merges the planes into the hits of a packet, from lane `at` on; see
-    /// [`Primitives::merge_planes`].
+    /// [`Primitives::merge_planes`]. No ray that was spawned in a plane starts farther from it than
+    /// `slack`.
     #[inline(always)]
     pub(super) fn merge_planes_into<const W: usize>(
         &self,
         packet: &Packet<'_>,
         exact: &Exact<W>,
+        slack: f64,
         found: &mut Found,
         at: usize,
     ) {
@@ -25,15 +29,19 @@ impl Primitives<'_> {
             let gone = packet.left_plane(index);
             let Some(mut ts) = self.ahead(plane, exact, &limits, &gone) else { continue };
             (packet.count..W).for_each(|i| ts[i] = f64::NAN);
-            if self.precision == Precision::Fast && packet.is_fresh() {
-                found.offer_plane(index, &ts, at);
-                continue;
-            }
             let mut open = [false; W];
             for i in 0..W {
                 open[i] = !ts[i].is_nan();
             }
-            if packet.is_fresh() {
+            if self.precision == Precision::Fast && packet.is_unbroken() {
+                // A ray that left a surface near the plane may have been spawned in it.
+                for i in 0..W {
+                    let height = plane.normal.dot(exact.line(i).0 - plane.point).abs();
+                    open[i] &= !(packet.is_fresh() | (height > slack));
+                    ts[i] = if open[i] { f64::NAN } else { ts[i] };
+                }
+                found.offer_plane(index, &ts, at);
+            } else if packet.is_fresh() {
                 self.merge_certain(index, exact, &mut open, found, at);
             }
             for i in (0..packet.count).filter(|&i| open[i]) {
@@ -82,10 +90,25 @@ impl Primitives<'_> {
             if !self.scene.blocks_light(PrimitiveId::plane(index)) {
                 continue;
             }
-            let gone = packet.left_plane(index);
-            let Some(ts) = self.ahead(plane, exact, &exact.tmax, &gone) else { continue };
+            let gone = packet.left_plane::<W>(index);
+            let mut may = [0u64; W];
+            for i in 0..W {
+                let (origin, direction) = exact.line(i);
+                let misses = match self.precision {
+                    Precision::Fast => passes_by(plane, origin, direction, exact.tmax[i]),
+                    Precision::Certified => {
+                        let Plane { point, normal, .. } = *plane;
+                        let limit = exact.tmax[i];
+                        plane::certified::certainly_misses(point, normal, origin, direction, limit)
+                    }
+                };
+                may[i] = u64::from(!misses & !gone[i] & (exact.tmax[i] > 0.0));
+            }
+            if may.iter().fold(0, |all, may| all | may) == 0 {
+                continue;
+            }
             for (i, blocked) in blocked.iter_mut().enumerate() {
-                if !ts[i].is_nan() && !*blocked && exact.tmax[i] > 0.0 {
+                if may[i] != 0 && !*blocked {
                     *blocked = self.plane(index, &packet.ray(i)).is_some();
                 }
             }
@@ -134,4 +157,13 @@ impl Primitives<'_> {
         }
         any.then_some(ts)
     }
+}
+
+/// Whether a ray certainly does not cross a plane before it ends, by the formula of precision
+/// `fast`, which takes a division: the quotient and these products are right to a few ulp.
+#[inline(always)]
+fn passes_by(plane: &Plane, origin: DVec3, direction: DVec3, tmax: f64) -> bool {
+    let height = plane.normal.dot(plane.point - origin);
+    let rise = plane.normal.dot(direction);
+    (height * rise < 0.0) | (height.abs() > rise.abs() * tmax * (1.0 + 1e-12))
 }

@@ -133,7 +133,6 @@ fn closest<const W: usize>(
         if !closest_in_packet(target, packet, coherence, &mut room, found) {
             // A ray that starts on a triangle, which hides what lies behind it: the filter drops it
             // and lets Embree look on.
-            (0..packet.count).for_each(|i| found.set(packet.first % LANES + i, None));
             let careful = Target { careful: true, ..*target };
             closest_in_packet(&careful, packet, coherence, &mut room, found);
         }
@@ -157,6 +156,7 @@ fn closest_in_packet<'a, const W: usize>(
     found: &mut Found,
 ) -> bool {
     let at = packet.first % LANES;
+    found.clear::<W>(at);
     let RayHit { org, dir, tfar, .. } = record;
     let entry = context.take_up(packet, target.frame, org, dir, tfar);
     record.geom = [INVALID; W];
@@ -167,7 +167,7 @@ fn closest_in_packet<'a, const W: usize>(
         flags: query_flags(coherence, filtered),
         feature_mask: ALL_FEATURES,
         context: std::ptr::from_mut(context).cast(),
-        filter: if filtered { Some(filter::<W, false>) } else { None },
+        filter: if filtered { Some(filter::<W, false>()) } else { None },
         intersect: None,
     };
     let record_ptr = std::ptr::from_mut(record);
@@ -204,7 +204,7 @@ fn closest_in_packet<'a, const W: usize>(
         }
     }
     if target.planes {
-        target.primitives().merge_planes_into(&packet, &context.exact, found, at);
+        target.primitives().merge_planes_into(&packet, &context.exact, context.slack, found, at);
     }
     true
 }
@@ -227,7 +227,7 @@ fn occluded<const W: usize>(
             flags: query_flags(coherence, filtered),
             feature_mask: ALL_FEATURES,
             context: std::ptr::from_mut(&mut context).cast(),
-            filter: if filtered { Some(filter::<W, true>) } else { None },
+            filter: if filtered { Some(filter::<W, true>()) } else { None },
             occluded: None,
         };
         let record_ptr = std::ptr::from_mut(&mut record);

@@ -93,7 +93,7 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
                         context.nearest.t[i] = ts[i];
                         context.nearest.primitive[i] = args.primID;
                     }
-                    let end = context.clip.narrow(i, ts[i]);
+                    let end = context.exact.clip.narrow(i, ts[i]);
                     if nearer && end < record.tfar[i] {
                         record.tfar[i] = end;
                     }
@@ -115,7 +115,7 @@ unsafe fn intersect<const W: usize>(args: *const sys::RTCIntersectFunctionNArgum
                 context.nearest.t[i] = t;
                 context.nearest.primitive[i] = args.primID;
                 let tfar = floats.add(TFAR * n + slot);
-                *tfar = context.clip.narrow(i, t).min(*tfar);
+                *tfar = context.exact.clip.narrow(i, t).min(*tfar);
             }
         }
     }

@@ -5,10 +5,11 @@ use gltf::json;
 use gltf::json::Value;
 
 use super::container::wrong_version;
+use super::validation;
 use crate::error::{Error, Place, Result};
 
-/// Parses the JSON.
-pub fn parse(bytes: &[u8]) -> Result<json::Root> {
+/// Parses the JSON: as what the crate makes of it, and as it stands in the file.
+pub fn parse(bytes: &[u8]) -> Result<(json::Root, Value)> {
     let root = match json::deserialize::from_slice::<json::Root>(bytes) {
         Ok(root) => root,
         Err(error) => reparse(bytes, &error)?,
@@ -19,15 +20,24 @@ pub fn parse(bytes: &[u8]) -> Result<json::Root> {
             wrong_version(&root.asset.version).place(Place::Json("asset.version".to_owned()))
         );
     }
-    check_indices(bytes)?;
-    Ok(root)
+    let value = json::deserialize::from_slice(bytes).map_err(|e| syntax(bytes, &e))?;
+    // The paths of all values take time; only a file with a number of ten digits can be concerned.
+    let mut digits = 0;
+    let is_long = |b: &u8| {
+        digits = if b.is_ascii_digit() { digits + 1 } else { 0 };
+        digits == 10
+    };
+    if bytes.iter().any(is_long) {
+        check_indices(&value)?;
+    }
+    Ok((root, value))
 }
 
 /// The second try at a file that the crate's types refuse. They demand more than the standard
 /// does, also of what is never used here, and cannot say that a file is glTF 1.0.
 fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
-    let refused = || syntax(bytes, error);
-    let mut value: Value = json::deserialize::from_slice(bytes).map_err(|_| refused())?;
+    let mut value: Value =
+        json::deserialize::from_slice(bytes).map_err(|_| syntax(bytes, error))?;
     match value.get("asset").and_then(|a| a.get("version")) {
         Some(Value::String(version)) if version.starts_with('2') => {}
         Some(Value::String(version)) => {
@@ -60,7 +70,13 @@ fn reparse(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
         spare_animation(one);
     }
     soften(&mut value);
-    json::deserialize::from_value(value).map_err(|_| refused())
+    let blame = validation::blame(&value);
+    json::deserialize::from_value(value).map_err(|_| match blame {
+        Some((path, what)) => {
+            Error::input(format!("not what glTF has here: {what}")).place(Place::Json(path))
+        }
+        None => syntax(bytes, error),
+    })
 }
 
 /// Leaves of an animation the channels that move nodes: some of an extension's move something
@@ -151,19 +167,9 @@ const INDEX_KEYS: [&str; 21] = [
 
 /// The crate keeps an index's low 32 bits alone, so that 2³² would mean 0. No file has so many
 /// objects: such a number where an index belongs is an error.
-fn check_indices(bytes: &[u8]) -> Result<()> {
-    // Parsing twice costs time; only a file with a number of ten digits can be concerned.
-    let mut digits = 0;
-    let long = bytes.iter().any(|b| {
-        digits = if b.is_ascii_digit() { digits + 1 } else { 0 };
-        digits == 10
-    });
-    if !long {
-        return Ok(());
-    }
-    let Ok(value) = json::deserialize::from_slice::<Value>(bytes) else { return Ok(()) };
+fn check_indices(value: &Value) -> Result<()> {
     // Each value with the place of the one that it is in: a path for each could fill the memory.
-    let mut all = vec![Inner { value: &value, outer: 0, step: Step::Root, of_attributes: false }];
+    let mut all = vec![Inner { value, outer: 0, step: Step::Root, of_attributes: false }];
     let mut next = 0;
     while let Some(&Inner { value, of_attributes, .. }) = all.get(next) {
         let outer = next;
@@ -241,13 +247,13 @@ mod tests {
 
     #[test]
     fn scene_without_nodes_is_valid() {
-        let root = parse(br#"{"asset":{"version":"2.0"},"scenes":[{}]}"#).unwrap();
+        let (root, _) = parse(br#"{"asset":{"version":"2.0"},"scenes":[{}]}"#).unwrap();
         assert_eq!(root.scenes.len(), 1);
     }
 
     #[test]
     fn integer_written_as_float_is_valid() {
-        let root = parse(br#"{"asset":{"version":"2.0"},"nodes":[{"mesh":1.0}]}"#).unwrap();
+        let (root, _) = parse(br#"{"asset":{"version":"2.0"},"nodes":[{"mesh":1.0}]}"#).unwrap();
         assert_eq!(root.nodes[0].mesh.unwrap().value(), 1);
     }
 
@@ -255,7 +261,7 @@ mod tests {
     fn extras_and_animations_may_be_anything() {
         let file = br#"{"asset":{"version":"2.0","extras":42},
             "animations":[{"channels":[{"sampler":0,"target":{}}],"samplers":[]}]}"#;
-        assert_eq!(parse(file).unwrap().animations.len(), 1);
+        assert_eq!(parse(file).unwrap().0.animations.len(), 1);
     }
 
     #[test]

@@ -33,7 +33,7 @@ pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
         }
     }
     for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
-        tally.say(format!("the extension {name} is not read"));
+        tally.unsupported(&format!("the extension {name} is not read"), 1, String::new);
     }
     Ok(())
 }

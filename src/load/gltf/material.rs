@@ -139,7 +139,7 @@ impl<'a> Maker<'_, 'a> {
         }
         if through > 0.0 && optics::sharpness(roughness) == 0.0 {
             let at = &self.at;
-            self.tally.add("{} frosted materials are drawn clear", 1, || at.clone());
+            self.tally.unsupported("{} frosted materials are drawn clear", 1, || at.clone());
         }
         // What is left of the whole is scattered; the share that glTF means is within it.
         let rest = Vec3::ONE - material.reflect - material.transmit;
@@ -227,7 +227,7 @@ impl<'a> Maker<'_, 'a> {
     ) -> Result<[f32; 4]> {
         let by = format!("{place}.index");
         let texture = self.all.textures.get(info.index.value(), transfer, &by, self.tally)?;
-        self.tally.add(reason, 1, || place.to_owned());
+        self.tally.unsupported(reason, 1, || place.to_owned());
         // Any number of materials can name one picture.
         let counts = self.all.counts.entry(Arc::as_ptr(&texture.image)).or_insert_with(|| {
             let mut counts = Box::new([[0u64; 256]; 4]);

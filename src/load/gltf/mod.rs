@@ -19,6 +19,7 @@ mod packed;
 mod primitive;
 mod texture;
 mod topology;
+mod validation;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -58,8 +59,9 @@ fn import(
     wanted: bool,
 ) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
-    let root = document::parse(json)?;
+    let (root, value) = document::parse(json)?;
     let mut tally = Tally::default();
+    validation::validate(&value, bin.map(<[u8]>::len), &mut tally);
     extensions::check(&root, &mut tally)?;
     let buffers = Buffers::new(&root, guard, path, bin);
     let accessors = Accessors::new(&root, guard, &buffers);
@@ -108,7 +110,7 @@ impl Importer<'_> {
         let parts = self.mesh(mesh.value(), &by)?;
         if placed.node.skin.is_some() {
             let reason = "{} skinned meshes stand as they were modelled, not as posed";
-            self.tally.add(reason, 1, || by.clone());
+            self.tally.unsupported(reason, 1, || by.clone());
         }
         let place = || Place::Json(by.clone());
         let count = self.scene.instances.len() + parts.len();
@@ -119,7 +121,7 @@ impl Importer<'_> {
             .collect();
         // What moves may be flat at one time and not at another.
         if placed.mover.is_none() && made.iter().any(Instance::is_flat) {
-            let reason = "{} meshes are not drawn: their scale is 0 along some direction";
+            let reason = "{} meshes are not drawn where their scale is 0 along some direction";
             self.tally.add(reason, 1, || by);
             return Ok(());
         }
@@ -181,7 +183,7 @@ impl Importer<'_> {
             )?;
             if primitive.targets.as_ref().is_some_and(|t| !t.is_empty()) {
                 let reason = "{} meshes with morph targets keep their base shape";
-                self.tally.add(reason, 1, || at);
+                self.tally.unsupported(reason, 1, || at);
             }
             if let Some(mut mesh) = read {
                 let size = [
@@ -205,7 +207,7 @@ impl Importer<'_> {
         if self.scene.instances.is_empty() {
             self.tally.say("there is no triangle in the scene that the file shows");
         }
-        self.scene.warnings = self.tally.sentences(path);
+        self.tally.finish(path, &mut self.scene);
         self.scene
     }
 }

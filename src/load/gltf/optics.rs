@@ -139,7 +139,7 @@ impl Maker<'_, '_> {
         };
         let at = &self.at;
         if alpha > 0.0 && pictured() {
-            self.tally.add(reason, 1, || at.clone());
+            self.tally.unsupported(reason, 1, || at.clone());
         }
         if alpha == 1.0 {
             return;
@@ -148,7 +148,7 @@ impl Maker<'_, '_> {
             cover(material, alpha);
         } else {
             let reason = "{} materials transmit light and have alpha: the alpha is left out";
-            self.tally.add(reason, 1, || at.clone());
+            self.tally.unsupported(reason, 1, || at.clone());
         }
     }
 }

@@ -7,11 +7,11 @@ use gltf::json::validation::Checked;
 use super::accessor::Accessors;
 use super::compact::compact;
 use super::texture::UvMap;
-use super::topology::triangles;
+use super::topology;
 use crate::error::{Error, Place, Result};
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
-use crate::scene::Mesh;
+use crate::scene::{DropReason, Mesh};
 
 /// Reads a primitive, with the texture coordinates that `uv` chooses; nothing where there is no
 /// triangle in it.
@@ -22,11 +22,16 @@ pub fn read(
     tally: &mut Tally,
     at: &str,
 ) -> Result<Option<Mesh>> {
-    let Some(mode) = mode(primitive, tally, at)? else { return Ok(None) };
+    let mode = mode(primitive, at)?;
     let reader = Reader { primitive, accessors, at };
+    let place = || at.to_owned();
+    if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
+        reader.drop_all(mode, DropReason::UnsupportedMode, tally);
+        return Ok(None);
+    }
     let Some(positions) = reader.index(Semantic::Positions) else {
         // The standard allows it, for extensions that bring positions of their own.
-        tally.add("{} primitives without positions are not drawn", 1, || at.to_owned());
+        reader.drop_all(mode, DropReason::NoPositions, tally);
         return Ok(None);
     };
     let positions: Vec<[f32; 3]> =
@@ -35,14 +40,11 @@ pub fn read(
         Some(indices) => accessors.indices(indices.value(), &format!("{at}.indices"))?,
         None => (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect(),
     };
-    let mut mesh = Mesh { triangles: triangles(mode, &vertices), positions, ..Mesh::default() };
-    let left_over = match mode {
-        Mode::Triangles => vertices.len() % 3,
-        _ => 0,
-    };
-    tally.add("{} corners are left out: they do not fill a triangle", left_over as u64, || {
-        at.to_owned()
-    });
+    let mut mesh =
+        Mesh { triangles: topology::triangles(mode, &vertices), positions, ..Mesh::default() };
+    let incomplete = topology::is_incomplete(mode, vertices.len());
+    tally.read(mesh.triangles.len() as u64 + u64::from(incomplete));
+    tally.drop(DropReason::Incomplete, u64::from(incomplete), place);
     mesh.normals = reader.normals(mesh.positions.len(), tally)?;
     mesh.colors = reader.colors(mesh.positions.len(), tally)?;
     mesh.uvs = reader.uvs(uv, mesh.positions.len(), tally)?;
@@ -51,15 +53,9 @@ pub fn read(
     Ok((!mesh.triangles.is_empty()).then_some(mesh))
 }
 
-fn mode(primitive: &Primitive, tally: &mut Tally, at: &str) -> Result<Option<Mode>> {
+fn mode(primitive: &Primitive, at: &str) -> Result<Mode> {
     match primitive.mode {
-        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => {
-            Ok(Some(mode))
-        }
-        Checked::Valid(_) => {
-            tally.add("{} primitives are points or lines and not drawn", 1, || at.to_owned());
-            Ok(None)
-        }
+        Checked::Valid(mode) => Ok(mode),
         Checked::Invalid => Err(Error::input("this is no known mode")
             .place(Place::Json(format!("{at}.mode")))
             .help("0 to 6; 4 is triangles")),
@@ -75,6 +71,16 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn index(&self, semantic: Semantic) -> Option<usize> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).map(json::Index::value)
+    }
+
+    /// Counts all faces as read and dropped.
+    fn drop_all(&self, mode: Mode, reason: DropReason, tally: &mut Tally) {
+        let any = self.primitive.attributes.values().next();
+        let corners = self.primitive.indices.or(any.copied());
+        let corners = corners.map_or(0, |index| self.accessors.count(index.value()));
+        let faces = topology::faces(mode, corners);
+        tally.read(faces);
+        tally.drop(reason, faces, || self.at.to_owned());
     }
 
     fn place(&self, semantic: &Semantic) -> String {

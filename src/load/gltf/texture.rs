@@ -105,7 +105,7 @@ impl<'a> Textures<'a> {
         let image = match source(texture) {
             Some(source) => self.image(source, &format!("textures[{index}].source"), tally)?,
             None => {
-                tally.say(format!("textures[{index}] has no picture that can be read"));
+                tally.placeholder(format!("textures[{index}] has no picture that can be read"));
                 Arc::new(picture::placeholder(&format!("textures[{index}]")))
             }
         };
@@ -121,7 +121,7 @@ impl<'a> Textures<'a> {
         let decoded = match uri.and_then(|uri| self.by_uri.get(uri)) {
             Some(decoded) => decoded.clone(),
             None => Arc::new(self.decode(image, index).unwrap_or_else(|error| {
-                tally.say(format!("{error}; a magenta checker takes its place"));
+                tally.placeholder(format!("{error}; a magenta checker takes its place"));
                 picture::placeholder(&format!("images[{index}]"))
             })),
         };

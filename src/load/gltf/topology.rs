@@ -5,7 +5,8 @@ use gltf::json::mesh::Mode;
 /// The triangles that `vertices`, in the order in which a primitive names them, make up.
 ///
 /// Strips and fans wind as part 3.7.2.1 of the standard says. What doesn't fill a last triangle is
-/// left out, as are all of the points and lines.
+/// left out, as are all of the points and lines. A strip names a vertex twice to go on elsewhere;
+/// what that makes is no triangle.
 pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
     match mode {
         Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
@@ -17,7 +18,8 @@ pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
                 _ => [t[0], t[2], t[1]],
             };
             let windows = vertices.windows(3).map(|w| [w[0], w[1], w[2]]);
-            windows.enumerate().map(wind).collect()
+            let is_face = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+            windows.enumerate().map(wind).filter(is_face).collect()
         }
         Mode::TriangleFan => match vertices {
             [first, rest @ ..] => rest.windows(2).map(|w| [w[0], w[1], *first]).collect(),
@@ -26,9 +28,35 @@ pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
     }
 }
 
+/// How many points, lines or triangles so many corners make; a last one that they do not fill
+/// counts.
+pub fn faces(mode: Mode, corners: u64) -> u64 {
+    match mode {
+        Mode::Points | Mode::LineLoop => corners,
+        Mode::Lines => corners.div_ceil(2),
+        Mode::LineStrip => corners.saturating_sub(1),
+        Mode::Triangles => corners.div_ceil(3),
+        Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
+    }
+}
+
+/// Whether so many corners do not fill a last triangle, or a first one.
+pub fn is_incomplete(mode: Mode, corners: usize) -> bool {
+    match mode {
+        Mode::Triangles => !corners.is_multiple_of(3),
+        _ => (1..3).contains(&corners),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn strip_goes_on_elsewhere_by_naming_vertices_twice() {
+        let made = triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]);
+        assert_eq!(made, [[0, 1, 2], [3, 5, 4]]);
+    }
 
     #[test]
     fn strip_turns_every_other_triangle() {

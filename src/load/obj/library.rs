@@ -162,9 +162,9 @@ impl<'a> Library<'a> {
                 .flatten()
                 .count();
         let reason = "{} textures of highlights and bumps are not read";
-        tally.add(reason, textures as u64, name);
+        tally.unsupported(reason, textures as u64, name);
         let opacities = u64::from(source.dissolve_texture.is_some());
-        tally.add("{} textures of opacity are not read", opacities, name);
+        tally.unsupported("{} textures of opacity are not read", opacities, name);
         material
     }
 
@@ -178,7 +178,7 @@ impl<'a> Library<'a> {
         let map = Map::parse(value)?;
         if map.ignored {
             let reason = "{} textures have options (scale, offset, gain …) that are not read";
-            tally.add(reason, 1, || format!("`{value}`"));
+            tally.unsupported(reason, 1, || format!("`{value}`"));
         }
         let file = find(self.guard, folder, map.file);
         let shown = folder.join(map.file).display().to_string();
@@ -190,7 +190,7 @@ impl<'a> Library<'a> {
         let read = file.and_then(|file| picture::read(file, self.guard, self.wanted));
         let image = read.unwrap_or_else(|error| {
             let error = error.at(&folder.join(map.file));
-            tally.say(format!("{error}; a magenta checker takes its place"));
+            tally.placeholder(format!("{error}; a magenta checker takes its place"));
             picture::placeholder(map.file)
         });
         let id = scene.add_texture(Texture {

@@ -23,7 +23,7 @@ use crate::load::guard::{Guard, Opened};
 use crate::load::limits::Limit;
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
-use crate::scene::{Instance, Mesh, Scene, Transfer};
+use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
 
 /// Loads an `.obj` file; its pictures are read where they are `wanted`.
 ///
@@ -63,7 +63,7 @@ fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scen
     if scene.instances.is_empty() {
         tally.say("there is no face in the file");
     }
-    scene.warnings = tally.sentences(path);
+    tally.finish(path, &mut scene);
     Ok(scene)
 }
 
@@ -80,7 +80,7 @@ fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
     let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
     let mut mesh = Mesh {
         name: part.name.clone(),
-        triangles: triangles(source, &positions),
+        triangles: triangles(source, &positions, tally, place),
         normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
         uvs: per_vertex(uvs, count),
         colors: per_vertex(colors, count),
@@ -98,11 +98,18 @@ fn per_vertex<T>(values: Vec<T>, count: usize) -> Vec<T> {
     if values.len() == count { values } else { Vec::new() }
 }
 
-fn triangles(source: &tobj::Mesh, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
+fn triangles(
+    source: &tobj::Mesh,
+    positions: &[[f32; 3]],
+    tally: &mut Tally,
+    place: &str,
+) -> Vec<[u32; 3]> {
     // tobj leaves the arities out where all are 3.
     if source.face_arities.is_empty() {
         return source.indices.as_chunks().0.to_vec();
     }
+    let arities = source.face_arities.iter();
+    let expected: u64 = arities.map(|&arity| u64::from(arity.saturating_sub(2))).sum();
     let mut rest = source.indices.as_slice();
     let mut triangles = Vec::with_capacity(source.indices.len());
     for &arity in &source.face_arities {
@@ -113,6 +120,9 @@ fn triangles(source: &tobj::Mesh, positions: &[[f32; 3]]) -> Vec<[u32; 3]> {
         let vertex = |i: usize| face.get(i).copied().unwrap_or(u32::MAX);
         triangles.extend(made.into_iter().map(|t| t.map(vertex)));
     }
+    // A polygon with corners at one place is cut into fewer.
+    let lost = expected.saturating_sub(triangles.len() as u64);
+    tally.drop(DropReason::Degenerate, lost, || place.to_owned());
     triangles
 }
 

@@ -10,6 +10,7 @@ use std::fmt::Write;
 use super::lines::{Statement, statements};
 use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
+use crate::scene::DropReason;
 
 /// Faces that become one mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -110,9 +111,9 @@ impl Rewriter<'_> {
             "s" => self.current.smoothing = rest.parse().unwrap_or(0),
             "usemtl" => self.current.material = rest.to_owned(),
             "mtllib" if !rest.is_empty() => self.made.libraries.push(rest.to_owned()),
-            "p" | "l" => self.tally.add("{} points and lines are not drawn", 1, line),
-            "curv" | "curv2" | "surf" => {
-                self.tally.add("{} free-form curves and surfaces are not drawn", 1, line);
+            "p" | "l" | "curv" | "curv2" | "surf" => {
+                self.tally.read(1);
+                self.tally.drop(DropReason::UnsupportedMode, 1, line);
             }
             _ => {}
         }
@@ -192,14 +193,15 @@ impl Rewriter<'_> {
         let at = || format!("line {line}");
         let corners: Vec<Corner> =
             rest.split_whitespace().map(|word| self.corner(word)).collect::<Result<_>>()?;
+        let triangles = corners.len().saturating_sub(2).max(1) as u64;
+        self.tally.read(triangles);
         if corners.len() < 3 {
-            self.tally.add("{} faces have fewer than three corners and are left out", 1, at);
+            self.tally.drop(DropReason::Incomplete, triangles, at);
             return Ok(());
         }
         let missing = |c: &Corner| c[0] < 1 || c[0] > self.total.positions;
         if corners.iter().any(missing) {
-            let reason = "{} faces are left out: they name vertices that are not there";
-            self.tally.add(reason, 1, at);
+            self.tally.drop(DropReason::IndexOutOfRange, triangles, at);
             return Ok(());
         }
         // What not every corner has, the face hasn't.

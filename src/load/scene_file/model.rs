@@ -37,6 +37,7 @@ impl Models {
                 let mut model = load::model(file, resolver.guard, animation.as_deref(), wanted)?;
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
+                resolver.scene.report.add(std::mem::take(&mut model.report));
                 let is_still = resolver.scene.animation.is_none();
                 if is_still && model.animation.take().is_some() {
                     resolver.scene.warnings.push(format!(

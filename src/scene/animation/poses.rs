@@ -36,6 +36,7 @@ impl<'a> Poses<'a> {
             lights: scene.lights.clone(),
             animation: None,
             warnings: scene.warnings.clone(),
+            report: scene.report.clone(),
         };
         Self { scene, posed, lacks_flat: false, mesh_bounds: None }
     }

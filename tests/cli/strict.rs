@@ -1,0 +1,71 @@
+//! `--strict`, and what the command tells of what is lost.
+
+use super::*;
+use import_common::Model;
+use serde_json::json;
+
+/// A folder with a model of two triangles, of which one names a vertex that is not there.
+fn lossy() -> Folder {
+    let mut model = Model::triangle();
+    let indices = model.shorts(&[0, 1, 2, 0, 1, 9]);
+    model.primitive()["indices"] = indices.into();
+    let folder = Folder::new();
+    folder.write("a.glb", model.glb());
+    folder
+}
+
+fn sound() -> Folder {
+    let folder = Folder::new();
+    folder.write("a.glb", Model::triangle().glb());
+    folder
+}
+
+#[test]
+fn strict_refuses_a_file_of_which_something_is_dropped() {
+    for command in ["info", "validate --size 8x8 --spp 1", "render --size 8x8 --spp 1"] {
+        let done = lossy().run(&format!("{command} a.glb --strict"));
+        assert_eq!(done.status, Some(2));
+        assert!(done.stderr.contains("dropped: 1 index-out-of-range"), "{}", done.stderr);
+    }
+}
+
+#[test]
+fn strict_takes_a_sound_file() {
+    for command in ["info", "validate --size 8x8 --spp 1", "render --size 8x8 --spp 1"] {
+        sound().run(&format!("{command} a.glb --strict")).good();
+    }
+}
+
+#[test]
+fn without_strict_a_loss_is_a_warning() {
+    let done = lossy().run("info a.glb");
+    assert_eq!(done.status, Some(0));
+    assert!(done.stderr.contains("1 faces are left out"), "{}", done.stderr);
+}
+
+#[test]
+fn strict_looks_at_the_models_of_a_scene_file() {
+    let folder = lossy();
+    folder.write("s.toml", "[[model]]\nfile = \"a.glb\"\n");
+    assert_eq!(folder.run("info s.toml --strict").status, Some(2));
+}
+
+#[test]
+fn info_balances_faces_in_words() {
+    let done = lossy().run("info a.glb");
+    assert_eq!(done.status, Some(0));
+    let line = "faces      2 read = 1 handed over + 1 index-out-of-range";
+    assert!(done.stdout.contains(line), "{}", done.stdout);
+}
+
+#[test]
+fn info_and_statistics_have_the_report() {
+    let folder = lossy();
+    let expected = json!({"read": 2, "handed_over": 1, "dropped": {"index-out-of-range": 1}});
+    for command in ["info a.glb --json -", "render a.glb --size 8x8 --spp 1 --stats -"] {
+        let report = &folder.run(command).json()["report"];
+        assert_eq!(report["faces"], expected);
+        assert_eq!(report["unsupported"], json!([]));
+        assert_eq!(report["placeholders"], json!([]));
+    }
+}
