@@ -45,6 +45,23 @@ fn negative_indices_count_back_from_the_face() {
 }
 
 #[test]
+fn lines_of_an_old_mac() {
+    assert_eq!(load(format!("{VERTICES}f 1 2 3").replace('\n', "\r")).triangle_count(), 1);
+}
+
+#[test]
+fn a_vertex_with_a_weight_is_divided_by_it() {
+    let scene = load("v 0 0 0\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3");
+    assert_eq!(scene.meshes[0].positions[1], [1., 0., 0.]);
+}
+
+#[test]
+fn words_that_are_no_keywords_are_a_warning() {
+    let scene = load(format!("{VERTICES}foo 1\nlod 2\nf 1 2 3"));
+    assert_warns(&scene, "first word is none of Wavefront OBJ, at line 4 (`foo`)");
+}
+
+#[test]
 fn faces_before_their_vertices() {
     assert_eq!(load(format!("f 1 2 3\n{VERTICES}")).triangle_count(), 1);
 }
@@ -216,7 +233,7 @@ fn face_with_normals_that_are_not_there_does_without() {
 
 #[test]
 fn vertex_that_is_not_finite_drops_its_faces() {
-    for bad in ["nan", "1e400", "-inf", "1.#QNAN"] {
+    for bad in ["nan", "1e400", "-inf", "1.#QNAN", "3.1+e2"] {
         let scene = load(format!("{VERTICES}v {bad} 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 3 4"));
         assert!(scene.triangle_count() >= 1, "{bad}");
         assert!(scene.meshes[0].positions.as_flattened().iter().all(|x| x.is_finite()));
@@ -353,7 +370,10 @@ fn glass_of_a_mesh_that_is_not_closed_is_a_warning() {
 fn broken_lines_of_an_mtl_file_are_ignored_with_a_warning() {
     let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nKd 1\nKs a b c\nNs\nKe 1 2\nillum x");
     assert_eq!(m.diffuse, Vec3::ONE);
-    assert_warns(&scene, "4 lines of the MTL file");
+    for what in ["`Ks` wants three numbers", "`Ns` wants a number", "`Ke`", "`illum`"] {
+        assert_warns(&scene, what);
+    }
+    assert_warns(&scene, "m.mtl:3 (`Ks a b c`)");
 }
 
 #[test]
@@ -395,6 +415,15 @@ fn texture_file_with_options_spaces_and_windows_paths() {
         assert_eq!(map.image.texels, [RED], "{value}");
         assert_eq!(m.diffuse, Vec3::ONE);
     }
+}
+
+#[test]
+fn texture_options_that_are_not_read_are_a_warning() {
+    let folder = Folder::new();
+    folder.write("a.png", png(&[RED]));
+    let (scene, _) = with_mtl(&folder, "newmtl m\nmap_Kd -s 2 2 -mm 0.1 2 a.png");
+    assert_warns(&scene, "without their options `-s` and `-o`");
+    assert_warns(&scene, "the option `-mm 0.1 2`");
 }
 
 #[test]

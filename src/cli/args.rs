@@ -154,6 +154,9 @@ pub struct Render {
     /// of rays to come. The pure-Rust intersector builds one way only
     #[arg(long, value_enum, default_value = "auto", value_name = "QUALITY")]
     pub bvh: BvhName,
+    /// Put matt ground under the scene, on which its shadow falls
+    #[arg(long)]
+    pub ground: bool,
     /// What the picture shows; normal, depth and id are raw values in EXR, colours in PNG
     #[arg(long, value_enum, default_value = "beauty")]
     pub view: ViewName,

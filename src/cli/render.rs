@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
+use crate::load;
 use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::animation::Poses;
 use crate::scene::{Adaptive, FilmSettings, Scene, Skips, Tone, detail};
@@ -27,6 +28,9 @@ pub fn run(arguments: &Render) -> Outcome {
     output::check_json(arguments.stats.as_ref())?;
     let skips = Skips::without(&arguments.no_skip)?;
     let (mut scene, camera) = arguments.tracing.load_animated(skips)?;
+    if arguments.ground {
+        load::add_ground(&mut scene);
+    }
     set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);

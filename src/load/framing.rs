@@ -1,22 +1,27 @@
-//! A camera and lights for model files that bring none.
+//! A camera for model files that bring none.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::geometry::Bounds;
-use crate::scene::{Camera, Lens, Light, LightKind, Scene, Shadow};
+use crate::scene::{Camera, Instance, Lens, Mesh, Scene};
 
-/// Half the vertical field of view of the framing camera, in radians: 35° in all.
+/// Half the vertical field of view of the framing camera, in radians: 35° in all, about that of a
+/// portrait lens, which does not distort.
 const HALF_FOV: f64 = 17.5 * std::f64::consts::PI / 180.0;
+/// The share of the picture, from its middle to its edge, that the model fills.
+const FILLED: f64 = 0.88;
+/// From where the camera looks: to the right, from above, and mostly from the front, where +Z is
+/// the front and +Y is up, as in glTF.
+const VIEW: DVec3 = DVec3::new(0.55, 0.45, 1.0);
+/// The least size of what is framed, as a share of how far it is from the origin: a single point
+/// has none.
+const LEAST: f64 = 1e-6;
+/// A model is flat along an axis where it is this much thinner than it is long.
+const FLAT: f64 = 0.02;
 
-/// Gives a scene default lights, when it has none.
-pub fn light(scene: &mut Scene) {
-    if scene.lights.is_empty() {
-        scene.lights = default_lights();
-    }
-}
-
-/// Gives a scene a camera that frames it, when it has none: a view from above and to the side
-/// that keeps the whole bounding sphere in the picture.
+/// Gives a scene a camera that frames it, when it has none: a three-quarter view, as near as the
+/// whole model fits, in the middle of the picture.
 pub fn frame(scene: &mut Scene) {
     if !scene.cameras.is_empty() {
         return;
@@ -26,64 +31,184 @@ pub fn frame(scene: &mut Scene) {
         b if b.is_empty() => Bounds { lower: DVec3::NEG_ONE, upper: DVec3::ONE },
         b => b,
     };
-    let [width, height] = scene.film.size.map(f64::from);
-    // The narrower of the two half-angles must hold the sphere.
-    let narrow = (HALF_FOV.tan() * (width / height).min(1.0)).atan();
-    let radius = (bounds.diagonal() * 0.5).max(1e-6 * (1.0 + bounds.max_abs()));
-    let distance = radius / narrow.sin() * 0.95;
-    let target = bounds.center();
-    let position = target + DVec3::new(0.55, 0.45, 1.0).normalize() * distance;
+    let least = LEAST * bounds.max_abs();
+    let is_point = bounds.diagonal() <= least;
+    let bounds = if is_point { bounds.padded(least.max(LEAST)) } else { bounds };
+    let view = direction(bounds.size());
     let lens = Lens::FovY(2.0 * HALF_FOV);
     // Fails only where the scene is not finite, which `Scene::check` then says.
-    if let Ok(mut camera) = Camera::look_at(position, target, DVec3::Y, lens) {
-        camera.name = "framing".to_owned();
-        scene.cameras.push(camera);
+    let Ok(mut camera) = Camera::look_at(view, DVec3::ZERO, DVec3::Y, lens) else { return };
+    if !bounds.max_abs().is_finite() {
+        return;
     }
+    let [width, height] = scene.film.size.map(f64::from);
+    let tangent = HALF_FOV.tan() * FILLED;
+    let extent = |along| match is_point {
+        true => extent_of_box(&bounds, along),
+        false => extent(scene, &bounds, along),
+    };
+    camera.position = stand(extent, bounds.center(), &camera, [tangent * width / height, tangent]);
+    camera.name = "framing".to_owned();
+    scene.cameras.push(camera);
 }
 
-/// A key light from the upper left, a weaker fill from the right, and a little from everywhere.
-fn default_lights() -> Vec<Light> {
-    let sun = |name: &str, direction: DVec3, intensity: f32, shadow: Shadow| Light {
-        name: name.to_owned(),
-        kind: LightKind::Directional { direction: direction.normalize() },
-        intensity: Vec3::splat(intensity),
-        shadow,
+/// From where to look at a model of a size: what is flat, more from its broad side.
+fn direction(size: DVec3) -> DVec3 {
+    let flat = size.cmplt(DVec3::splat(FLAT * size.max_element()));
+    match [flat.x, flat.y, flat.z] {
+        // A card that stands sideways.
+        [true, false, false] => DVec3::new(VIEW.z, VIEW.y, VIEW.x),
+        // A floor.
+        [false, true, false] => DVec3::new(VIEW.x, VIEW.z, VIEW.z),
+        _ => VIEW,
+    }
+    .normalize()
+}
+
+/// Where a camera must stand to see all of what has this extent, with these tangents of half its angles to the
+/// side and up.
+///
+/// An edge of the picture and the eye span a plane. With the camera's axes as x, y, and z into the
+/// picture, all of the model is within the right edge where px − s·pz ≤ cx − s·cz for each of its
+/// points p, the eye being c and s the tangent; and so for the other edges. The greatest px − s·pz
+/// is all that counts of the model: the plane then touches it.
+fn stand(
+    extent: impl Fn(DVec3) -> f64,
+    middle: DVec3,
+    camera: &Camera,
+    [side, up]: [f64; 2],
+) -> DVec3 {
+    let reach = |axis: DVec3, tangent: f64| {
+        let normal = axis - camera.forward * tangent;
+        // From the middle, so that less is rounded.
+        extent(normal) - middle.dot(normal)
     };
-    vec![
-        sun("key", DVec3::new(0.5, -1.0, -0.6), 0.8, Shadow::Tinted),
-        sun("fill", DVec3::new(-1.0, -0.3, -0.4), 0.25, Shadow::None),
-        Light {
-            name: "ambient".to_owned(),
-            kind: LightKind::Ambient,
-            intensity: Vec3::splat(0.15),
-            shadow: Shadow::None,
-        },
-    ]
+    let [right, left] = [1.0, -1.0].map(|sign| reach(camera.right * sign, side));
+    let [above, below] = [1.0, -1.0].map(|sign| reach(camera.up * sign, up));
+    let depth = ((right + left) / side).max((above + below) / up) / 2.0;
+    let [x, y] = [(right - left) / 2.0, (above - below) / 2.0];
+    middle + camera.right * x + camera.up * y - camera.forward * depth
+}
+
+/// How far a scene reaches along a direction, which is of any length; what moves, or is nothing,
+/// with its whole box.
+pub fn extent(scene: &Scene, bounds: &Bounds, along: DVec3) -> f64 {
+    if scene.animation.is_some() || scene.spheres.is_empty() && scene.triangle_count() == 0 {
+        return extent_of_box(bounds, along);
+    }
+    let spheres = scene.spheres.iter().map(|s| s.center.dot(along) + s.radius * along.length());
+    let meshes = scene.instances.iter().filter_map(|instance| {
+        let mesh = scene.meshes.get(instance.mesh.0 as usize)?;
+        Some(mesh_extent(mesh, instance, along))
+    });
+    spheres.chain(meshes).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn extent_of_box(bounds: &Bounds, along: DVec3) -> f64 {
+    bounds.upper.dot(along.max(DVec3::ZERO)) + bounds.lower.dot(along.min(DVec3::ZERO))
+}
+
+fn mesh_extent(mesh: &Mesh, instance: &Instance, along: DVec3) -> f64 {
+    let matrix = instance.transform.matrix3;
+    let local = matrix.transpose() * along;
+    let reach = |triangle: &[u32; 3]| {
+        let corner = |&i: &u32| mesh.positions.get(i as usize).copied().unwrap_or_default();
+        let reach = |p: [f32; 3]| DVec3::from(p.map(f64::from)).dot(local);
+        triangle.iter().map(corner).map(reach).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let most = mesh.triangles.par_iter().map(reach).reduce(|| f64::NEG_INFINITY, f64::max);
+    instance.transform.translation.dot(along) + most
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{MaterialId, Sphere};
+    use glam::DAffine3;
+
+    /// Where a point falls in the picture, from −1 to 1 across it and upwards.
+    fn seen(camera: &Camera, size: [u32; 2], point: DVec3) -> [f64; 2] {
+        let to = point - camera.position;
+        let depth = to.dot(camera.forward);
+        assert!(depth > 0.0, "{point} is behind the camera");
+        let aspect = f64::from(size[0]) / f64::from(size[1]);
+        let [x, y] = [camera.right, camera.up].map(|axis| to.dot(axis) / depth / HALF_FOV.tan());
+        [x / aspect, y]
+    }
+
+    fn mesh(positions: &[[f32; 3]]) -> Scene {
+        let triangles = (0..positions.len() as u32).map(|i| [i; 3]).collect();
+        let mesh = Mesh { positions: positions.to_vec(), triangles, ..Mesh::default() };
+        let mut scene = Scene::default();
+        let mesh = scene.add_mesh(mesh);
+        let material = scene.add_material(Default::default());
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+        scene
+    }
+
+    const BOX: [[f32; 3]; 4] = [[0., 0., 0.], [3., 0., 0.], [0., 1., 0.], [0., 0., 2.]];
+
+    /// The greatest distance, to the side or up, of a model's corners from the middle.
+    fn fill(scene: &mut Scene) -> [f64; 2] {
+        frame(scene);
+        let camera = &scene.cameras[0];
+        let placed = |p: &[f32; 3]| scene.instances[0].bake(*p);
+        let points = scene.meshes[0].positions.iter().map(placed);
+        points
+            .map(|p| seen(camera, scene.film.size, p))
+            .fold([0.0f64; 2], |most, at| std::array::from_fn(|k| most[k].max(at[k].abs())))
+    }
 
     #[test]
-    fn framing_camera_sees_the_whole_model_at_any_shape_of_picture() {
+    fn a_model_fills_the_picture_one_way_and_stays_within_it_the_other() {
         for size in [[400, 300], [300, 900], [1000, 100]] {
-            let mut scene = Scene::default();
-            scene.film.size = size;
-            scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
-            frame(&mut scene);
-            let camera = &scene.cameras[0];
-            let rays = camera.rays(size);
-            let edges = [(0.0, 0.5), (1.0, 0.5), (0.5, 0.0), (0.5, 1.0)];
-            for (x, y) in edges.map(|(x, y)| (x * f64::from(size[0]), y * f64::from(size[1]))) {
-                let ray = rays.through(x, y);
-                let to = scene.spheres[0].center - ray.origin;
-                let past =
-                    to - ray.direction * (to.dot(ray.direction) / ray.direction.length_squared());
-                assert!(past.length() > 2.0, "{size:?} cuts the sphere");
+            for transform in [
+                DAffine3::IDENTITY,
+                DAffine3::from_scale(DVec3::splat(1e-20)),
+                DAffine3::from_scale(DVec3::splat(1e20)),
+                DAffine3::from_translation(DVec3::new(1e4, -1e5, 3e4)),
+            ] {
+                let mut scene = mesh(&BOX);
+                scene.film.size = size;
+                scene.instances[0].transform = transform;
+                let [x, y] = fill(&mut scene);
+                assert!((x.max(y) - FILLED).abs() < 1e-6, "{size:?} {transform:?}: {x} {y}");
             }
         }
+    }
+
+    #[test]
+    fn a_sphere_touches_the_margin() {
+        let mut scene = Scene::default();
+        scene.film.size = [400, 300];
+        scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
+        frame(&mut scene);
+        let camera = &scene.cameras[0];
+        let to = scene.spheres[0].center - camera.position;
+        let half = (2.0 / to.length()).asin();
+        assert!((half.tan() - HALF_FOV.tan() * FILLED).abs() < 1e-9);
+        assert!(to.normalize().dot(camera.forward) > 1.0 - 1e-12);
+    }
+
+    #[test]
+    fn flat_models_are_seen_from_their_broad_side() {
+        for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
+            let corner = |p: &[f32; 3]| (DVec3::from(p.map(f64::from)) * (1.0 - flat)).as_vec3();
+            let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
+            frame(&mut scene);
+            assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
+        }
+    }
+
+    #[test]
+    fn a_line_and_a_point_are_framed_too() {
+        let mut line = mesh(&[[0., 0., 0.], [0., 5., 0.]]);
+        let [x, y] = fill(&mut line);
+        assert!((x.max(y) - FILLED).abs() < 1e-6);
+        let mut point = mesh(&[[1., 2., 3.]]);
+        assert!(fill(&mut point).iter().all(|x| x.abs() < FILLED));
+        let mut origin = mesh(&[[0., 0., 0.]]);
+        assert!(fill(&mut origin).iter().all(|x| x.abs() < FILLED));
     }
 
     #[test]
@@ -95,13 +220,11 @@ mod tests {
     }
 
     #[test]
-    fn a_files_own_camera_and_lights_are_kept() {
-        let mut scene = Scene::default();
+    fn a_files_own_camera_is_kept() {
+        let mut scene = mesh(&BOX);
         frame(&mut scene);
-        light(&mut scene);
-        let (camera, lights) = (scene.cameras.clone(), scene.lights.clone());
+        let camera = scene.cameras.clone();
         frame(&mut scene);
-        light(&mut scene);
-        assert_eq!((camera, lights), (scene.cameras, scene.lights));
+        assert_eq!(camera, scene.cameras);
     }
 }

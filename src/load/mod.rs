@@ -13,6 +13,7 @@ mod picture;
 mod place;
 mod repair;
 mod scene_file;
+mod studio;
 mod tally;
 mod uri;
 
@@ -24,6 +25,7 @@ use crate::scene::{Scene, Skips, Work, closed};
 use guard::{Guard, Opened};
 pub use limits::{Limit, Limits, NamedLimit};
 pub use scene_file::schema;
+pub use studio::add_ground;
 
 /// Samples per pixel of a bare model file, which has no setting of its own.
 pub const BARE_MODEL_SPP: u32 = 16;
@@ -45,8 +47,9 @@ pub struct Options {
 
 /// Loads a scene file or a bare model file, by its extension.
 ///
-/// A bare model gets a camera that frames it and default lights where it has none of its own, and
-/// [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does not name.
+/// A bare model gets a camera that frames it and lights where it has none of its own, a neutral
+/// background, and [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does
+/// not name.
 ///
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
@@ -83,7 +86,7 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     framing::frame(&mut scene);
     if !from_file {
         scene.film.spp = BARE_MODEL_SPP;
-        framing::light(&mut scene);
+        studio::light(&mut scene);
     }
     scene.check().map_err(|e| e.at(path))?;
     let open = closed::open_bodies(&scene);

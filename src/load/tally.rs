@@ -87,6 +87,17 @@ impl Tally {
         }
     }
 
+    /// Adds what another one has counted, which comes after.
+    pub fn append(&mut self, later: Self) {
+        for (own, all) in self.sentences.iter_mut().zip(later.sentences) {
+            *own += all.saturating_sub(MAX_SENTENCES);
+        }
+        for entry in later.entries {
+            self.count(entry.kind, &entry.reason, entry.count, || entry.first);
+        }
+        self.report.add(later.report);
+    }
+
     /// Gives a scene its report, and its warnings: one sentence for each reason, with the file's
     /// name before it. Meshes that stand nowhere are counted as dropped.
     pub fn finish(mut self, file: &Path, scene: &mut Scene) {

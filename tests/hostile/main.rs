@@ -8,9 +8,11 @@
 #[path = "../import_common/mod.rs"]
 mod common;
 
+mod encode;
 mod glb;
 mod gltf;
 mod gltf_edits;
+mod links;
 mod mtl;
 mod obj;
 mod pictures;
@@ -84,6 +86,7 @@ fn cases() -> Vec<Case> {
     let all = [
         gltf::cases(),
         gltf_edits::cases(),
+        links::cases(),
         glb::cases(),
         obj::cases(),
         mtl::cases(),

@@ -82,7 +82,7 @@ pub fn cases() -> Vec<Case> {
     case("of a statement before any material", b"Kd 1 0 0\nnewmtl a\n".to_vec(), Expect::Any);
     case(
         "of 100000 materials",
-        { (0..100_000).map(|i| format!("newmtl m{i}\n")).collect::<String>().into_bytes() },
+        (0..100_000).map(|i| format!("newmtl m{i}\n")).collect::<String>().into_bytes(),
         Warning("in no MTL file"),
     );
     case(
@@ -112,7 +112,7 @@ pub fn cases() -> Vec<Case> {
     let same = |i: usize| format!("newmtl m{i}\nmap_Kd {}bomb.png\n", "./".repeat(i % 50));
     let all: String = (0..20_000).map(same).collect();
     let bombs = Case::new("mtl 20000 names of one bomb", "hostile.obj", obj, Expect::Any);
-    let bomb = super::pictures::flat_png(4096, 4096);
+    let bomb = super::encode::flat_png(4096, 4096);
     cases.push(bombs.with("hostile.mtl", all).with("bomb.png", bomb));
     cases
 }

@@ -193,7 +193,7 @@ pub fn cases() -> Vec<Case> {
         )
     };
     let text = CAMERA.to_owned() + &(0..5000).map(picture).collect::<String>();
-    with("of one picture by 60 names", text, "a.png", super::pictures::flat_png(2048, 2048), Loads);
+    with("of one picture by 60 names", text, "a.png", super::encode::flat_png(2048, 2048), Loads);
     with(
         "with a picture that is none",
         format!("{CAMERA}{}", picture(0)),

@@ -187,12 +187,13 @@ fn check_indices(value: &Value) -> Result<()> {
                 of_attributes: of_attributes || matches!(key.as_str(), "attributes" | "targets"),
             })),
             // Sizes in bytes and counts are 64 bits wide, and checked where they are used.
-            Value::Number(n) if n.as_u64().is_some_and(|n| n > u64::from(u32::MAX)) => {
-                if of_attributes || INDEX_KEYS.contains(&last_key(&all, next)) {
-                    return Err(Error::input(format!("{n} is too large a number here"))
-                        .place(Place::Json(path(&all, next)))
-                        .help("indices and constants are below 4294967296"));
-                }
+            Value::Number(n)
+                if n.as_u64().is_some_and(|n| n > u64::from(u32::MAX))
+                    && (of_attributes || INDEX_KEYS.contains(&last_key(&all, next))) =>
+            {
+                return Err(Error::input(format!("{n} is too large a number here"))
+                    .place(Place::Json(path(&all, next)))
+                    .help("indices and constants are below 4294967296"));
             }
             _ => {}
         }

@@ -3,23 +3,21 @@
 //! Whatever is wrong with them is a warning: the shape can still be shown.
 
 use std::collections::{HashMap, HashSet};
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::Vec3;
 
 use super::illumination::Illumination;
-use super::lines::{decode, statements};
+use super::lines::decode;
 use super::map::Map;
+use super::mtl::{UNNAMED, clean};
 use crate::error::{Error, Result};
 use crate::load::guard::{Guard, Opened};
 use crate::load::picture;
 use crate::load::tally::Tally;
 use crate::scene::{Filter, Material, MaterialId, Scene, Texture, TextureId, Transfer, Wrap};
 
-/// The name, for tobj, of a material whose name is empty.
-const UNNAMED: &str = "(unnamed)";
 /// The range of shininess that is drawn.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 
@@ -156,13 +154,13 @@ impl<'a> Library<'a> {
         if illumination.opacity == 0.0 {
             tally.add("{} materials have an opacity of 0 (d 0, or Tr 1)", 1, name);
         }
-        let textures =
-            [&source.specular_texture, &source.normal_texture, &source.shininess_texture]
-                .into_iter()
-                .flatten()
-                .count();
-        let reason = "{} textures of highlights and bumps are not read";
-        tally.unsupported(reason, textures as u64, name);
+        let pictures = [&source.specular_texture, &source.shininess_texture];
+        let pictures = pictures.into_iter().flatten().count();
+        tally.unsupported("{} textures of highlights are not read", pictures as u64, name);
+        let bumps = source.normal_texture.iter().count() + other("norm").iter().count();
+        tally.unsupported("{} textures of bumps and normals are not read", bumps as u64, name);
+        let metal = ["Pr", "Pm", "map_Pr", "map_Pm"].into_iter().flat_map(other).count();
+        tally.unsupported("{} values of roughness and metalness are not read", metal as u64, name);
         let opacities = u64::from(source.dissolve_texture.is_some());
         tally.unsupported("{} textures of opacity are not read", opacities, name);
         material
@@ -176,12 +174,16 @@ impl<'a> Library<'a> {
         tally: &mut Tally,
     ) -> Option<TextureId> {
         let map = Map::parse(value)?;
-        if map.ignored {
-            let reason = "{} textures have options (scale, offset, gain …) that are not read";
+        if (map.scale, map.offset) != ([1.0; 2], [0.0; 2]) {
+            let reason = "{} textures are laid on without their options `-s` and `-o`";
             tally.unsupported(reason, 1, || format!("`{value}`"));
         }
-        let file = find(self.guard, folder, map.file);
-        let shown = folder.join(map.file).display().to_string();
+        for option in &map.ignored {
+            let reason = format!("the option `{option}` of {{}} textures is not read");
+            tally.unsupported(&reason, 1, || format!("`{value}`"));
+        }
+        let file = find(self.guard, folder, &map.file);
+        let shown = folder.join(&map.file).display().to_string();
         let name = file.as_ref().map_or(shown, |file| file.identity.display().to_string());
         let key = (name, map.clamp);
         if let Some(&id) = self.textures.get(&key) {
@@ -189,9 +191,9 @@ impl<'a> Library<'a> {
         }
         let read = file.and_then(|file| picture::read(file, self.guard, self.wanted));
         let image = read.unwrap_or_else(|error| {
-            let error = error.at(&folder.join(map.file));
+            let error = error.at(&folder.join(&*map.file));
             tally.placeholder(format!("{error}; a magenta checker takes its place"));
-            picture::placeholder(map.file)
+            picture::placeholder(&map.file)
         });
         let id = scene.add_texture(Texture {
             image: Arc::new(image),
@@ -250,65 +252,6 @@ fn say_missing(name: &str, error: &Error, tally: &mut Tally) {
     tally.say(format!("the materials `{name}` are missing and drawn grey: {error}"));
 }
 
-/// The statements that tobj is to read, in the form it takes. It panics at a colour of fewer than
-/// three numbers, and drops the whole file at a number it cannot read.
-fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
-    let mut out = String::with_capacity(text.len());
-    for s in statements(text) {
-        let bad = |tally: &mut Tally| {
-            let reason = "{} lines of the MTL file are not understood and ignored";
-            tally.add(reason, 1, || format!("{}:{}", path.display(), s.line));
-        };
-        let finite = |w: &str| w.parse::<f32>().ok().filter(|x| x.is_finite() && *x >= 0.0);
-        let rest = s.rest.as_ref();
-        let _ = match s.keyword.to_ascii_lowercase().as_str() {
-            "newmtl" if rest.is_empty() => writeln!(out, "newmtl {UNNAMED}"),
-            "newmtl" => writeln!(out, "newmtl {rest}"),
-            key @ ("ka" | "kd" | "ks" | "ke" | "tf") => {
-                let numbers: Option<Vec<f32>> = rest.split_whitespace().map(finite).collect();
-                let key = key.replacen('k', "K", 1).replacen('t', "T", 1);
-                match numbers.as_deref() {
-                    // One number is a grey, as the format says.
-                    Some([grey]) => writeln!(out, "{key} {grey} {grey} {grey}"),
-                    Some([r, g, b, ..]) => writeln!(out, "{key} {r} {g} {b}"),
-                    _ => {
-                        bad(tally);
-                        Ok(())
-                    }
-                }
-            }
-            key @ ("ns" | "ni" | "d" | "tr") => {
-                let key = key.replacen('n', "N", 1).replacen('t', "T", 1);
-                // `d -halo 0.5` has its number last.
-                match rest.split_whitespace().next_back().and_then(finite) {
-                    Some(number) => writeln!(out, "{key} {number}"),
-                    None => {
-                        bad(tally);
-                        Ok(())
-                    }
-                }
-            }
-            "illum" => match rest.parse::<f32>() {
-                Ok(model) if (0.0..=10.0).contains(&model) => {
-                    writeln!(out, "illum {}", model as u8)
-                }
-                _ => {
-                    bad(tally);
-                    Ok(())
-                }
-            },
-            "map_kd" if !rest.is_empty() => writeln!(out, "map_Kd {rest}"),
-            "map_ks" if !rest.is_empty() => writeln!(out, "map_Ks {rest}"),
-            "map_ke" if !rest.is_empty() => writeln!(out, "map_Ke {rest}"),
-            "map_ns" if !rest.is_empty() => writeln!(out, "map_Ns {rest}"),
-            "map_d" if !rest.is_empty() => writeln!(out, "map_d {rest}"),
-            "map_bump" | "bump" | "norm" if !rest.is_empty() => writeln!(out, "bump {rest}"),
-            _ => Ok(()),
-        };
-    }
-    out
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -318,14 +261,5 @@ mod tests {
         assert_eq!(names_of_line("a b.mtl c.MTL"), ["a b.mtl", "c.MTL"]);
         assert_eq!(names_of_line("x.mat y.mat"), ["x.mat", "y.mat"]);
         assert_eq!(names_of_line("a\\ b.mat c.mtl"), ["a b.mat c.mtl"]);
-    }
-
-    #[test]
-    fn broken_lines_do_not_reach_tobj() {
-        let mut tally = Tally::default();
-        let text = "newmtl a\nKd 1\nKs 1 2\nNs x\nTf spectral a.rfl\nd -halo 0.5\nillum 99\n";
-        let clean = clean(text, Path::new("a.mtl"), &mut tally);
-        assert_eq!(clean, "newmtl a\nKd 1 1 1\nd 0.5\n");
-        assert!(tally.sentences(Path::new("a"))[0].contains("4 lines"));
     }
 }

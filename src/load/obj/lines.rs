@@ -5,22 +5,32 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 
-/// The text of a file: UTF-8, or UTF-16 with its mark, or else Latin-1, as old exporters wrote.
+/// Bytes among which a binary file has a zero.
+const HEAD: usize = 1 << 12;
+
+/// The text of a file: UTF-8, or UTF-16 with its mark, or else Latin-1, as old exporters wrote;
+/// lines that end in a carriage return alone, as on old Macs, end in a line feed.
 ///
 /// # Errors
 /// When it is no text at all.
 pub fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
+    let text = characters(bytes)?;
+    let old_mac = !text.contains('\n') && text.contains('\r');
+    Ok(if old_mac { text.replace('\r', "\n").into() } else { text })
+}
+
+fn characters(bytes: &[u8]) -> Result<Cow<'_, str>> {
     let units = |rest: &[u8], unit: fn([u8; 2]) -> u16| {
         let units: Vec<u16> = rest.as_chunks().0.iter().map(|&pair| unit(pair)).collect();
         String::from_utf16_lossy(&units)
     };
-    match bytes {
-        [0xEF, 0xBB, 0xBF, rest @ ..] => return decode(rest),
+    let bytes = match bytes {
         [0xFF, 0xFE, rest @ ..] => return Ok(units(rest, u16::from_le_bytes).into()),
         [0xFE, 0xFF, rest @ ..] => return Ok(units(rest, u16::from_be_bytes).into()),
-        _ => {}
-    }
-    if bytes.contains(&0) {
+        [0xEF, 0xBB, 0xBF, rest @ ..] => rest,
+        _ => bytes,
+    };
+    if bytes.iter().take(HEAD).any(|&b| b == 0) {
         return Err(Error::input("this is a binary file, not Wavefront OBJ, which is text")
             .help("a compiler's object files end in .obj too"));
     }
@@ -31,48 +41,80 @@ pub fn decode(bytes: &[u8]) -> Result<Cow<'_, str>> {
     })
 }
 
-/// A statement of a file: its first word, the rest, and the line on which it starts.
+/// A line as the file has it, line break and all; or several that `\` joins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line<'a> {
+    /// What stands there.
+    pub text: &'a str,
+    /// Where in the text it begins.
+    pub start: usize,
+    /// The number of its first line, counted from 1.
+    pub number: usize,
+}
+
+/// A statement of a file: its first word, and the rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statement<'a> {
-    /// The first word.
+    /// The first word; empty for a comment or an empty line.
     pub keyword: Cow<'a, str>,
     /// What follows it, trimmed, without a trailing comment.
     pub rest: Cow<'a, str>,
-    /// The line, counted from 1.
-    pub line: usize,
 }
 
-/// The statements of a text, with lines that end in `\` joined.
-pub fn statements(text: &str) -> impl Iterator<Item = Statement<'_>> {
-    let mut lines = text.lines().enumerate();
+/// The lines of a text, with those that end in `\` joined.
+pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    let (mut start, mut next) = (0, 1);
     std::iter::from_fn(move || {
+        let rest = text.get(start..).filter(|rest| !rest.is_empty())?;
+        let (mut length, mut count) = (0, 0);
         loop {
-            let (number, first) = lines.next()?;
-            let mut whole = Cow::Borrowed(first.trim());
+            let line = rest.get(length..).unwrap_or_default();
+            let end = end_of_line(line.as_bytes());
+            let open = line.get(..end).is_some_and(is_open);
+            (length, count) = (length + end, count + 1);
             // A comment is not continued.
-            while !whole.starts_with('#') && whole.ends_with('\\') {
-                let joined = whole.to_mut();
-                joined.pop();
-                let Some((_, next)) = lines.next() else { break };
-                joined.push(' ');
-                joined.push_str(next.trim());
-            }
-            if let Some(statement) = split(whole, number + 1) {
-                return Some(statement);
+            if !open || length == rest.len() || rest.trim_start().starts_with('#') {
+                break;
             }
         }
+        let line = Line { text: rest.get(..length)?, start, number: next };
+        (start, next) = (start + length, next + count);
+        Some(line)
     })
 }
 
-fn split(line: Cow<'_, str>, number: usize) -> Option<Statement<'_>> {
-    let length = strip_comment(&line).len();
-    let end = line.find(char::is_whitespace).unwrap_or(length).min(length);
-    let part = |range: std::ops::Range<usize>| match &line {
-        Cow::Borrowed(line) => Cow::Borrowed(line.get(range).unwrap_or_default().trim()),
-        Cow::Owned(line) => Cow::Owned(line.get(range).unwrap_or_default().trim().to_owned()),
-    };
-    let statement = Statement { keyword: part(0..end), rest: part(end..length), line: number };
-    (!statement.keyword.is_empty()).then_some(statement)
+/// How long the first line of a text is, its line break included.
+pub fn end_of_line(text: &[u8]) -> usize {
+    memchr::memchr(b'\n', text).map_or(text.len(), |at| at + 1)
+}
+
+/// Whether a line ends in `\`, spaces aside.
+pub fn is_open(line: &str) -> bool {
+    line.as_bytes().trim_ascii_end().ends_with(b"\\")
+}
+
+impl<'a> Line<'a> {
+    /// What the line says.
+    pub fn statement(&self) -> Statement<'a> {
+        let line = self.text.trim();
+        if line.starts_with('#') {
+            return Statement { keyword: "".into(), rest: "".into() };
+        }
+        if !line.contains('\n') && !line.ends_with('\\') {
+            return split(line);
+        }
+        let parts = line.lines().map(|part| part.trim().trim_end_matches('\\'));
+        let joined = parts.collect::<Vec<_>>().join(" ");
+        let Statement { keyword, rest } = split(&joined);
+        let owned = |part: Cow<str>| Cow::Owned(part.into_owned());
+        Statement { keyword: owned(keyword), rest: owned(rest) }
+    }
+}
+
+fn split(line: &str) -> Statement<'_> {
+    let line = strip_comment(line).trim();
+    let (keyword, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    Statement { keyword: keyword.into(), rest: rest.trim_start().into() }
 }
 
 /// Without a comment. One begins at a `#` that stands first or after a space: names may hold a
@@ -82,7 +124,7 @@ fn strip_comment(text: &str) -> &str {
         text.get(..*at).is_some_and(|before| before.is_empty() || before.ends_with([' ', '\t']))
     };
     match text.match_indices('#').find(starts) {
-        Some((at, _)) => text.get(..at).unwrap_or(text).trim(),
+        Some((at, _)) => text.get(..at).unwrap_or(text),
         None => text,
     }
 }
@@ -91,8 +133,13 @@ fn strip_comment(text: &str) -> &str {
 mod tests {
     use super::*;
 
+    /// Keyword, rest and number of what is neither comment nor empty.
     fn all(text: &str) -> Vec<(String, String, usize)> {
-        statements(text).map(|s| (s.keyword.into_owned(), s.rest.into_owned(), s.line)).collect()
+        let said = |line: Line| {
+            let Statement { keyword, rest } = line.statement();
+            (!keyword.is_empty()).then(|| (keyword.into(), rest.into(), line.number))
+        };
+        lines(text).filter_map(said).collect()
     }
 
     fn one(keyword: &str, rest: &str, line: usize) -> (String, String, usize) {
@@ -106,7 +153,7 @@ mod tests {
 
     #[test]
     fn backslash_joins_lines() {
-        assert_eq!(all("f 1 \\\n 2 \\\n3\nv"), [one("f", "1  2  3", 1), one("v", "", 4)]);
+        assert_eq!(all("f 1 \\\r\n 2 \\ \n3\nv"), [one("f", "1  2  3", 1), one("v", "", 4)]);
     }
 
     #[test]
@@ -125,10 +172,23 @@ mod tests {
     }
 
     #[test]
+    fn lines_together_are_the_text() {
+        let text = "a \\\nb\n\n#c\\\nd";
+        let found: Vec<_> = lines(text).collect();
+        assert_eq!(found.iter().map(|l| l.text).collect::<String>(), text);
+        assert!(found.iter().all(|l| text[l.start..].starts_with(l.text)));
+    }
+
+    #[test]
     fn encodings() {
         assert_eq!(decode(b"\xEF\xBB\xBFv 1").unwrap(), "v 1");
         assert_eq!(decode(b"o caf\xE9").unwrap(), "o caf\u{e9}");
         assert_eq!(decode(b"\xFF\xFEv\0 \x001\0").unwrap(), "v 1");
         assert!(decode(b"\x4c\x01\0\0").is_err());
+    }
+
+    #[test]
+    fn lines_of_an_old_mac() {
+        assert_eq!(decode(b"v 1\rv 2\r").unwrap(), "v 1\nv 2\n");
     }
 }

@@ -1,61 +1,108 @@
 //! A texture statement of an MTL file: options, then the file's name, which may hold spaces.
 
 /// A texture statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Map<'a> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
     /// The file's name.
-    pub file: &'a str,
+    pub file: String,
     /// Whether the picture ends at its edges, by `-clamp on`.
     pub clamp: bool,
-    /// Whether there are options that are not read.
-    pub ignored: bool,
+    /// What texture coordinates are multiplied with, by `-s`.
+    pub scale: [f32; 2],
+    /// What is added to them then, by `-o`.
+    pub offset: [f32; 2],
+    /// Options that are not read.
+    pub ignored: Vec<String>,
 }
 
-impl<'a> Map<'a> {
+impl Map {
     /// Parses what follows `map_Kd` and its kin; nothing where no file is named.
-    pub fn parse(text: &'a str) -> Option<Self> {
-        let mut map = Self { file: text.trim(), clamp: false, ignored: false };
-        while map.file.starts_with('-') {
-            let (option, rest) = word(map.file);
-            // How many values an option takes at least and at most. The vectors may be cut short.
-            let (least, most) = match option {
-                "-blendu" | "-blendv" | "-bm" | "-boost" | "-cc" | "-clamp" | "-colorspace"
-                | "-imfchan" | "-texres" | "-type" => (1, 1),
-                "-mm" => (2, 2),
-                "-o" | "-s" | "-t" => (1, 3),
-                // No option: a name that starts with a dash.
-                _ => break,
-            };
-            let mut rest = rest;
-            for i in 0..most {
-                let (value, after) = word(rest);
-                if i >= least && value.parse::<f32>().is_err() {
-                    break;
-                }
-                // A picture may be called 2: the name is what stands last.
-                if i >= least && after.is_empty() {
-                    break;
-                }
-                if option == "-clamp" {
-                    map.clamp = value == "on";
-                }
-                rest = after;
-            }
-            // These are about interpolation and channels, and seldom change the picture.
-            let harmless = ["-blendu", "-blendv", "-bm", "-clamp", "-colorspace", "-imfchan"];
-            map.ignored |= !harmless.contains(&option);
-            map.file = rest;
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut map = Self {
+            file: String::new(),
+            clamp: false,
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            ignored: Vec::new(),
+        };
+        let mut file = text.trim();
+        while let Some((option, rest)) = option(file) {
+            let (values, rest) = values(option, rest);
+            map.apply(option, values);
+            file = rest;
         }
-        let quoted = map.file.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
-        map.file = quoted.unwrap_or(map.file);
+        let quoted = file.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
+        file.clone_into(&mut map.file);
+        if let Some(quoted) = quoted {
+            quoted.clone_into(&mut map.file);
+        }
         (!map.file.is_empty()).then_some(map)
+    }
+
+    fn apply(&mut self, option: &str, values: &str) {
+        let mut words = values.split_whitespace();
+        match option.to_ascii_lowercase().as_str() {
+            "-clamp" => self.clamp = values == "on",
+            // The third number is for solid textures.
+            "-s" => read(&mut self.scale, words),
+            "-o" => read(&mut self.offset, words),
+            // A gain of 1 over a base of 0, and no turbulence, change nothing.
+            "-mm" if values.split_whitespace().map(str::parse).eq([Ok(0.0f32), Ok(1.0)]) => {}
+            "-t" if words.all(|w| w.parse() == Ok(0.0f32)) => {}
+            "-cc" if values == "off" => {}
+            // These are about how pixels are mixed and kept.
+            "-blendu" | "-blendv" | "-boost" | "-texres" | "-type" | "-bm" | "-imfchan" => {}
+            other => self.ignored.push(format!("{other} {values}")),
+        }
     }
 }
 
-/// The first word, and what follows it, trimmed.
+/// Reads as many numbers as there are.
+fn read<'a>(numbers: &mut [f32], words: impl Iterator<Item = &'a str>) {
+    for (number, word) in numbers.iter_mut().zip(words) {
+        if let Some(value) = word.parse().ok().filter(|x: &f32| x.is_finite()) {
+            *number = value;
+        }
+    }
+}
+
+/// An option at the beginning of a text, and what follows it; a name may start with a dash, too.
+fn option(text: &str) -> Option<(&str, &str)> {
+    let (option, rest) = word(text);
+    lengths(option).map(|_| (option, rest))
+}
+
+/// How many values an option takes at least and at most. The vectors may be cut short.
+fn lengths(option: &str) -> Option<(usize, usize)> {
+    Some(match option.to_ascii_lowercase().as_str() {
+        "-blendu" | "-blendv" | "-bm" | "-boost" | "-cc" | "-clamp" | "-colorspace"
+        | "-imfchan" | "-texres" | "-type" => (1, 1),
+        "-mm" => (2, 2),
+        "-o" | "-s" | "-t" => (1, 3),
+        _ => return None,
+    })
+}
+
+/// The values of an option at the beginning of a text, and what follows them.
+fn values<'a>(option: &str, text: &'a str) -> (&'a str, &'a str) {
+    let (least, most) = lengths(option).unwrap_or_default();
+    let mut rest = text;
+    for i in 0..most {
+        let (value, after) = word(rest);
+        // A picture may be called 2: the name is what stands last.
+        if i >= least && (value.parse::<f32>().is_err() || after.is_empty()) {
+            break;
+        }
+        rest = after;
+    }
+    let values = text.get(..text.len() - rest.len()).unwrap_or_default();
+    (values.trim(), rest)
+}
+
+/// The first word, and what follows it, without the space between.
 fn word(text: &str) -> (&str, &str) {
     match text.split_once(char::is_whitespace) {
-        Some((word, rest)) => (word, rest.trim()),
+        Some((word, rest)) => (word, rest.trim_start()),
         None => (text, ""),
     }
 }
@@ -64,27 +111,36 @@ fn word(text: &str) -> (&str, &str) {
 mod tests {
     use super::*;
 
-    fn file(text: &str) -> Option<&str> {
+    fn file(text: &str) -> Option<String> {
         Map::parse(text).map(|m| m.file)
     }
 
     #[test]
     fn options_are_not_the_name() {
-        assert_eq!(file("-s 2 2 1 -bm .3 tex.png"), Some("tex.png"));
-        assert_eq!(file("-o 1 -clamp on a b.png"), Some("a b.png"));
-        assert_eq!(file("-mm 0 1 \"c d.png\""), Some("c d.png"));
+        assert_eq!(file("-s 2 2 1 -bm .3 tex.png").unwrap(), "tex.png");
+        assert_eq!(file("-o 1 -clamp on a b.png").unwrap(), "a b.png");
+        assert_eq!(file("-mm 0 1 \"c d.png\"").unwrap(), "c d.png");
     }
 
     #[test]
     fn name_may_be_a_number_or_start_with_a_dash() {
-        assert_eq!(file("-s 2 2 3"), Some("3"));
-        assert_eq!(file("-x.png"), Some("-x.png"));
+        assert_eq!(file("-s 2 2 3").unwrap(), "3");
+        assert_eq!(file("-x.png").unwrap(), "-x.png");
     }
 
     #[test]
-    fn clamp_is_read() {
-        assert!(Map::parse("-clamp on a").unwrap().clamp);
+    fn values_of_options_are_read() {
+        let map = Map::parse("-clamp on -s 2 -o .5 -1 0 a").unwrap();
+        assert!(map.clamp);
+        assert_eq!((map.scale, map.offset), ([2.0, 1.0], [0.5, -1.0]));
         assert!(!Map::parse("-clamp off a").unwrap().clamp);
+    }
+
+    #[test]
+    fn options_that_would_change_the_picture_are_named() {
+        let ignored = |text: &str| Map::parse(text).unwrap().ignored;
+        assert_eq!(ignored("-mm 0.1 2 -t 1 a.png"), ["-mm 0.1 2", "-t 1"]);
+        assert_eq!(ignored("-mm 0 1 -t 0 0 0 -blendu off -texres 64 a.png"), [""; 0]);
     }
 
     #[test]

@@ -4,14 +4,20 @@
 //! separate indices, and this module makes meshes of them. What is read, and how, stands in
 //! docs/formats.md.
 
+mod corners;
 mod illumination;
 mod library;
 mod lines;
 mod map;
+mod mtl;
+mod plain;
 mod polygon;
 mod rewrite;
+mod segments;
+mod smooth;
+mod sorter;
+mod vertices;
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
@@ -46,14 +52,15 @@ fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scen
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     // No `mtllib` is left in the text.
     let no_library = |_: &Path| Err(tobj::LoadError::GenericFailure);
-    let (models, _) = tobj::load_obj_buf(&mut made.text.as_bytes(), &options, no_library)
+    let (models, _) = tobj::load_obj_buf(&mut made.reader(&text), &options, no_library)
         .map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     for model in models {
         let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
             continue;
         };
         let Some(mesh) = mesh(&model.mesh, part, &mut tally) else { continue };
-        let material = library.get(&part.material, &mut scene, &mut tally);
+        let name = part.setting.material.as_deref().unwrap_or_default();
+        let material = library.get(name, &mut scene, &mut tally);
         guard.take(Limit::Vertices, mesh.positions.len() as u64)?;
         guard.take(Limit::Triangles, mesh.triangles.len() as u64)?;
         guard.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
@@ -69,7 +76,8 @@ fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scen
 
 /// The mesh of a part; nothing where it has no triangle.
 fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
-    let place = if part.name.is_empty() { "the object without a name" } else { &part.name };
+    let name = part.setting.name.as_deref();
+    let place = name.unwrap_or("the object without a name");
     let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
     let count = positions.len();
     // OBJ's v runs up the picture, ours runs down.
@@ -79,15 +87,15 @@ fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
     let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x));
     let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
     let mut mesh = Mesh {
-        name: part.name.clone(),
+        name: name.unwrap_or_default().to_owned(),
         triangles: triangles(source, &positions, tally, place),
         normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
         uvs: per_vertex(uvs, count),
         colors: per_vertex(colors, count),
         positions,
     };
-    if mesh.normals.is_empty() && part.smoothing != 0 {
-        mesh.normals = smooth_normals(&mesh);
+    if mesh.normals.is_empty() && part.setting.smoothing.is_some() {
+        mesh.normals = smooth::normals(&mesh);
     }
     repair(&mut mesh, tally, place);
     (!mesh.triangles.is_empty()).then_some(mesh)
@@ -124,28 +132,6 @@ fn triangles(
     let lost = expected.saturating_sub(triangles.len() as u64);
     tally.drop(DropReason::Degenerate, lost, || place.to_owned());
     triangles
-}
-
-/// The normals of a smoothing group: at each place the mean of the triangles that meet there,
-/// weighted by their angles, so that it doesn't matter how polygons were cut (G. Thürmer and
-/// C. Wüthrich, 1998), and however many vertices stand there for the sake of textures.
-fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
-    let key = |p: &[f32; 3]| p.map(|x| (x + 0.0).to_bits());
-    let mut sums: HashMap<[u32; 3], DVec3> = HashMap::new();
-    for triangle in &mesh.triangles {
-        let corners = triangle.map(|i| position(&mesh.positions, i));
-        for k in 0..3 {
-            let [here, next, last] = [0, 1, 2].map(|j| corners[(k + j) % 3]);
-            let normal = (next - here).cross(last - here).normalize_or_zero();
-            let angle = (next - here).angle_between(last - here);
-            let weighted = if angle.is_finite() { normal * angle } else { DVec3::ZERO };
-            if let Some(p) = mesh.positions.get(triangle[k] as usize) {
-                *sums.entry(key(p)).or_default() += weighted;
-            }
-        }
-    }
-    let normal = |p: &[f32; 3]| sums.get(&key(p)).copied().unwrap_or_default();
-    mesh.positions.iter().map(|p| normal(p).normalize_or_zero().as_vec3().to_array()).collect()
 }
 
 fn position(positions: &[[f32; 3]], index: u32) -> DVec3 {

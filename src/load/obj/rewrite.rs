@@ -1,48 +1,107 @@
-//! Rewrites an OBJ file for tobj, which gives up at what it does not expect, without a line
-//! number, and loses count where only some vertices of a mesh have normals.
+//! Puts an OBJ file in the form that tobj takes. tobj gives up at what it does not expect, without
+//! a line number, and loses count where only some vertices of a mesh have normals.
 //!
-//! The text made here has the vertices first, then the faces with absolute indices that are known
-//! to exist, sorted into [`Part`]s whose faces all have the same attributes.
+//! The text made here has the vertices first, then the faces, with indices that are known to
+//! exist, sorted into [`Part`]s whose faces all have the same attributes. Nearly all of it are
+//! stretches of the file as it stands. Threads share the file in chunks: they first [survey] them,
+//! since a line's meaning depends on what stands before it, and a face may name a vertex that
+//! stands after it; and then [sort](super::sorter) their lines.
 
 use std::collections::HashMap;
-use std::fmt::Write;
+use std::io::BufRead;
 
-use super::lines::{Statement, statements};
-use crate::error::{Error, Place, Result};
+use rayon::prelude::*;
+
+use super::lines::{Statement, end_of_line, is_open, lines};
+use super::segments::Segments;
+use super::sorter::{Sorted, Sorter};
+use crate::error::Result;
 use crate::load::tally::Tally;
-use crate::scene::DropReason;
+
+/// About how many bytes a thread works on at a time.
+const CHUNK: usize = 1 << 20;
 
 /// Faces that become one mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Part {
+    /// What the file says of them.
+    pub setting: Setting,
+    /// Whether they name texture coordinates, and normals.
+    pub has: [bool; 2],
+}
+
+/// What statements before a face say of it; nothing where none has said anything yet.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Setting {
     /// The object's or group's name.
-    pub name: String,
+    pub name: Option<String>,
     /// The material that it names; empty for none.
-    pub material: String,
-    /// Its smoothing group, when its faces have no normals of their own; 0 for none.
-    pub smoothing: u32,
-    has_uvs: bool,
-    has_normals: bool,
+    pub material: Option<String>,
+    /// Its smoothing group; 0 for none.
+    pub smoothing: Option<u32>,
+}
+
+impl Setting {
+    /// Follows a statement, if it is one that says something of the faces after it.
+    pub fn follow(&mut self, statement: &Statement) -> bool {
+        let rest = statement.rest.as_ref();
+        match statement.keyword.as_ref() {
+            "o" | "g" => self.name = Some(rest.to_owned()),
+            "usemtl" => self.material = Some(rest.to_owned()),
+            // `off`, too, means none.
+            "s" => self.smoothing = Some(rest.parse().unwrap_or(u32::from(rest == "on"))),
+            _ => return false,
+        }
+        true
+    }
+
+    /// What holds after `later` as well.
+    fn then(&self, later: &Self) -> Self {
+        Self {
+            name: later.name.as_ref().or(self.name.as_ref()).cloned(),
+            material: later.material.as_ref().or(self.material.as_ref()).cloned(),
+            smoothing: later.smoothing.or(self.smoothing),
+        }
+    }
+}
+
+/// How many of each kind of vertex data there are.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Counts {
+    /// Positions, texture coordinates and normals.
+    pub of: [u32; 3],
+    /// Whether a position has a colour.
+    pub colored: bool,
+}
+
+/// What holds at a place of the file.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    /// Where in the text it is.
+    pub start: usize,
+    /// Lines before it.
+    pub lines: usize,
+    /// Vertex data before it.
+    pub counts: Counts,
+    /// What is said of the faces after it.
+    pub setting: Setting,
 }
 
 /// An OBJ file rewritten.
 #[derive(Debug, Default)]
 pub struct Rewritten {
-    /// What tobj is to read; its groups are named by their part's number.
-    pub text: String,
-    /// The parts.
+    segments: Segments,
+    /// The parts; tobj finds them as groups that are named by their number.
     pub parts: Vec<Part>,
     /// The material libraries that the file names.
     pub libraries: Vec<String>,
 }
 
-/// How many of each kind of vertex data there are, so far or in all.
-#[derive(Clone, Copy, Default)]
-struct Counts {
-    positions: i64,
-    uvs: i64,
-    normals: i64,
-    colored: bool,
+impl Rewritten {
+    /// What tobj is to read, made of the text that was rewritten.
+    pub fn reader<'a>(&'a self, text: &'a str) -> impl BufRead + 'a {
+        self.segments.reader(text)
+    }
 }
 
 /// Rewrites a file.
@@ -50,246 +109,157 @@ struct Counts {
 /// # Errors
 /// When a line's numbers are no numbers; the error names the line.
 pub fn rewrite(text: &str, tally: &mut Tally) -> Result<Rewritten> {
-    let mut total = Counts::default();
-    statements(text).for_each(|s| total.add(&s));
-    let mut rewriter = Rewriter {
-        tally,
-        total,
-        so_far: Counts::default(),
-        vertices: String::with_capacity(text.len() / 2),
-        current: Part::default(),
-        faces: Vec::new(),
-        part_of: HashMap::new(),
-        made: Rewritten::default(),
-    };
-    for statement in statements(text) {
-        rewriter.statement(&statement).map_err(|e| e.place(Place::Line(statement.line)))?;
+    let chunks = chunks(text);
+    let surveys: Vec<Place> = chunks.par_iter().map(|chunk| survey(chunk)).collect();
+    let mut here = Place::default();
+    let mut places = Vec::with_capacity(chunks.len());
+    for there in surveys {
+        let next = here.then(&there);
+        places.push(std::mem::replace(&mut here, next));
     }
-    Ok(rewriter.finish())
+    let sorted: Vec<Result<(Sorted, Tally)>> = chunks
+        .into_par_iter()
+        .zip(places)
+        .map(|(chunk, place)| Sorter::new(chunk, place, here.counts).sort())
+        .collect();
+    merge(sorted, tally)
+}
+
+/// Puts the chunks' parts together, in the order in which they come up in the file.
+fn merge(sorted: Vec<Result<(Sorted, Tally)>>, tally: &mut Tally) -> Result<Rewritten> {
+    let mut made = Rewritten::default();
+    let mut numbers: HashMap<Part, usize> = HashMap::new();
+    let mut faces: Vec<Segments> = Vec::new();
+    for chunk in sorted {
+        let (chunk, said) = chunk?;
+        tally.append(said);
+        made.segments.append(chunk.vertices);
+        made.libraries.extend(chunk.libraries);
+        for (part, segments) in chunk.parts {
+            let number = *numbers.entry(part.clone()).or_insert(faces.len());
+            match faces.get_mut(number) {
+                Some(faces) => faces.append(segments),
+                None => {
+                    made.parts.push(part);
+                    faces.push(segments);
+                }
+            }
+        }
+    }
+    for (i, faces) in faces.into_iter().enumerate() {
+        made.segments.write().push_str(&format!("g {i}\n"));
+        made.segments.append(faces);
+    }
+    Ok(made)
+}
+
+/// A text cut after lines that the next one does not continue.
+fn chunks(text: &str) -> Vec<&str> {
+    let mut chunks = Vec::new();
+    let mut rest = text;
+    while !rest.is_empty() {
+        // A line feed is never within a character.
+        let mut end = CHUNK.min(rest.len());
+        loop {
+            end += end_of_line(rest.as_bytes().get(end..).unwrap_or_default());
+            let last = rest.get(..end).unwrap_or_default();
+            let last = last.get(last.trim_end().rfind('\n').unwrap_or(0)..).unwrap_or_default();
+            if end >= rest.len() || !is_open(last) {
+                break;
+            }
+        }
+        let (chunk, after) = rest.split_at_checked(end).unwrap_or((rest, ""));
+        chunks.push(chunk);
+        rest = after;
+    }
+    chunks
+}
+
+/// What holds after a chunk of which nothing before is known.
+fn survey(chunk: &str) -> Place {
+    let mut place = Place { start: chunk.len(), ..Place::default() };
+    for line in lines(chunk) {
+        let kind = match line.text.as_bytes() {
+            [b'f' | b'#', b' ', ..] => continue,
+            [b'v', b' ' | b'\t', ..] => 0,
+            [b'v', b't', b' ' | b'\t', ..] => 1,
+            [b'v', b'n', b' ' | b'\t', ..] => 2,
+            _ => {
+                let statement = line.statement();
+                match statement.keyword.as_ref() {
+                    "v" => 0,
+                    "vt" => 1,
+                    "vn" => 2,
+                    _ => {
+                        place.setting.follow(&statement);
+                        continue;
+                    }
+                }
+            }
+        };
+        place.counts.add(kind, line.text);
+    }
+    place.lines = memchr::memchr_iter(b'\n', chunk.as_bytes()).count();
+    place
 }
 
 impl Counts {
-    fn add(&mut self, statement: &Statement) {
-        match statement.keyword.as_ref() {
-            "v" => {
-                self.positions += 1;
-                self.colored |= statement.rest.split_whitespace().nth(5).is_some();
-            }
-            "vt" => self.uvs += 1,
-            "vn" => self.normals += 1,
-            _ => {}
+    /// Counts a line of vertex data of a kind: position, texture coordinates or normal.
+    pub fn add(&mut self, kind: usize, line: &str) {
+        if let Some(count) = self.of.get_mut(kind) {
+            *count = count.saturating_add(1);
         }
-    }
-}
-
-struct Rewriter<'t> {
-    tally: &'t mut Tally,
-    total: Counts,
-    so_far: Counts,
-    vertices: String,
-    current: Part,
-    /// The faces of each part, in its order.
-    faces: Vec<String>,
-    part_of: HashMap<Part, usize>,
-    made: Rewritten,
-}
-
-/// A corner of a face: absolute indices from 1, 0 for none.
-type Corner = [i64; 3];
-
-impl Rewriter<'_> {
-    fn statement(&mut self, statement: &Statement) -> Result<()> {
-        let rest = statement.rest.as_ref();
-        let line = || format!("line {}", statement.line);
-        self.so_far.add(statement);
-        match statement.keyword.as_ref() {
-            "v" => self.position(rest, statement.line)?,
-            "vt" => self.vector("vt", rest, 2, 1, statement.line)?,
-            "vn" => self.vector("vn", rest, 3, 3, statement.line)?,
-            "f" | "fo" => self.face(rest, statement.line)?,
-            "o" | "g" => self.current.name = rest.to_owned(),
-            "s" => self.current.smoothing = rest.parse().unwrap_or(0),
-            "usemtl" => self.current.material = rest.to_owned(),
-            "mtllib" if !rest.is_empty() => self.made.libraries.push(rest.to_owned()),
-            "p" | "l" | "curv" | "curv2" | "surf" => {
-                self.tally.read(1);
-                self.tally.drop(DropReason::UnsupportedMode, 1, line);
-            }
-            _ => {}
-        }
-        Ok(())
-    }
-
-    /// `x y z`, with a weight (`x y z w`) or a colour (`x y z r g b`) after it.
-    fn position(&mut self, rest: &str, line: usize) -> Result<()> {
-        let words: Vec<&str> = rest.split_whitespace().collect();
-        let numbers = self.numbers(&words, "v", 3, line)?;
-        let weight = if numbers.len() == 4 { numbers.get(3).copied() } else { None };
-        if weight == Some(0.0) {
-            return Err(Error::input("the vertex has weight 0").help("`v x y z`"));
-        }
-        self.vertices.push('v');
-        let shown = if numbers.len() >= 6 { 6 } else { 3 };
-        for (word, number) in words.iter().zip(&numbers).take(shown) {
-            self.push_number(word, *number);
-        }
-        if self.total.colored && shown == 3 {
-            self.vertices.push_str(" 1 1 1");
-        } else if let Some(weight) = weight {
-            let _ = write!(self.vertices, " {weight}");
-        }
-        self.vertices.push('\n');
-        Ok(())
-    }
-
-    /// A vector of which `most` numbers are used and `least` must be there.
-    fn vector(
-        &mut self,
-        keyword: &str,
-        rest: &str,
-        most: usize,
-        least: usize,
-        line: usize,
-    ) -> Result<()> {
-        let words: Vec<&str> = rest.split_whitespace().collect();
-        let numbers = self.numbers(&words, keyword, least, line)?;
-        self.vertices.push_str(keyword);
-        for (word, number) in words.iter().zip(&numbers).take(most) {
-            self.push_number(word, *number);
-        }
-        for _ in numbers.len()..most {
-            self.vertices.push_str(" 0");
-        }
-        self.vertices.push('\n');
-        Ok(())
-    }
-
-    fn push_number(&mut self, word: &str, number: f32) {
-        self.vertices.push(' ');
-        // The file's own digits, lest anything be lost; what isn't finite is dealt with later.
-        let digits = word.split('#').next().unwrap_or(word);
-        self.vertices.push_str(if number.is_finite() { digits } else { "nan" });
-    }
-
-    fn numbers(
-        &mut self,
-        words: &[&str],
-        keyword: &str,
-        least: usize,
-        line: usize,
-    ) -> Result<Vec<f32>> {
-        let numbers: Vec<f32> = words.iter().map(|w| number(w)).collect::<Result<_>>()?;
-        if numbers.len() < least {
-            let message = format!("`{keyword}` has {} numbers, and needs {least}", numbers.len());
-            return Err(Error::input(message));
-        }
-        let bad = numbers.iter().any(|x| !x.is_finite());
-        let reason = "{} lines of vertex data have a number that is not finite";
-        self.tally.add(reason, u64::from(bad), || format!("line {line}"));
-        Ok(numbers)
-    }
-
-    fn face(&mut self, rest: &str, line: usize) -> Result<()> {
-        let at = || format!("line {line}");
-        let corners: Vec<Corner> =
-            rest.split_whitespace().map(|word| self.corner(word)).collect::<Result<_>>()?;
-        let triangles = corners.len().saturating_sub(2).max(1) as u64;
-        self.tally.read(triangles);
-        if corners.len() < 3 {
-            self.tally.drop(DropReason::Incomplete, triangles, at);
-            return Ok(());
-        }
-        let missing = |c: &Corner| c[0] < 1 || c[0] > self.total.positions;
-        if corners.iter().any(missing) {
-            self.tally.drop(DropReason::IndexOutOfRange, triangles, at);
-            return Ok(());
-        }
-        // What not every corner has, the face hasn't.
-        let [uvs, normals] = [(1, self.total.uvs), (2, self.total.normals)].map(|(i, total)| {
-            let in_range = |c: &Corner| c.get(i).is_some_and(|&x| x >= 1 && x <= total);
-            let named = corners.iter().any(|c| c.get(i).is_some_and(|&x| x != 0));
-            let all = corners.iter().all(in_range);
-            (all, named && !all)
-        });
-        let reason = "{} faces do without normals or texture coordinates: at some corner they name \
-                      none that is there";
-        self.tally.add(reason, u64::from(uvs.1 || normals.1), at);
-        let mut part = self.current.clone();
-        (part.has_uvs, part.has_normals) = (uvs.0, normals.0);
-        if part.has_normals {
-            part.smoothing = 0;
-        }
-        let next = self.faces.len();
-        let number = *self.part_of.entry(part.clone()).or_insert(next);
-        if number == next {
-            self.faces.push(String::new());
-            self.made.parts.push(part.clone());
-        }
-        let Some(out) = self.faces.get_mut(number) else { return Ok(()) };
-        out.push('f');
-        for [v, vt, vn] in corners {
-            let _ = match (part.has_uvs, part.has_normals) {
-                (false, false) => write!(out, " {v}"),
-                (true, false) => write!(out, " {v}/{vt}"),
-                (false, true) => write!(out, " {v}//{vn}"),
-                (true, true) => write!(out, " {v}/{vt}/{vn}"),
-            };
-        }
-        out.push('\n');
-        Ok(())
-    }
-
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; negative indices count back from the last so far.
-    fn corner(&self, word: &str) -> Result<Corner> {
-        let word = word.split('#').next().unwrap_or(word);
-        let broken = || {
-            Error::input(format!("`{word}` is no corner of a face"))
-                .help("`v`, `v/vt`, `v//vn` or `v/vt/vn`, each a whole number")
+        // Six numbers, whatever their form.
+        self.colored |= kind == 0 && {
+            let spaces = line.bytes().filter(|b| matches!(b, b' ' | b'\t')).count();
+            spaces > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
         };
-        let counts = [self.so_far.positions, self.so_far.uvs, self.so_far.normals];
-        let mut corner = [0; 3];
-        let mut parts = word.split('/');
-        for (index, count) in corner.iter_mut().zip(counts) {
-            let part = parts.next().unwrap_or_default();
-            if part.is_empty() {
-                continue;
-            }
-            let number: i64 = part.parse().map_err(|_| broken())?;
-            // What is out of range becomes −1, and is found out later.
-            *index = match number {
-                n if n < 0 => count.saturating_add(n).saturating_add(1),
-                n => n,
-            };
-            if *index <= 0 {
-                *index = -1;
-            }
-        }
-        if parts.next().is_some() || corner[0] == 0 {
-            return Err(broken());
-        }
-        Ok(corner)
-    }
-
-    fn finish(mut self) -> Rewritten {
-        self.made.text = self.vertices;
-        for (i, faces) in self.faces.into_iter().enumerate() {
-            let _ = writeln!(self.made.text, "g {i}");
-            self.made.text.push_str(&faces);
-        }
-        self.made
     }
 }
 
-/// A number; NaN in any spelling is one, and so is what lies beyond f32.
-fn number(word: &str) -> Result<f32> {
-    // Microsoft's old C library wrote 1.#QNAN, 1.#INF and -1.#IND.
-    if word.contains(".#") {
-        return Ok(f32::NAN);
+impl Place {
+    /// What holds after what `there` was surveyed of.
+    fn then(&self, there: &Self) -> Self {
+        let of = |k: usize| self.counts.of[k].saturating_add(there.counts.of[k]);
+        Self {
+            start: self.start + there.start,
+            lines: self.lines + there.lines,
+            counts: Counts {
+                of: std::array::from_fn(of),
+                colored: self.counts.colored || there.counts.colored,
+            },
+            setting: self.setting.then(&there.setting),
+        }
     }
-    let clean = word.split('#').next().unwrap_or(word);
-    clean.parse().map_err(|_| {
-        let comma = if clean.contains(',') { "decimals have a point, not a comma" } else { "" };
-        let error = Error::input(format!("`{word}` is no number"));
-        if comma.is_empty() { error } else { error.help(comma) }
-    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_end_where_lines_do_and_make_the_text() {
+        let text = "v 1 2 \\\n3\n".repeat(CHUNK / 4);
+        let found = chunks(&text);
+        assert!(found.len() > 2);
+        assert_eq!(found.concat(), text);
+        assert!(found.iter().all(|chunk| chunk.ends_with("3\n")));
+    }
+
+    #[test]
+    fn a_file_of_several_chunks_keeps_its_settings_indices_and_line_numbers() {
+        let filler = "# nothing\n".repeat(CHUNK / 8);
+        let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        let text =
+            format!("{vertices}usemtl a\n{filler}f -3 -2 -1\n{filler}{vertices}f 4 5 6\np 1");
+        let mut tally = Tally::default();
+        let made = rewrite(&text, &mut tally).unwrap();
+        let read: Vec<_> = made.reader(&text).lines().map(Result::unwrap).collect();
+        let read: Vec<_> = read.iter().filter(|l| !l.starts_with('#')).collect();
+        assert_eq!(read[6..], ["g 0", "f 1 2 3", "f 4 5 6"]);
+        assert_eq!(made.parts.len(), 1);
+        assert_eq!(made.parts[0].setting.material.as_deref(), Some("a"));
+        let said = tally.sentences(std::path::Path::new("m"));
+        assert!(said[0].ends_with(&format!("line {}", text.lines().count())), "{said:?}");
+    }
 }
