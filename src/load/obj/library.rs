@@ -2,7 +2,7 @@
 //!
 //! Whatever is wrong with them is a warning: the shape can still be shown.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,6 +12,8 @@ use super::illumination::Illumination;
 use super::lines::decode;
 use super::map::Map;
 use super::mtl::{UNNAMED, clean};
+use crate::error::{Error, Result};
+use crate::load::guard::{Guard, Opened};
 use crate::load::picture;
 use crate::load::tally::Tally;
 use crate::scene::{Material, MaterialId, Scene, Texture, TextureId, Wrap};
@@ -20,32 +22,57 @@ use crate::scene::{Material, MaterialId, Scene, Texture, TextureId, Wrap};
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 
 /// The materials that an OBJ file can name, each made when a face first uses it.
-#[derive(Default)]
-pub struct Library {
+pub struct Library<'a> {
+    guard: &'a Guard,
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     made: HashMap<String, MaterialId>,
-    textures: HashMap<(PathBuf, bool), TextureId>,
+    textures: HashMap<(String, bool), TextureId>,
+    /// The files that were read.
+    files: HashSet<PathBuf>,
 }
 
-impl Library {
+impl<'a> Library<'a> {
     /// Reads the files that an OBJ file's `mtllib` lines name, beside it in `folder`; pictures are
     /// read where they are `wanted`.
-    pub fn read(names: &[String], folder: &Path, wanted: bool, tally: &mut Tally) -> Self {
-        let mut library = Self { wanted, ..Self::default() };
+    pub fn read(
+        names: &[String],
+        folder: &Path,
+        guard: &'a Guard,
+        wanted: bool,
+        tally: &mut Tally,
+    ) -> Self {
+        let mut library = Self {
+            guard,
+            wanted,
+            sources: HashMap::new(),
+            made: HashMap::new(),
+            textures: HashMap::new(),
+            files: HashSet::new(),
+        };
         for name in names {
-            let files = names_of_line(name).into_iter().map(|n| find(folder, &n));
             // A name may hold spaces, and a line several names.
-            let whole = find(folder, name);
-            let files: Vec<_> = if whole.exists() { vec![whole] } else { files.collect() };
-            files.iter().for_each(|file| library.add(file, tally));
+            match find(guard, folder, name) {
+                Ok(file) => library.add(file, tally),
+                Err(whole) => match names_of_line(name).as_slice() {
+                    [_] => say_missing(name, &whole, tally),
+                    names => names.iter().for_each(|name| match find(guard, folder, name) {
+                        Ok(file) => library.add(file, tally),
+                        Err(error) => say_missing(name, &error, tally),
+                    }),
+                },
+            }
         }
         library
     }
 
-    fn add(&mut self, path: &Path, tally: &mut Tally) {
-        let bytes = match crate::load::read(path) {
+    fn add(&mut self, file: Opened, tally: &mut Tally) {
+        if !self.files.insert(file.identity.clone()) {
+            return;
+        }
+        let path = &file.path.clone();
+        let bytes = match file.read(self.guard) {
             Ok(bytes) => bytes,
             Err(error) => {
                 tally.say(format!("the materials are missing and drawn grey: {error}"));
@@ -54,9 +81,8 @@ impl Library {
         };
         let materials = decode(&bytes).and_then(|text| {
             let clean = clean(&text, path, tally);
-            tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| {
-                crate::error::Error::input(format!("the materials cannot be read: {e}"))
-            })
+            tobj::load_mtl_buf(&mut clean.as_bytes())
+                .map_err(|e| Error::input(format!("the materials cannot be read: {e}")))
         });
         let folder = path.parent().unwrap_or(Path::new(""));
         match materials {
@@ -156,12 +182,16 @@ impl Library {
             let reason = format!("the option `{option}` of {{}} textures is not read");
             tally.unsupported(&reason, 1, || format!("`{value}`"));
         }
-        let path = find(folder, &map.file);
-        let key = (path, map.clamp);
+        let file = find(self.guard, folder, &map.file);
+        let shown = folder.join(&map.file).display().to_string();
+        let name = file.as_ref().map_or(shown, |file| file.identity.display().to_string());
+        let key = (name, map.clamp);
         if let Some(&id) = self.textures.get(&key) {
             return Some(id);
         }
-        let image = picture::read(&key.0, self.wanted).unwrap_or_else(|error| {
+        let read = file.and_then(|file| picture::read(file, self.guard, self.wanted));
+        let image = read.unwrap_or_else(|error| {
+            let error = error.at(&folder.join(&*map.file));
             tally.placeholder(format!("{error}; a magenta checker takes its place"));
             picture::placeholder(&map.file)
         });
@@ -210,14 +240,14 @@ fn names_of_line(line: &str) -> Vec<String> {
 
 /// A file named in a model: as it stands, or as written on Windows, or beside the model when the
 /// folder it was in is on another machine.
-fn find(folder: &Path, name: &str) -> PathBuf {
-    let first = folder.join(name);
-    if first.exists() {
-        return first;
-    }
+fn find(guard: &Guard, folder: &Path, name: &str) -> Result<Opened> {
     let slashes = name.replace('\\', "/");
-    let last = slashes.rsplit('/').next().unwrap_or_default().to_owned();
-    [slashes, last].iter().map(|n| folder.join(n)).find(|p| p.is_file()).unwrap_or(first)
+    let last = slashes.rsplit('/').next().unwrap_or_default();
+    guard.open(folder, &[name, &slashes, last])
+}
+
+fn say_missing(name: &str, error: &Error, tally: &mut Tally) {
+    tally.say(format!("the materials `{name}` are missing and drawn grey: {error}"));
 }
 
 #[cfg(test)]

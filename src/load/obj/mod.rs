@@ -25,6 +25,8 @@ use glam::{DAffine3, DVec3};
 use self::library::Library;
 use self::rewrite::Part;
 use crate::error::{Error, Result};
+use crate::load::guard::{Guard, Opened};
+use crate::load::limits::Limit;
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
 use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
@@ -34,18 +36,18 @@ use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(path: &Path, wanted: bool) -> Result<Scene> {
-    let bytes = super::read(path)?;
-
-    import(path, &bytes, wanted).map_err(|e| e.at(path))
+pub fn load(file: Opened, guard: &Guard, wanted: bool) -> Result<Scene> {
+    let path = file.path.clone();
+    let bytes = file.read(guard)?;
+    import(&path, &bytes, guard, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scene> {
     let mut tally = Tally::default();
     let text = lines::decode(bytes)?;
     let made = rewrite::rewrite(&text, &mut tally)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut library = Library::read(&made.libraries, folder, wanted, &mut tally);
+    let mut library = Library::read(&made.libraries, folder, guard, wanted, &mut tally);
     let mut scene = Scene::default();
     let options = tobj::LoadOptions { single_index: true, ..Default::default() };
     // No `mtllib` is left in the text.
@@ -59,6 +61,9 @@ fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
         let Some(mesh) = mesh(&model.mesh, part, &mut tally) else { continue };
         let name = part.setting.material.as_deref().unwrap_or_default();
         let material = library.get(name, &mut scene, &mut tally);
+        guard.take(Limit::Vertices, mesh.positions.len() as u64)?;
+        guard.take(Limit::Triangles, mesh.triangles.len() as u64)?;
+        guard.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }
