@@ -1,5 +1,5 @@
 //! Makes the models of the demo scenes and the gallery, and the drawings of the tutorial:
-//! `cargo run --example make_assets` writes `assets/models/` and `docs/tutorial/images/*.svg`.
+//! `cargo run --example make_assets` writes `assets/scenes/gallery/models/` and `docs/tutorial/images/*.svg`.
 //!
 //! What it makes is committed, so that nobody has to run it; `tests/assets.rs` holds the committed
 //! files to it byte by byte. It asks nothing of a platform's mathematics library but `sqrt`, which
@@ -32,7 +32,7 @@ mod vase;
 use std::path::Path;
 
 /// Where the models are, from the top of the checkout.
-pub const MODELS: &str = "assets/models";
+pub const MODELS: &str = "assets/scenes/gallery/models";
 /// Where the drawings are, among the tutorial's pictures.
 pub const DRAWINGS: &str = "docs/tutorial/images";
 
@@ -41,6 +41,9 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
     let mut files = vec![(format!("{MODELS}/room.glb"), room::glb())];
     let models = vase::files().into_iter().chain(gallery::files());
     files.extend(models.map(|(name, file)| (format!("{MODELS}/{name}"), file)));
+    // A scene file can name what is below its folder, and not what is beside it.
+    let vase = vase::files().into_iter().find(|(name, _)| *name == "vase.png");
+    files.extend(vase.map(|(_, file)| ("assets/scenes/tutorial/vase.png".to_owned(), file)));
     let drawings = [drawings_1_2::all(), drawings_3::all(), drawings_4::all(), drawings_5_6::all()];
     for (name, drawing) in drawings.into_iter().flatten() {
         files.push((format!("{DRAWINGS}/{name}.svg"), drawing.finish()));

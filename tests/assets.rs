@@ -51,7 +51,12 @@ fn no_drawing_is_committed_that_the_generator_does_not_make() {
 #[test]
 fn demo_scenes_and_models_load_without_a_warning() {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    for name in ["scenes/room.toml", "scenes/vase.toml", "models/room.glb", "models/vase.obj"] {
+    for name in [
+        "scenes/room.toml",
+        "scenes/vase.toml",
+        "scenes/gallery/models/room.glb",
+        "scenes/gallery/models/vase.obj",
+    ] {
         let scene = load(&assets.join(name)).expect(name);
         assert_eq!(scene.warnings, [""; 0], "{name}");
     }
@@ -60,7 +65,8 @@ fn demo_scenes_and_models_load_without_a_warning() {
 /// What the room is there to show: instances of one mesh, textures, lights and a camera of its own.
 #[test]
 fn room_uses_what_gltf_offers() {
-    let scene = load(&make_assets::root().join("assets/models/room.glb")).expect("the room loads");
+    let scene = load(&make_assets::root().join("assets/scenes/gallery/models/room.glb"))
+        .expect("the room loads");
     assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
     let own = scene.lights.iter().filter(|light| light.kind != LightKind::Ambient).count();
     assert_eq!((own, scene.textures.len()), (2, 3));
@@ -70,6 +76,7 @@ fn room_uses_what_gltf_offers() {
 /// What the vase is there to show: two materials, one with a texture, on smooth polygons.
 #[test]
 fn vase_uses_what_obj_offers() {
-    let scene = load(&make_assets::root().join("assets/models/vase.obj")).expect("the vase loads");
+    let scene = load(&make_assets::root().join("assets/scenes/gallery/models/vase.obj"))
+        .expect("the vase loads");
     assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));
 }

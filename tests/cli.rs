@@ -24,6 +24,8 @@ mod stress;
 mod strict;
 #[path = "cli/tone.rs"]
 mod tone;
+#[path = "cli/trust.rs"]
+mod trust;
 #[path = "cli/warnings.rs"]
 mod warnings;
 #[path = "cli/work.rs"]

@@ -1,26 +1,30 @@
 //! Files that something happened to: whatever it was, they load or they give an error, soon.
 //!
 //! The same mutations every time; `ENVERS_SEED` tries others, `ENVERS_MUTATIONS` so many of each
-//! file.
+//! file. Where `ENVERS_CORPUS` names a corpus of model files, the small ones of it are damaged, too.
 
 #[path = "common/mod.rs"]
 mod common;
 #[path = "import_common/mod.rs"]
 mod import_common;
 
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use common::Random;
 use envers::error::ErrorKind;
-use import_common::{Folder, Model, data_uri, png};
-use serde_json::json;
+use image::ImageFormat;
+use import_common::{Folder, data_uri, whole};
+use serde_json::Value;
 
 /// How long a damaged file of a few kilobytes may take.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 /// Mutations of each file, unless `ENVERS_MUTATIONS` says otherwise.
-const MUTATIONS: u64 = 500;
+const MUTATIONS: u64 = 1000;
+/// Mutations of each small file of the corpus.
+const OF_CORPUS: u64 = 10;
 
 const SCENE: &str = r##"
 [film]
@@ -79,59 +83,10 @@ const MTL: &str = "\
 newmtl red\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNs 50\nillum 7\nd 0.75\nNi 1.5\nTf 1 0.5 1\n\
 map_Kd -clamp on -s 1 1 1 picture.png\nnewmtl blue\nKa 0 0 0\nKe 0.1 0 0\nTr 0.5\n";
 
-/// A model that uses most of what is read: indices, normals, texture coordinates, colours, a
-/// sparse accessor, a texture in a buffer, a camera, lights and a tree of nodes.
-fn model() -> Model {
-    let mut model = Model::parabola(5);
-    let normals = model.floats("VEC3", &[0.0, 0.6, 0.8].repeat(5));
-    let uvs = model.floats("VEC2", &[0., 0., 1., 0., 0., 1., 1., 1., 0.5, 0.5]);
-    let colors = model.typed(5121, "VEC4", 1, &[200; 20]);
-    model.accessor_mut(colors)["normalized"] = true.into();
-    let indices = model.shorts(&[0, 1, 2, 2, 3, 4]);
-    let at = model.view(&[1, 0]);
-    let values = model.view(&[0; 12]);
-    model.accessor_mut(0)["sparse"] = json!({"count": 1,
-        "indices": {"bufferView": at, "componentType": 5123}, "values": {"bufferView": values}});
-    let picture = model.view(&png(&[[255, 0, 0, 255], [0, 255, 0, 255]]));
-    model.json["images"] = json!([{"bufferView": picture, "mimeType": "image/png"},
-                                  {"uri": "picture.png"}]);
-    model.json["samplers"] = json!([{"wrapS": 33071, "magFilter": 9728}]);
-    model.json["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 1}]);
-    model.material(json!({
-        "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 1, 1], "roughnessFactor": 0.4,
-            "baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {
-                "offset": [0.5, 0.25], "rotation": 1.5, "scale": [2, 2]}}}},
-        "emissiveFactor": [0.1, 0, 0], "emissiveTexture": {"index": 1},
-        "alphaMode": "BLEND", "alphaCutoff": 0.5, "extensions": {
-            "KHR_materials_transmission": {
-                "transmissionFactor": 0.5, "transmissionTexture": {"index": 1}},
-            "KHR_materials_ior": {"ior": 1.25},
-            "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 0.5,
-                "attenuationColor": [0.5, 0.25, 1]}}}));
-    let primitive = model.primitive();
-    primitive["indices"] = indices.into();
-    primitive["mode"] = 4.into();
-    primitive["attributes"]["NORMAL"] = normals.into();
-    primitive["attributes"]["TEXCOORD_0"] = uvs.into();
-    primitive["attributes"]["COLOR_0"] = colors.into();
-    model.json["cameras"] = json!([{"type": "perspective",
-        "perspective": {"yfov": 0.8, "znear": 0.1, "aspectRatio": 1.5}}]);
-    model.json["extensionsUsed"] = json!(["KHR_lights_punctual", "KHR_texture_transform"]);
-    model.json["extensions"] = json!({"KHR_lights_punctual": {"lights": [
-        {"type": "spot", "color": [1, 1, 0.5], "intensity": 30, "range": 20,
-         "spot": {"innerConeAngle": 0.1, "outerConeAngle": 0.5}}]}});
-    model.json["nodes"] = json!([
-        {"mesh": 0, "children": [1, 2], "translation": [1, 2, 3], "rotation": [0, 0, 0, 1]},
-        {"mesh": 0, "matrix": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 1, 1, 1], "children": [3]},
-        {"camera": 0, "translation": [0, 1, 9]},
-        {"scale": [1, 1, -1], "extensions": {"KHR_lights_punctual": {"light": 0}}}]);
-    model
-}
-
 /// A folder with one valid file of each kind, beside each other.
 fn valid_files() -> Folder {
     let folder = Folder::new();
-    let model = model();
+    let model = whole::model();
     folder.write("model.glb", model.glb());
     folder.write("model.gltf", model.to_json(Some("model.bin")).to_string());
     let inside = model.to_json(Some(&data_uri(model.bin()))).to_string();
@@ -140,9 +95,41 @@ fn valid_files() -> Folder {
     folder.write("model.obj", OBJ);
     folder.write("model.mtl", MTL);
     folder.write("scene.toml", SCENE);
-    let pixels: Vec<[u8; 4]> = (0..64).map(|i| [i * 4, 255 - i, i ^ 21, 255]).collect();
-    folder.write("picture.png", png(&pixels));
+    folder.write("picture.png", picture(ImageFormat::Png));
     folder
+}
+
+/// A folder with a model that shows one picture.
+fn picture_of(name: &str, bytes: &[u8]) -> Folder {
+    let folder = Folder::new();
+    folder.write("model.obj", OBJ);
+    folder.write("model.mtl", MTL.replace("picture.png", name));
+    folder.write(name, bytes);
+    folder
+}
+
+/// A small picture of many colours.
+fn picture(format: ImageFormat) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let pixel = |x, y| image::Rgb([(x * 31) as u8, (y * 17) as u8, (x ^ y) as u8]);
+    image::RgbImage::from_fn(8, 8, pixel).write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+/// A picture of floats.
+fn exr() -> Vec<u8> {
+    use exr::prelude::*;
+    let pixel = |at: Vec2<usize>| (at.x() as f32, at.y() as f32 * 0.5, 1e3f32);
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let image = Image::from_channels((8, 8), SpecificChannels::rgb(pixel));
+    image.write().to_buffered(&mut bytes).unwrap();
+    bytes.into_inner()
+}
+
+/// A Radiance picture, its rows as they are.
+fn hdr() -> Vec<u8> {
+    let pixels = (0..64).flat_map(|i| [i * 3, 99, 200 - i, 120 + i]);
+    b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 8\n".iter().copied().chain(pixels).collect()
 }
 
 /// What is loaded to read a file.
@@ -190,6 +177,11 @@ const NUMBERS: &[&str] = &[
 
 /// One to four things that happen to a file.
 fn damage(bytes: &[u8], random: &mut Random) -> Vec<u8> {
+    if random.below(2) == 0
+        && let Some(damaged) = damage_json(bytes, random)
+    {
+        return damaged;
+    }
     let mut bytes = bytes.to_vec();
     for _ in 0..1 + random.below(4) * random.below(2) {
         if bytes.is_empty() {
@@ -224,6 +216,68 @@ fn damage(bytes: &[u8], random: &mut Random) -> Vec<u8> {
         }
     }
     bytes
+}
+
+/// One to four values of a glTF file, or of the JSON in a GLB, that are others. Its grammar and the
+/// GLB's lengths stay sound, so that what is behind them is tried.
+fn damage_json(bytes: &[u8], random: &mut Random) -> Option<Vec<u8>> {
+    let glb = bytes.starts_with(b"glTF");
+    let length = |at: usize| {
+        let word = bytes.get(at..at + 4)?.try_into().ok()?;
+        Some(u32::from_le_bytes(word) as usize)
+    };
+    let (json, rest) = match glb {
+        true => bytes.get(20..)?.split_at_checked(length(12)?)?,
+        false => (bytes, &[][..]),
+    };
+    let mut json: Value = serde_json::from_slice(json).ok().filter(Value::is_object)?;
+    for _ in 0..1 + random.below(4) {
+        let other = match random.below(3) {
+            // A number or what is none, where it can stand in JSON.
+            0 => serde_json::from_str(NUMBERS[random.below(NUMBERS.len())]).unwrap_or(Value::Null),
+            1 => random.below(9).into(),
+            _ => any(&mut json, random).clone(),
+        };
+        match random.below(4) {
+            0 => match any(&mut json, random) {
+                Value::Array(items) => items.push(other),
+                Value::Object(map) => {
+                    let keys: Vec<String> = map.keys().cloned().collect();
+                    keys.get(random.below(keys.len().max(1))).and_then(|key| map.remove(key));
+                }
+                value => *value = other,
+            },
+            _ => *any(&mut json, random) = other,
+        }
+    }
+    let mut json = json.to_string().into_bytes();
+    if !glb {
+        return Some(json);
+    }
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let header = [&bytes[..8], &word(20 + json.len() + rest.len()), &word(json.len()), b"JSON"];
+    Some([&header.concat()[..], &json, rest].concat())
+}
+
+/// Some value within another one, which may be that itself.
+fn any<'v>(mut value: &'v mut Value, random: &mut Random) -> &'v mut Value {
+    loop {
+        let count = match value {
+            Value::Array(items) => items.len(),
+            Value::Object(map) => map.len(),
+            _ => 0,
+        };
+        if count == 0 || random.below(6) == 0 {
+            return value;
+        }
+        let at = random.below(count);
+        value = match value {
+            Value::Array(items) => &mut items[at],
+            Value::Object(map) => map.values_mut().nth(at).expect("ok: it has so many"),
+            _ => unreachable!("it has none"),
+        };
+    }
 }
 
 /// Replaces the first number from `at` on.
@@ -270,10 +324,10 @@ fn number(variable: &str, otherwise: u64) -> u64 {
 }
 
 /// Damages one of several files that lie beside each other, again and again.
-fn damaged(folder: &Folder, file: &str, count: u64) {
+fn damaged(folder: &Folder, file: &str, entry: &str, count: u64) {
     let path = folder.path(file);
     let whole = std::fs::read(&path).unwrap();
-    let entry = folder.path(entry(file));
+    let entry = folder.path(entry);
     let (first, mut refused) = (number("ENVERS_SEED", 0) << 32, 0);
     for seed in first..first + count {
         let bytes = damage(&whole, &mut Random(seed));
@@ -295,7 +349,8 @@ macro_rules! damaged {
     ($($test:ident: $file:literal,)*) => {$(
         #[test]
         fn $test() {
-            damaged(&valid_files(), $file, number("ENVERS_MUTATIONS", MUTATIONS));
+            let count = number("ENVERS_MUTATIONS", MUTATIONS);
+            damaged(&valid_files(), $file, entry($file), count);
         }
     )*};
 }
@@ -309,6 +364,53 @@ damaged! {
     damaged_mtl: "model.mtl",
     damaged_scene: "scene.toml",
     damaged_texture: "picture.png",
+}
+
+macro_rules! damaged_pictures {
+    ($($test:ident: $file:literal is $bytes:expr,)*) => {$(
+        #[test]
+        fn $test() {
+            let folder = picture_of($file, &$bytes);
+            damaged(&folder, $file, "model.obj", number("ENVERS_MUTATIONS", MUTATIONS));
+        }
+    )*};
+}
+
+damaged_pictures! {
+    damaged_jpeg: "picture.jpg" is picture(ImageFormat::Jpeg),
+    damaged_webp: "picture.webp" is picture(ImageFormat::WebP),
+    damaged_tga: "picture.tga" is picture(ImageFormat::Tga),
+    damaged_bmp: "picture.bmp" is picture(ImageFormat::Bmp),
+    damaged_hdr: "picture.hdr" is hdr(),
+    damaged_exr: "picture.exr" is exr(),
+}
+
+/// The small model files of the corpus, each beside what it names.
+#[test]
+fn damaged_corpus() {
+    const SMALL: u64 = 64 << 10;
+    let Some(corpus) = import_common::corpus() else { return };
+    let is_small = |path: &Path| path.metadata().is_ok_and(|m| m.is_file() && m.len() <= SMALL);
+    let mut folders: BTreeMap<PathBuf, Vec<String>> = BTreeMap::new();
+    for path in import_common::files(&corpus, &["gltf", "glb", "obj"]) {
+        if is_small(&path) {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            folders.entry(path.parent().unwrap().to_owned()).or_default().push(name);
+        }
+    }
+    let count = number("ENVERS_MUTATIONS", OF_CORPUS);
+    for (from, names) in &folders {
+        let folder = Folder::new();
+        for path in import_common::files(from, &["gltf", "glb", "obj", "mtl", "bin", "png", "jpg"])
+        {
+            let within = path.strip_prefix(from).unwrap().to_string_lossy().into_owned();
+            if is_small(&path) {
+                folder.write(&within, std::fs::read(&path).unwrap());
+            }
+        }
+        names.iter().for_each(|name| damaged(&folder, name, name, count));
+    }
+    println!("{} folders", folders.len());
 }
 
 #[test]

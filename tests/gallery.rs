@@ -16,18 +16,19 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The names of the files in a folder, without what they end in, sorted.
-fn names(folder: &str) -> Vec<String> {
+/// The names of the files in a folder with an ending, without it, sorted.
+fn names(folder: &str, ending: &str) -> Vec<String> {
     let files = std::fs::read_dir(root().join(folder)).expect(folder);
+    let paths = files.map(|entry| entry.expect("the folder can be read").path());
+    let files = paths.filter(|path| path.extension().is_some_and(|e| e == ending));
     let stem = |path: PathBuf| path.file_stem().expect("ok: a file").display().to_string();
-    let mut names: Vec<String> =
-        files.map(|entry| stem(entry.expect("the folder can be read").path())).collect();
+    let mut names: Vec<String> = files.map(stem).collect();
     names.sort();
     names
 }
 
 fn scenes() -> Vec<String> {
-    names("assets/scenes/gallery")
+    names("assets/scenes/gallery", "toml")
 }
 
 /// A small picture of a scene, with the settings that make its bytes.
@@ -49,7 +50,7 @@ fn picture(
 #[test]
 fn there_are_a_dozen_and_each_has_its_picture() {
     assert!(scenes().len() >= 12);
-    assert_eq!(names("docs/images/gallery"), scenes());
+    assert_eq!(names("docs/images/gallery", "png"), scenes());
 }
 
 #[test]

@@ -392,7 +392,7 @@ fn an_mtl_file_of_the_models_name_takes_the_place_of_a_missing_one() {
     let text = |line: &str| format!("{line}\nusemtl m\n{VERTICES}f 1 2 3");
     let scene = folder.load("model.obj", text("mtllib none.mtl")).unwrap();
     assert_eq!(scene.materials[0].diffuse, Vec3::X);
-    assert_warns(&scene, "none.mtl is missing");
+    assert_warns(&scene, "`none.mtl` are missing");
     let scene = folder.load("model.obj", text("")).unwrap();
     assert_eq!((scene.materials[0].diffuse, scene.warnings.len()), (Vec3::X, 0));
 }

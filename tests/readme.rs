@@ -12,7 +12,7 @@ fn scene_file_of_the_readme_loads() {
     let readme = read("README.md");
     let scene = readme.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let folder = tempfile::tempdir().unwrap();
-    let model = "assets/models/room.glb";
+    let model = "assets/scenes/gallery/models/room.glb";
     fs::create_dir_all(folder.path().join(model).parent().unwrap()).unwrap();
     fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(model), folder.path().join(model)).unwrap();
     let path = folder.path().join("scene.toml");

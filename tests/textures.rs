@@ -205,7 +205,8 @@ fn blended(alpha: u8) -> Scene {
         ior: 1.0,
         ..Material::default()
     };
-    stand(&mut scene, square(), DAffine3::from_translation(DVec3::Z));
+    // Aside, so that the ray meets no edge, where both triangles would be met.
+    stand(&mut scene, square(), DAffine3::from_translation(DVec3::new(0.3, 0.1, 1.0)));
     let white = scene.add_material(Material { diffuse: Vec3::ONE, ..Material::default() });
     stand(&mut scene, square(), DAffine3::IDENTITY);
     scene.instances[1].material = white;
@@ -339,11 +340,11 @@ fn the_shadow_of_a_mask_has_its_holes() {
     assert!((lit - 0.8 * cosine).abs() < 1e-4, "{lit} instead of {}", 0.8 * cosine);
 }
 
-/// A chequered ground of 64 squares to the picture, up to the horizon.
+/// A chequered ground of 8 by 8 squares to the picture, up to the horizon.
 fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
     let mut scene = Scene::default();
     let texel = |i: usize| {
-        if (i + i / 64).is_multiple_of(2) { [230, 200, 160, 255] } else { [30, 40, 60, 255] }
+        if (i / 8 + i / 512).is_multiple_of(2) { [230, 200, 160, 255] } else { [30, 40, 60, 255] }
     };
     let image = Image::bytes("", [64, 64], (0..64 * 64).map(texel).collect());
     let texture = scene.add_texture(Texture { mipmap, ..Texture::new(image.into()) });
@@ -351,11 +352,13 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
         Material { diffuse: Vec3::ONE, diffuse_map: Some(texture), ..Material::default() };
     let material = scene.add_material(material);
     let mut plane = Plane::new(DVec3::ZERO, DVec3::Y, material);
-    plane.texture_size = 16.0;
+    plane.texture_size = 4.0;
     scene.planes.push(plane);
     scene.lights.push(ambient());
-    let (eye, target) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.3, 0.6, 2.0));
-    scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(0.9)).unwrap());
+    let (eye, target) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.3, 0.7, 3.0));
+    scene
+        .cameras
+        .push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(45f64.to_radians())).unwrap());
     (scene.film.size, scene.film.spp) = ([160, 90], spp);
     let film = render(&scene, &Options { threads: 1, ..Options::default() }, &|_| {}).unwrap().film;
     (0..90)
@@ -371,11 +374,11 @@ fn rmse(a: &[Vec3], b: &[Vec3]) -> f64 {
 }
 
 #[test]
-fn mipmaps_leave_less_than_a_third_of_the_error_of_a_ground_seen_by_single_samples() {
+fn mipmaps_leave_less_than_a_fifth_of_the_error_of_a_ground_seen_by_single_samples() {
     let reference = ground(false, 256);
     let [linear, mipmap] = [false, true].map(|mipmap| rmse(&ground(mipmap, 1), &reference));
     println!("RMSE against 256 samples: linear {linear:.4}, mipmap {mipmap:.4}");
-    assert!(mipmap < linear / 3.0, "linear {linear:.4}, mipmap {mipmap:.4}");
+    assert!(mipmap < linear / 5.0, "linear {linear:.4}, mipmap {mipmap:.4}");
 }
 
 #[test]

@@ -14,7 +14,7 @@ struct Solid {
     faces: Vec<Vec<usize>>,
 }
 
-/// The files: their names within `assets/models/`, and their bytes.
+/// The files: their names within `assets/scenes/gallery/models/`, and their bytes.
 pub fn files() -> Vec<(&'static str, Vec<u8>)> {
     vec![
         ("cube.obj", cube().obj("A cube of side 1 about the origin.")),

@@ -13,6 +13,7 @@ use crate::cli::values::{
 use crate::cli::{files, loss};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
+use crate::load::{Limits, NamedLimit, Options};
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
@@ -56,6 +57,27 @@ pub enum Command {
     Diff(Diff),
 }
 
+/// How far the files of a scene are trusted; shared by the commands that load one.
+#[derive(Args, Clone)]
+pub struct Trust {
+    /// Let files name others that are anywhere, not only beside and below SCENE
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Another limit on what SCENE may ask for: bytes, nodes, depth, instances, vertices, triangles,
+    /// elements, keys, pictures or pixels; may be given several times
+    #[arg(long, value_name = "NAME=NUMBER")]
+    pub limit: Vec<NamedLimit>,
+}
+
+impl Trust {
+    /// The options of a load.
+    pub fn options(&self, size: Option<[u32; 2]>, skips: Skips) -> Options {
+        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
+        let limits = self.limit.iter().fold(Limits::default(), with);
+        Options { size, skips, allow_outside: self.allow_outside, limits }
+    }
+}
+
 /// What to render and how; shared by the commands that trace rays.
 #[derive(Args)]
 pub struct Tracing {
@@ -83,6 +105,8 @@ pub struct Tracing {
     /// Threads [default: all there are]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
+    #[command(flatten)]
+    pub trust: Trust,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -226,6 +250,8 @@ pub struct Stress {
 pub struct Info {
     /// A scene file (.toml) or a model (.gltf, .glb, .obj)
     pub scene: PathBuf,
+    #[command(flatten)]
+    pub trust: Trust,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -275,7 +301,7 @@ impl Tracing {
         files::check_input(&self.scene)?;
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene = crate::load::load_with(&self.scene, self.size, skips)?;
+        let mut scene = crate::load::load_with(&self.scene, &self.trust.options(self.size, skips))?;
         if self.strict {
             loss::check_strictly(&scene, &self.scene)?;
         }

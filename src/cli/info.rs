@@ -102,12 +102,13 @@ impl fmt::Display for Motion {
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
-    let scene = load::load(&arguments.scene)?;
+    let scene =
+        load::load_with(&arguments.scene, &arguments.trust.options(None, Skips::default()))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);
     if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&summary.to_string())?;
+        output::print(&report::printable(&summary.to_string()))?;
         summary.warnings.iter().for_each(|w| report::warning(w));
     }
     if let Some(path) = &arguments.json {

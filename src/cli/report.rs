@@ -8,12 +8,25 @@ use crate::error::{Error, Place};
 
 /// Prints an error: file, place and message; the line in question; the way out.
 pub fn error(error: &Error) {
-    to_stderr(&format(error));
+    to_stderr(&printable(&format(error)));
 }
 
 /// Prints a warning.
 pub fn warning(text: &str) {
-    to_stderr(&format!("warning: {text}\n"));
+    to_stderr(&printable(&format!("warning: {text}\n")));
+}
+
+/// A text as a terminal may have it. Names in a stranger's file can hold codes that move the cursor,
+/// hide text or turn it around; these are spelt out.
+pub fn printable(text: &str) -> String {
+    let is_safe = |c: char| match c {
+        '\n' | '\t' => true,
+        // What turns the direction of writing.
+        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
+        c => !c.is_control(),
+    };
+    let spelt = |c: char| if is_safe(c) { c.to_string() } else { c.escape_unicode().to_string() };
+    text.chars().map(spelt).collect()
 }
 
 /// Prints to stderr; that nobody reads it is no reason to stop.
@@ -65,6 +78,11 @@ fn format(error: &Error) -> String {
 mod tests {
     use super::*;
     use std::path::Path;
+
+    #[test]
+    fn codes_for_the_terminal_are_spelt_out() {
+        assert_eq!(printable("a\u{1b}[2J\tb\u{7}\u{202e}é\n"), "a\\u{1b}[2J\tb\\u{7}\\u{202e}é\n");
+    }
 
     #[test]
     fn error_quotes_the_line_and_marks_the_place() {

@@ -135,7 +135,12 @@ impl Hits {
             self.found.resize(blocks, Found::NOTHING);
         }
         self.len = count;
-        &mut self.found[..blocks]
+        let all = &mut self.found[..blocks];
+        if let Some(last) = all.last_mut() {
+            // Narrow packets need not reach the lanes beyond the batch's end.
+            last.clear::<LANES>(0);
+        }
+        all
     }
 
     /// How many there are.

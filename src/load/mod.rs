@@ -6,6 +6,8 @@
 
 mod framing;
 mod gltf;
+mod guard;
+mod limits;
 mod obj;
 mod picture;
 mod place;
@@ -15,17 +17,35 @@ mod settle;
 mod studio;
 mod tally;
 mod tangents;
+mod uri;
 
 use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::scene::{Scene, Skips, Work, closed};
 
+use guard::{Guard, Opened};
+pub use limits::{Limit, Limits, NamedLimit};
 pub use scene_file::schema;
 pub use studio::add_ground;
 
 /// Samples per pixel of a bare model file, which has no setting of its own.
 pub const BARE_MODEL_SPP: u32 = 16;
+
+/// How to load a scene, where it is not the usual way.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// The size of the picture in pixels, in place of the file's; a camera that frames the scene is
+    /// placed for it.
+    pub size: Option<[u32; 2]>,
+    /// Unless these are without [`Work::Pictures`], pictures are only named that no material in use
+    /// shows.
+    pub skips: Skips,
+    /// Whether files may name others that are neither beside nor below the one that is loaded.
+    pub allow_outside: bool,
+    /// How much a load may make of what it reads.
+    pub limits: Limits,
+}
 
 /// Loads a scene file or a bare model file, by its extension.
 ///
@@ -36,7 +56,7 @@ pub const BARE_MODEL_SPP: u32 = 16;
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
 pub fn load(path: &Path) -> Result<Scene> {
-    load_with(path, None, Skips::default())
+    load_with(path, &Options::default())
 }
 
 /// Loads as [`load`] does, for a picture of another size than the file asks for; a camera that
@@ -45,19 +65,24 @@ pub fn load(path: &Path) -> Result<Scene> {
 /// # Errors
 /// As [`load`].
 pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
-    load_with(path, size, Skips::default())
+    load_with(path, &Options { size, ..Options::default() })
 }
 
-/// Loads as [`load_for`] does. Unless `skips` is without [`Work::Pictures`], pictures are only
-/// named that no material in use shows.
+/// Loads as [`load`] does, with options.
 ///
 /// # Errors
-/// As [`load`].
-pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Scene> {
-    let all = !skips.has(Work::Pictures);
+/// As [`load`]; and when a file names another one outside, or more than a limit allows, unless
+/// the options say otherwise.
+pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
+    let guard = Guard::new(path, options.allow_outside, options.limits)?;
+    let file = guard.open_named(path)?;
+    let all = !options.skips.has(Work::Pictures);
     let from_file = extension(path) == "toml";
-    let mut scene = if from_file { scene_file::load(path, all)? } else { model(path, None, true)? };
-    if let Some(size) = size {
+    let mut scene = match from_file {
+        true => scene_file::load(file, &guard, all)?,
+        false => model(file, &guard, None, true)?,
+    };
+    if let Some(size) = options.size {
         scene.film.size = size;
     }
     framing::frame(&mut scene);
@@ -74,18 +99,18 @@ pub fn load_with(path: &Path, size: Option<[u32; 2]>, skips: Skips) -> Result<Sc
 
 /// Loads a model file as it is: with its own cameras and lights, or none, and with its animation of
 /// that name, or the first. Its pictures are read where they are `wanted`.
-fn model(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene> {
-    match extension(path).as_str() {
-        "gltf" | "glb" => gltf::load(path, animation, wanted),
+fn model(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> Result<Scene> {
+    match extension(&file.path).as_str() {
+        "gltf" | "glb" => gltf::load(file, guard, animation, wanted),
         "obj" if animation.is_some() => Err(Error::input("an OBJ file has no animations")
-            .at(path)
+            .at(&file.path)
             .help("leave `animation` out")),
-        "obj" => obj::load(path, wanted),
+        "obj" => obj::load(file, guard, wanted),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),
         })
-        .at(path)
+        .at(&file.path)
         .help("a scene file ends in .toml, a model in .gltf, .glb or .obj")),
     }
 }
@@ -93,27 +118,4 @@ fn model(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene> {
 /// The extension in lower case, or nothing.
 fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
-}
-
-/// Reads a whole regular file.
-///
-/// # Errors
-/// When it is missing, unreadable, or no regular file (a folder, a pipe, a device), which could
-/// keep the program waiting for ever.
-fn read(path: &Path) -> Result<Vec<u8>> {
-    check_file(path)?;
-    std::fs::read(path).map_err(|e| Error::io("read", path, &e))
-}
-
-/// Checks that a file is there, and a regular one.
-///
-/// # Errors
-/// When it is not.
-fn check_file(path: &Path) -> Result<()> {
-    let metadata = std::fs::metadata(path).map_err(|e| Error::io("read", path, &e))?;
-    if !metadata.is_file() {
-        let what = if metadata.is_dir() { "a folder" } else { "a pipe or a device" };
-        return Err(Error::input(format!("this is {what}, not a file")).at(path));
-    }
-    Ok(())
 }

@@ -1,53 +1,65 @@
 //! Decoding pictures for textures.
 
 use std::io::Cursor;
-use std::path::Path;
 
 use image::{DynamicImage, ImageReader};
 
 use crate::error::{Error, Result};
+use crate::load::guard::{Guard, Opened};
+use crate::load::limits::Limit;
 use crate::scene::{Image, Texels};
 
-/// The longest side of a picture, in pixels, and the memory that decoding may take.
+/// The longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 1 << 15;
-const MAX_BYTES: u64 = 1 << 30;
+/// So many pixels for each byte of a file do not count.
+const PIXELS_PER_BYTE: u64 = 16;
 
 /// Reads and decodes the picture in a file, if it is `wanted`; otherwise the file only has to be
 /// there.
 ///
 /// # Errors
 /// When the file cannot be read or decoded.
-pub fn read(path: &Path, wanted: bool) -> Result<Image> {
+pub fn read(file: Opened, guard: &Guard, wanted: bool) -> Result<Image> {
+    let path = file.path.clone();
     let name = path.display().to_string();
     if !wanted {
-        super::check_file(path)?;
         return Ok(Image::unread(name));
     }
-    let bytes = super::read(path)?;
-    decode(&bytes, &name, wanted).map_err(|e| e.at(path))
+    let bytes = file.read(guard)?;
+    decode(&bytes, &name, guard, wanted).map_err(|e| e.at(&path))
 }
 
 /// Decodes a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR or OpenEXR), if it is `wanted`; `name`
 /// says where it came from.
 ///
 /// # Errors
-/// When it is none of these, is damaged, or is larger than 32768 pixels on a side.
-pub fn decode(bytes: &[u8], name: &str, wanted: bool) -> Result<Image> {
+/// When it is none of these, is damaged, is larger than 32768 pixels on a side, or is one more,
+/// or larger, than the limits allow.
+pub fn decode(bytes: &[u8], name: &str, guard: &Guard, wanted: bool) -> Result<Image> {
     if !wanted {
         return Ok(Image::unread(name));
     }
+    guard.take(Limit::Pictures, 1)?;
     let fail = |e: image::ImageError| Error::input(format!("the picture cannot be decoded: {e}"));
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| Error::input(format!("the picture cannot be read: {e}")))?;
-    if reader.format().is_none() && name.to_lowercase().ends_with(".tga") {
-        // A TGA file has no signature to guess by.
-        reader.set_format(image::ImageFormat::Tga);
-    }
+    let reader = || {
+        let mut reader = ImageReader::new(Cursor::new(bytes))
+            .with_guessed_format()
+            .map_err(|e| Error::input(format!("the picture cannot be read: {e}")))?;
+        if reader.format().is_none() && name.to_lowercase().ends_with(".tga") {
+            // A TGA file has no signature to guess by.
+            reader.set_format(image::ImageFormat::Tga);
+        }
+        Ok(reader)
+    };
+    let (width, height) = reader()?.into_dimensions().map_err(fail)?;
+    let pixels = u64::from(width) * u64::from(height);
+    guard.take(Limit::Pixels, pixels.saturating_sub(PIXELS_PER_BYTE * bytes.len() as u64))?;
+    let mut reader = reader()?;
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(MAX_SIDE);
     limits.max_image_height = Some(MAX_SIDE);
-    limits.max_alloc = Some(MAX_BYTES);
+    // Four 16-bit channels, twice, and room for what decoders need besides.
+    limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
     reader.limits(limits);
     let picture = reader.decode().map_err(fail)?;
     let size = [picture.width(), picture.height()];
@@ -88,7 +100,9 @@ pub fn placeholder(name: &str) -> Image {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::load::limits::Limits;
     use image::{ImageBuffer, ImageFormat, Rgb, Rgba};
+    use std::path::Path;
 
     fn encoded(picture: DynamicImage, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
@@ -97,7 +111,8 @@ mod tests {
     }
 
     fn decoded(picture: DynamicImage, format: ImageFormat) -> Texels {
-        decode(&encoded(picture, format), "a", true).unwrap().texels
+        let guard = Guard::new(Path::new("a"), false, Limits::default()).unwrap();
+        decode(&encoded(picture, format), "a", &guard, true).unwrap().texels
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! What an importer reads, drops or changes, counted by reason, so that nothing is lost in silence
 //! and a broken file doesn't print a million lines.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use crate::scene::{DropReason, Report, Scene};
@@ -9,8 +10,15 @@ use crate::scene::{DropReason, Report, Scene};
 #[derive(Debug, Default)]
 pub struct Tally {
     entries: Vec<Entry>,
+    /// Where among them each reason stands.
+    known: HashMap<String, usize>,
+    /// How many sentences of each kind there are.
+    sentences: [u64; 3],
     report: Report,
 }
+
+/// The most sentences of a kind that are said of a file; who wants more can mend these first.
+const MAX_SENTENCES: u64 = 100;
 
 #[derive(Debug)]
 struct Entry {
@@ -55,42 +63,39 @@ impl Tally {
 
     /// Adds a sentence that stands alone, once however often it is said.
     pub fn say(&mut self, sentence: impl Into<String>) {
-        self.state(Kind::Note, sentence.into());
+        self.count(Kind::Note, &sentence.into(), 1, String::new);
     }
 
     /// As [`Tally::say`], of a picture in whose place a placeholder stands.
     pub fn placeholder(&mut self, sentence: impl Into<String>) {
-        self.state(Kind::Placeholder, sentence.into());
+        self.count(Kind::Placeholder, &sentence.into(), 1, String::new);
     }
 
     fn count(&mut self, kind: Kind, reason: &str, count: u64, place: impl FnOnce() -> String) {
         if count == 0 {
             return;
         }
-        match self.entries.iter_mut().find(|e| e.reason == reason) {
-            Some(entry) => entry.count += count,
-            None => {
-                let (reason, first) = (reason.to_owned(), place());
-                self.entries.push(Entry { kind, reason, count, first });
-            }
+        if let Some(&known) = self.known.get(reason) {
+            self.entries[known].count += count;
+            return;
+        }
+        self.sentences[kind as usize] += 1;
+        if self.sentences[kind as usize] <= MAX_SENTENCES {
+            let first = place();
+            self.known.insert(reason.to_owned(), self.entries.len());
+            self.entries.push(Entry { kind, reason: reason.to_owned(), count, first });
         }
     }
 
     /// Adds what another one has counted, which comes after.
     pub fn append(&mut self, later: Self) {
+        for (own, all) in self.sentences.iter_mut().zip(later.sentences) {
+            *own += all.saturating_sub(MAX_SENTENCES);
+        }
         for entry in later.entries {
-            match self.entries.iter_mut().find(|e| e.reason == entry.reason) {
-                Some(own) => own.count += entry.count,
-                None => self.entries.push(entry),
-            }
+            self.count(entry.kind, &entry.reason, entry.count, || entry.first);
         }
         self.report.add(later.report);
-    }
-
-    fn state(&mut self, kind: Kind, reason: String) {
-        if !self.entries.iter().any(|e| e.reason == reason) {
-            self.entries.push(Entry { kind, reason, count: 1, first: String::new() });
-        }
     }
 
     /// Gives a scene its report, and its warnings: one sentence for each reason, with the file's
@@ -107,6 +112,14 @@ impl Tally {
             match stands {
                 true => self.report.handed_over += faces,
                 false => self.drop(DropReason::Flat, faces, || format!("mesh `{}`", mesh.name)),
+            }
+        }
+        for kind in [Kind::Note, Kind::Unsupported, Kind::Placeholder] {
+            let count = self.sentences[kind as usize].saturating_sub(MAX_SENTENCES);
+            let (reason, first) =
+                ("{} more warnings like these are left out".to_owned(), String::new());
+            if count > 0 {
+                self.entries.push(Entry { kind, reason, count, first });
             }
         }
         for entry in self.entries {
@@ -162,6 +175,15 @@ mod tests {
         tally.say("animations are not played");
         tally.say("animations are not played");
         assert_eq!(tally.sentences(Path::new("a")), ["a: animations are not played"]);
+    }
+
+    #[test]
+    fn what_is_said_over_and_over_in_other_words_is_counted() {
+        let mut tally = Tally::default();
+        (0..MAX_SENTENCES + 7).for_each(|i| tally.say(format!("picture {i} is missing")));
+        let said = tally.sentences(Path::new("a"));
+        assert_eq!(said.len() as u64, MAX_SENTENCES + 1);
+        assert_eq!(said.last().unwrap(), "a: 7 more warnings like these are left out");
     }
 
     #[test]

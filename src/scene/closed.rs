@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Material, Mesh, Scene};
 
 impl Mesh {
     /// The volume of a closed mesh: above 0 where its triangles wind counterclockwise seen from
@@ -74,14 +74,15 @@ impl Mesh {
 
 /// Says of each mesh that is to be a body, and is not closed, that it cannot be one.
 pub fn open_bodies(scene: &Scene) -> Vec<String> {
+    let mut bodies: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
+    for instance in &scene.instances {
+        let material = &scene.materials[instance.material.0 as usize];
+        if material.is_body() {
+            bodies[instance.mesh.0 as usize].get_or_insert(material);
+        }
+    }
     let mut found = Vec::new();
-    for (i, mesh) in scene.meshes.iter().enumerate() {
-        let body = scene
-            .instances
-            .iter()
-            .filter(|instance| instance.mesh.0 as usize == i)
-            .map(|instance| &scene.materials[instance.material.0 as usize])
-            .find(|material| material.is_body());
+    for (i, (mesh, body)) in scene.meshes.iter().zip(bodies).enumerate() {
         let Some(material) = body else { continue };
         let edges = mesh.open_edges();
         if edges > 0 {
@@ -102,7 +103,7 @@ pub fn open_bodies(scene: &Scene) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Instance, Material};
+    use crate::scene::Instance;
     use glam::{DAffine3, Vec3};
 
     /// A tetrahedron, each triangle with corners of its own.

@@ -1,6 +1,8 @@
 //! What several tests of the importers need.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod whole;
+
 use std::path::{Path, PathBuf};
 
 use base64::Engine;

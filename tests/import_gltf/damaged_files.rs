@@ -108,9 +108,8 @@ fn uri_that_is_not_utf8_once_decoded() {
 
 #[test]
 fn uri_with_a_scheme_is_not_fetched() {
-    for uri in ["http://localhost/a.bin", "file:///a.bin"] {
-        assert!(with_uri(uri).1.contains("addresses are not read"));
-    }
+    assert!(with_uri("http://localhost/a.bin").1.contains("addresses are not read"));
+    assert!(with_uri("file:///a.bin").1.contains("not in the folder"));
 }
 
 #[test]

@@ -453,7 +453,7 @@ fn a_model_that_is_no_model_is_refused() {
 fn a_folder_in_place_of_a_model_is_refused() {
     let file = File::new("[[model]]\nfile = \"room.glb\"\n");
     std::fs::create_dir(file.beside("room.glb")).unwrap();
-    assert!(file.load().unwrap_err().message().ends_with("this is no file"));
+    assert!(file.load().unwrap_err().message().ends_with("this is a folder, not a file"));
 }
 
 #[test]

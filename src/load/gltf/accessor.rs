@@ -10,19 +10,16 @@ use gltf::json::validation::Checked;
 use super::buffers::{Buffers, get, range};
 use super::packed;
 use crate::error::{Error, Place, Result};
-
-/// The most elements that a file can have us read beyond one for each byte of its buffers: it
-/// bounds what a small file with many accessors on the same bytes can make us store.
-pub const MAX_REPEATED_ELEMENTS: u64 = 1 << 26;
-/// The most elements, in all, of accessors without a buffer view, which cost a file nothing.
-pub const MAX_VIRTUAL_ELEMENTS: u64 = 1 << 24;
+use crate::load::guard::Guard;
+use crate::load::limits::Limit;
 
 /// Reads accessors.
 pub struct Accessors<'a> {
     root: &'a json::Root,
+    guard: &'a Guard,
     buffers: &'a Buffers<'a>,
+    /// How many elements were read so far.
     read: Cell<u64>,
-    virtual_read: Cell<u64>,
 }
 
 /// A number within a buffer: what it is and how it reads.
@@ -34,8 +31,8 @@ struct Number {
 
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
-    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, buffers, read: Cell::new(0), virtual_read: Cell::new(0) }
+    pub fn new(root: &'a json::Root, guard: &'a Guard, buffers: &'a Buffers<'a>) -> Self {
+        Self { root, guard, buffers, read: Cell::new(0) }
     }
 
     /// How many elements an accessor has, 0 if there is no such accessor.
@@ -163,19 +160,13 @@ impl<'a> Accessors<'a> {
     }
 
     fn check_count(&self, accessor: &Accessor, at: &str) -> Result<usize> {
-        let count = accessor.count.0;
-        let (used, limit) = match accessor.buffer_view {
-            Some(_) => (&self.read, MAX_REPEATED_ELEMENTS + self.buffers.loaded_bytes()),
-            None => (&self.virtual_read, MAX_VIRTUAL_ELEMENTS),
-        };
-        let total = used.get().saturating_add(count);
-        if total > limit {
-            return Err(Error::input(format!("{count} elements are too many"))
-                .place(Place::Json(format!("{at}.count")))
-                .help(format!("with those read before they are {total}; the limit is {limit}")));
-        }
-        used.set(total);
-        Ok(count as usize)
+        let total = self.read.get().saturating_add(accessor.count.0);
+        let beyond = total.saturating_sub(self.buffers.loaded_bytes());
+        self.guard
+            .check(Limit::Elements, beyond)
+            .map_err(|e| e.place(Place::Json(format!("{at}.count"))))?;
+        self.read.set(total);
+        Ok(accessor.count.0 as usize)
     }
 
     /// The distance between elements, where the view gives one.

@@ -13,6 +13,8 @@ use gltf::json::validation::Checked;
 use super::accessor::Accessors;
 use super::buffers::get;
 use crate::error::{Error, Result};
+use crate::load::guard::Guard;
+use crate::load::limits::Limit;
 use crate::load::tally::Tally;
 use crate::scene::animation::{
     Animation, Curve, Interpolation, Keys, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Value,
@@ -20,8 +22,6 @@ use crate::scene::animation::{
 
 /// Frames in a second of a model's own animation, which is made of times alone.
 pub const FPS: f64 = 24.0;
-/// The most keys of all channels together: a small file can name the same ones any number of times.
-const MAX_KEYS: u64 = 1 << 22;
 
 /// An animation while a file is imported.
 pub struct Clip {
@@ -49,6 +49,7 @@ impl Clip {
     /// When there is none of that name.
     pub fn read(
         root: &json::Root,
+        guard: &Guard,
         accessors: &Accessors,
         name: Option<&str>,
         tally: &mut Tally,
@@ -60,22 +61,19 @@ impl Clip {
             None => 0,
         };
         let Some(animation) = root.animations.get(index) else { return Ok(clip) };
-        let mut keys = 0;
         for (i, channel) in animation.channels.iter().enumerate() {
             let at = format!("animations[{index}].channels[{i}]");
             let place = format!("animations[{index}]");
             let sampler = get(&animation.samplers, channel.sampler.value(), "sampler", &at);
             let read = sampler.and_then(|sampler| {
-                let count = accessors.count(sampler.input.value());
-                keys += count;
-                if keys > MAX_KEYS {
-                    return Err(Error::input(format!("more than {MAX_KEYS} keys in all")));
-                }
+                // A small file can name the same ones any number of times.
+                guard.take(Limit::Keys, accessors.count(sampler.input.value()))?;
                 clip.channel(root, accessors, channel, sampler, &place)
             });
             if let Err(error) = read {
                 let reason = "{} animation channels are left out: they are damaged";
-                tally.add(reason, 1, || format!("{at} ({})", error.message()));
+                let advice = error.advice().map(|advice| format!("; {advice}")).unwrap_or_default();
+                tally.add(reason, 1, || format!("{at} ({}{advice})", error.message()));
             }
         }
         Ok(clip)

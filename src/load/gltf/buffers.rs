@@ -5,24 +5,16 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use base64::Engine;
-use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json;
-use percent_encoding::percent_decode_str;
 
 use crate::error::{Error, Place, Result};
-
-/// Base64 with or without its padding, as files have both.
-const BASE64: GeneralPurpose = GeneralPurpose::new(
-    &base64::alphabet::STANDARD,
-    GeneralPurposeConfig::new()
-        .with_decode_padding_mode(DecodePaddingMode::Indifferent)
-        .with_decode_allow_trailing_bits(true),
-);
+use crate::load::guard::{Guard, Opened};
+use crate::load::uri::Uri;
 
 /// The buffers of a file.
 pub struct Buffers<'a> {
     root: &'a json::Root,
+    guard: &'a Guard,
     folder: PathBuf,
     bin: Option<&'a [u8]>,
     loaded: Vec<OnceCell<Arc<Vec<u8>>>>,
@@ -31,19 +23,20 @@ pub struct Buffers<'a> {
     files: RefCell<HashMap<PathBuf, Arc<Vec<u8>>>>,
 }
 
-/// Where a URI leads.
+/// What a URI names, found.
 pub enum Target {
     /// Bytes in the URI itself.
     Data(Vec<u8>),
     /// A file.
-    File(PathBuf),
+    File(Opened),
 }
 
 impl<'a> Buffers<'a> {
     /// The buffers of the file at `path`, whose binary chunk is `bin`.
-    pub fn new(root: &'a json::Root, path: &Path, bin: Option<&'a [u8]>) -> Self {
+    pub fn new(root: &'a json::Root, guard: &'a Guard, path: &Path, bin: Option<&'a [u8]>) -> Self {
         Self {
             root,
+            guard,
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
             bin,
             loaded: root.buffers.iter().map(|_| OnceCell::new()).collect(),
@@ -91,29 +84,28 @@ impl<'a> Buffers<'a> {
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
-        let bytes = match self.resolve(uri).map_err(|e| e.place(at()))? {
-            Target::Data(bytes) => {
-                self.count(bytes.len());
-                Arc::new(bytes)
-            }
-            Target::File(path) => self.file(&path).map_err(|e| {
-                // The model's own path stays the error's, so that its place makes sense.
-                let reason = e.message().to_owned();
-                Error::input(format!("the buffer {} cannot be had: {reason}", path.display()))
-                    .place(at())
-                    .help("keep a .gltf file together with its .bin files")
-            })?,
-        };
+        let bytes =
+            match self.resolve(uri).map_err(|e| cannot_have("buffer", uri, &e).place(at()))? {
+                Target::Data(bytes) => {
+                    self.count(bytes.len());
+                    Arc::new(bytes)
+                }
+                Target::File(file) => self.file(file).map_err(|e| {
+                    // The model's own path stays the error's, so that its place makes sense.
+                    cannot_have("buffer", uri, &e).place(at())
+                })?,
+            };
         Ok(cell.get_or_init(|| bytes))
     }
 
-    fn file(&self, path: &Path) -> Result<Arc<Vec<u8>>> {
-        if let Some(bytes) = self.files.borrow().get(path) {
+    fn file(&self, file: Opened) -> Result<Arc<Vec<u8>>> {
+        let identity = file.identity.clone();
+        if let Some(bytes) = self.files.borrow().get(&identity) {
             return Ok(bytes.clone());
         }
-        let bytes = Arc::new(crate::load::read(path)?);
+        let bytes = Arc::new(file.read(self.guard)?);
         self.count(bytes.len());
-        self.files.borrow_mut().insert(path.to_owned(), bytes.clone());
+        self.files.borrow_mut().insert(identity, bytes.clone());
         Ok(bytes)
     }
 
@@ -121,31 +113,40 @@ impl<'a> Buffers<'a> {
         self.loaded_bytes.set(self.loaded_bytes.get() + bytes as u64);
     }
 
-    /// What a URI names: data within it, or a file beside the model.
+    /// What a URI names.
     pub fn resolve(&self, uri: &str) -> Result<Target> {
-        if let Some(rest) = strip_prefix_ignoring_case(uri, "data:") {
-            return data(rest).map(Target::Data);
-        }
-        if let Some(scheme) = scheme(uri) {
-            return Err(Error::input(format!("`{scheme}:` addresses are not read"))
-                .help("name a file beside the model, or embed the data"));
-        }
-        let decoded = percent_decode_str(uri).decode_utf8();
-        // A name that isn't UTF-8 once decoded, or a file whose own name has a % in it.
-        let path = |name: &str| self.folder.join(name);
-        let candidates = [
-            decoded.as_ref().ok().map(|d| path(d)),
-            Some(path(uri)),
-            // Written on Windows.
-            decoded.as_ref().ok().map(|d| path(&d.replace('\\', "/"))),
-        ];
-        let mut candidates = candidates.into_iter().flatten();
-        let first = candidates.next().unwrap_or_else(|| path(uri));
-        if first.exists() {
-            return Ok(Target::File(first));
-        }
-        let other = candidates.find(|p| p.exists());
-        Ok(Target::File(other.unwrap_or(first)))
+        resolve(uri, &self.folder, self.guard)
+    }
+
+    /// The folder of the file.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+}
+
+/// What a URI in a file of this folder names: data within it, or a file that may be read.
+pub fn resolve(uri: &str, folder: &Path, guard: &Guard) -> Result<Target> {
+    Ok(match Uri::parse(uri)? {
+        Uri::Data(bytes) => Target::Data(bytes),
+        Uri::File(names) => Target::File(guard.open(folder, &names)?),
+    })
+}
+
+/// The error that what a URI names, a buffer or a picture, is not to be had.
+pub fn cannot_have(what: &str, uri: &str, error: &Error) -> Error {
+    let uri = shortened(uri);
+    let cannot = Error::input(format!("the {what} `{uri}` cannot be had: {}", error.message()));
+    match error.advice() {
+        Some(advice) => cannot.help(advice),
+        None => cannot.help("keep a .gltf file together with the files that it names"),
+    }
+}
+
+/// A URI as a message can show it.
+fn shortened(uri: &str) -> String {
+    match uri.char_indices().nth(80) {
+        Some((cut, _)) => format!("{}…", &uri[..cut]),
+        None => uri.to_owned(),
     }
 }
 
@@ -169,60 +170,14 @@ pub fn range(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
     bytes.get(start..end)
 }
 
-/// The bytes of a data URI, without its `data:`.
-fn data(uri: &str) -> Result<Vec<u8>> {
-    let (head, payload) = uri
-        .split_once(',')
-        .ok_or_else(|| Error::input("the data URI has no comma").help("`data:TYPE;base64,DATA`"))?;
-    if !head.to_ascii_lowercase().ends_with(";base64") {
-        return Ok(percent_decode_str(payload).collect());
-    }
-    // Percent signs and line breaks are not base64, but stand in some files.
-    let clean: Vec<u8> = percent_decode_str(payload).filter(|b| !b.is_ascii_whitespace()).collect();
-    BASE64.decode(clean).map_err(|e| Error::input(format!("the base64 data is broken: {e}")))
-}
-
-fn strip_prefix_ignoring_case<'s>(text: &'s str, prefix: &str) -> Option<&'s str> {
-    let head = text.get(..prefix.len())?;
-    head.eq_ignore_ascii_case(prefix).then(|| &text[prefix.len()..])
-}
-
-/// A URI's scheme. One letter is a Windows drive, not a scheme.
-fn scheme(uri: &str) -> Option<&str> {
-    let (scheme, _) = uri.split_once(':')?;
-    let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
-    let is_one = scheme.len() > 1
-        && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
-        && scheme.chars().all(fits);
-    is_one.then_some(scheme)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base64_needs_no_padding() {
-        assert_eq!(data("x/y;base64,QUI").unwrap(), b"AB");
-        assert_eq!(data("x/y;base64,QUI=").unwrap(), b"AB");
-    }
-
-    #[test]
-    fn data_without_base64_is_percent_encoded() {
-        assert_eq!(data("text/plain,a%20b%FF").unwrap(), b"a b\xFF");
-    }
 
     #[test]
     fn range_does_not_overflow() {
         assert_eq!(range(b"abc", 1, 2), Some(&b"bc"[..]));
         assert_eq!(range(b"abc", u64::MAX, 2), None);
         assert_eq!(range(b"abc", 1, u64::MAX), None);
-    }
-
-    #[test]
-    fn scheme_is_not_a_drive() {
-        assert_eq!(scheme("https://a/b.bin"), Some("https"));
-        assert_eq!(scheme("c:/b.bin"), None);
-        assert_eq!(scheme("b c.bin"), None);
     }
 }

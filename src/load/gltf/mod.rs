@@ -32,7 +32,9 @@ use self::buffers::{Buffers, get};
 use self::material::Materials;
 use self::nodes::Placed;
 use self::texture::Textures;
-use crate::error::Result;
+use crate::error::{Place, Result};
+use crate::load::guard::{Guard, Opened};
+use crate::load::limits::Limit;
 use crate::load::tally::Tally;
 use crate::scene::animation::Mover;
 use crate::scene::{Instance, MaterialId, MeshId, Scene};
@@ -43,25 +45,33 @@ use crate::scene::{Instance, MaterialId, MeshId, Scene};
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
 /// the place in the JSON. When there is no such animation.
-pub fn load(path: &Path, animation: Option<&str>, wanted: bool) -> Result<Scene> {
-    let bytes = super::read(path)?;
-    import(path, &bytes, animation, wanted).map_err(|e| e.at(path))
+pub fn load(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> Result<Scene> {
+    let path = file.path.clone();
+    let bytes = file.read(guard)?;
+    import(&path, &bytes, guard, animation, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], animation: Option<&str>, wanted: bool) -> Result<Scene> {
+fn import(
+    path: &Path,
+    bytes: &[u8],
+    guard: &Guard,
+    animation: Option<&str>,
+    wanted: bool,
+) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
     let (root, value) = document::parse(json)?;
     let mut tally = Tally::default();
     validation::validate(&value, bin.map(<[u8]>::len), &mut tally);
     extensions::check(&root, &mut tally)?;
-    let buffers = Buffers::new(&root, path, bin);
-    let accessors = Accessors::new(&root, &buffers);
-    let mut clip = Clip::read(&root, &accessors, animation, &mut tally)?;
-    let nodes = nodes::walk(&root, &mut clip, &mut tally)?;
+    let buffers = Buffers::new(&root, guard, path, bin);
+    let accessors = Accessors::new(&root, guard, &buffers);
+    let mut clip = Clip::read(&root, guard, &accessors, animation, &mut tally)?;
+    let nodes = nodes::walk(&root, guard, &mut clip, &mut tally)?;
     let mut importer = Importer {
         root: &root,
+        guard,
         accessors,
-        materials: Materials::new(&root, Textures::new(&root, &buffers, wanted)),
+        materials: Materials::new(&root, Textures::new(&root, guard, &buffers, wanted)),
         meshes: HashMap::new(),
         scene: Scene::default(),
         clip,
@@ -75,6 +85,7 @@ fn import(path: &Path, bytes: &[u8], animation: Option<&str>, wanted: bool) -> R
 
 struct Importer<'a> {
     root: &'a json::Root,
+    guard: &'a Guard,
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     /// What the primitives of a mesh became, so that nodes share it.
@@ -101,6 +112,9 @@ impl Importer<'_> {
             let reason = "{} skinned meshes stand as they were modelled, not as posed";
             self.tally.unsupported(reason, 1, || by.clone());
         }
+        let place = || Place::Json(by.clone());
+        let count = self.scene.instances.len() + parts.len();
+        self.guard.check(Limit::Instances, count as u64).map_err(|e| e.place(place()))?;
         let made: Vec<Instance> = parts
             .into_iter()
             .map(|(mesh, material)| Instance::new(mesh, placed.world, material))
@@ -167,6 +181,14 @@ impl Importer<'_> {
                 self.tally.unsupported(reason, 1, || at);
             }
             if let Some(mut mesh) = read {
+                let size = [
+                    (Limit::Vertices, mesh.positions.len()),
+                    (Limit::Triangles, mesh.triangles.len()),
+                ];
+                for (limit, count) in size {
+                    let place = || Place::Json(format!("meshes[{index}].primitives[{i}]"));
+                    self.guard.take(limit, count as u64).map_err(|e| e.place(place()))?;
+                }
                 mesh.name = source.name.clone().unwrap_or_default();
                 parts.push((self.scene.add_mesh(mesh), made.id));
             }

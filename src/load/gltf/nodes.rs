@@ -8,6 +8,8 @@ use gltf::json::Node;
 use super::animation::Clip;
 use super::buffers::get;
 use crate::error::{Error, Place, Result};
+use crate::load::guard::Guard;
+use crate::load::limits::Limit;
 use crate::load::tally::Tally;
 use crate::scene::animation::NodeId;
 
@@ -40,20 +42,28 @@ impl Placed<'_> {
 /// finite.
 pub fn walk<'a>(
     root: &'a json::Root,
+    guard: &Guard,
     clip: &mut Clip,
     tally: &mut Tally,
 ) -> Result<Vec<Placed<'a>>> {
+    let place = || Place::Json("nodes".to_owned());
+    guard.take(Limit::Nodes, root.nodes.len() as u64).map_err(|e| e.place(place()))?;
     let parents = parents(root)?;
     let mut roots = roots(root, &parents)?;
     // So that a child that stands among the roots as well is placed by its parent.
     roots.sort_by_key(|&(i, _)| parents.get(i).is_some_and(Option::is_some));
     let mut placed = Vec::new();
     let mut seen = vec![false; root.nodes.len()];
-    let world = Above { world: DAffine3::IDENTITY, mover: None, rest: DAffine3::IDENTITY };
+    let world =
+        Above { world: DAffine3::IDENTITY, mover: None, rest: DAffine3::IDENTITY, depth: 0 };
     let mut open: Vec<(usize, String, Above)> =
         roots.into_iter().rev().map(|(i, by)| (i, by, world)).collect();
     while let Some((index, by, above)) = open.pop() {
         let node = get(&root.nodes, index, "node", &by)?;
+        let depth = above.depth + 1;
+        guard
+            .check(Limit::Depth, depth)
+            .map_err(|e| e.place(Place::Json(format!("nodes[{index}]"))))?;
         match seen.get_mut(index) {
             Some(seen) if !*seen => *seen = true,
             _ => {
@@ -72,7 +82,7 @@ pub fn walk<'a>(
             Some(_) => (own, DAffine3::IDENTITY),
             None => (above.mover, above.rest * local),
         };
-        let here = Above { world, mover, rest };
+        let here = Above { world, mover, rest, depth };
         let children = node.children.iter().flatten().enumerate();
         let children = children
             .map(|(i, child)| (child.value(), format!("nodes[{index}].children[{i}]"), here));
@@ -93,6 +103,8 @@ struct Above {
     world: DAffine3,
     mover: Option<NodeId>,
     rest: DAffine3,
+    /// How many nodes are above them.
+    depth: u64,
 }
 
 /// The parent of each node; an error where a node is its own ancestor.

@@ -11,8 +11,9 @@ use gltf::json::texture::{Info, MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
 use rayon::prelude::*;
 
-use super::buffers::{Buffers, Target, get};
+use super::buffers::{Buffers, Target, cannot_have, get, resolve};
 use crate::error::{Error, Place, Result};
+use crate::load::guard::Guard;
 use crate::load::picture;
 use crate::load::tally::Tally;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
@@ -102,6 +103,7 @@ fn parsed(extension: Option<&json::Value>) -> Option<Transform> {
 /// The textures of a file. What they show is decoded when all are known, each picture once.
 pub struct Textures<'a> {
     root: &'a json::Root,
+    guard: &'a Guard,
     buffers: &'a Buffers<'a>,
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
@@ -130,14 +132,20 @@ struct Picture<'a> {
 /// Where a picture's bytes are.
 enum Source<'a> {
     Bytes(Cow<'a, [u8]>),
-    File(PathBuf),
+    /// Of a file, by the URI: it is opened when it is read, so that few are open at a time.
+    File(&'a str),
 }
 
 impl<'a> Textures<'a> {
     /// The textures of a file, whose pictures are read where they are `wanted`.
-    pub fn new(root: &'a json::Root, buffers: &'a Buffers<'a>, wanted: bool) -> Self {
+    pub fn new(
+        root: &'a json::Root,
+        guard: &'a Guard,
+        buffers: &'a Buffers<'a>,
+        wanted: bool,
+    ) -> Self {
         let (made, pictures, numbers) = Default::default();
-        Self { root, buffers, wanted, made, pictures, numbers }
+        Self { root, guard, buffers, wanted, made, pictures, numbers }
     }
 
     /// A texture that is placed by the scene's texture coordinates `set`.
@@ -206,8 +214,8 @@ impl<'a> Textures<'a> {
         let (key, source) = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.buffers.resolve(uri) {
                 Ok(Target::Data(bytes)) => (Some(Key::Data(uri)), Ok(Source::Bytes(bytes.into()))),
-                Ok(Target::File(path)) => (Some(Key::File(path.clone())), Ok(Source::File(path))),
-                Err(error) => (None, Err(error)),
+                Ok(Target::File(file)) => (Some(Key::File(file.identity)), Ok(Source::File(uri))),
+                Err(error) => (None, Err(cannot_have("picture", uri, &error))),
             },
             (None, Some(view)) => {
                 let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"));
@@ -228,12 +236,17 @@ impl<'a> Textures<'a> {
     /// Decodes the pictures, side by side, and gives them to the textures of the scene that show
     /// them. One that cannot be had is a warning, and a placeholder takes its place.
     pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
-        let (wanted, pictures) = (self.wanted, self.pictures);
+        let Self { guard, buffers, wanted, pictures, .. } = self;
+        let folder = buffers.folder();
         let decode = |picture: Picture| {
             let Picture { source, at, shown_by } = picture;
             let image = source.and_then(|source| match source {
-                Source::Bytes(bytes) => picture::decode(&bytes, &at, wanted),
-                Source::File(path) => picture::read(&path, wanted),
+                Source::Bytes(bytes) => picture::decode(&bytes, &at, guard, wanted),
+                Source::File(uri) => match resolve(uri, folder, guard) {
+                    Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, guard, wanted),
+                    Ok(Target::File(file)) => picture::read(file, guard, wanted),
+                    Err(error) => Err(cannot_have("picture", uri, &error)),
+                },
             });
             (image.map_err(|e| e.place(Place::Json(at.clone()))), at, shown_by)
         };

@@ -1,39 +1,43 @@
 //! Where the files are that an OBJ or MTL file names.
 
-use std::path::{Path, PathBuf};
+use std::ffi::OsString;
+use std::path::Path;
+
+use crate::error::Result;
+use crate::load::guard::{Guard, Opened};
 
 /// A file named in a model: as it stands, or as written on Windows, or beside the model when the
-/// folder it was in is on another machine; and each of these in any case. Where none is there, the
-/// name as it stands.
-pub fn find(folder: &Path, name: &str) -> PathBuf {
-    let first = folder.join(name);
-    if first.exists() {
-        return first;
-    }
+/// folder it was in is on another machine; and where none is there, in any case.
+///
+/// # Errors
+/// As [`Guard::open`], of the name as it stands.
+pub fn find(guard: &Guard, folder: &Path, name: &str) -> Result<Opened> {
     let slashes = name.replace('\\', "/");
     let last = slashes.rsplit('/').next().unwrap_or_default();
-    let found = [&slashes, last].into_iter().find_map(|name| in_any_case(folder, name));
-    found.unwrap_or(first)
+    guard.open(folder, &[name, &slashes, last]).or_else(|error| {
+        let found = [&slashes, last].into_iter().find_map(|name| in_any_case(folder, name));
+        found.and_then(|found| guard.open(folder, &[found]).ok()).ok_or(error)
+    })
 }
 
-/// A regular file below a folder, whose name and folders may be written in another case.
-fn in_any_case(folder: &Path, name: &str) -> Option<PathBuf> {
-    let exact = folder.join(name);
-    if exact.is_file() {
-        return Some(exact);
-    }
-    let step = |folder: PathBuf, name: &str| {
-        let next = folder.join(name);
-        if next.exists() {
-            return Some(next);
+/// The path, from a folder, of what is below it and has a name in another case. Only what is
+/// really below is looked at: nothing is followed out of it.
+fn in_any_case(folder: &Path, name: &str) -> Option<String> {
+    let here = folder.as_os_str().is_empty();
+    let mut at = if here { Path::new(".") } else { folder }.to_owned();
+    let mut found = Vec::new();
+    for step in name.split('/') {
+        if !found.is_empty() && !at.symlink_metadata().ok()?.is_dir() {
+            return None;
         }
-        let entries = std::fs::read_dir(&folder).ok()?.flatten().map(|entry| entry.file_name());
-        let is_same = |found: &std::ffi::OsString| {
-            found.to_str().is_some_and(|found| found.to_lowercase() == name.to_lowercase())
+        let same = |entry: &OsString| -> bool {
+            entry.to_str().is_some_and(|entry| entry.to_lowercase() == step.to_lowercase())
         };
+        let entries = std::fs::read_dir(&at).ok()?.flatten().map(|entry| entry.file_name());
         // Of several the same one, in whatever order the system lists them.
-        entries.filter(is_same).min().map(|found| folder.join(found))
-    };
-    let mut steps = name.split('/').filter(|step| !step.is_empty());
-    steps.try_fold(folder.to_owned(), step).filter(|path| path.is_file())
+        let next = entries.filter(same).min()?.into_string().ok()?;
+        at.push(&next);
+        found.push(next);
+    }
+    Some(found.join("/"))
 }

@@ -2,7 +2,7 @@
 //!
 //! Whatever is wrong with them is a warning: the shape can still be shown.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::files::find;
@@ -10,56 +10,65 @@ use super::lines::decode;
 use super::material::Maker;
 use super::mtl::{UNNAMED, clean};
 use super::textures::Textures;
+use crate::error::Error;
+use crate::load::guard::{Guard, Opened};
 use crate::load::tally::Tally;
 use crate::scene::{Material, MaterialId, Scene};
 
 /// The materials that an OBJ file can name, each made when a face first uses it.
-#[derive(Default)]
-pub struct Library {
+pub struct Library<'a> {
+    guard: &'a Guard,
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     made: HashMap<String, MaterialId>,
-    textures: Textures,
+    textures: Textures<'a>,
+    /// The files that were read.
+    files: HashSet<PathBuf>,
 }
 
-impl Library {
-    /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. Where one
-    /// is not there, or none is named, that of the OBJ file's own name is read, if there is one.
-    pub fn read(names: &[String], path: &Path, tally: &mut Tally) -> Self {
-        let mut library = Self::default();
+impl<'a> Library<'a> {
+    /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. In place
+    /// of one that is missing, or where none is named, that of the OBJ file's own name is read.
+    pub fn read(names: &[String], path: &Path, guard: &'a Guard, tally: &mut Tally) -> Self {
+        let textures = Textures::new(guard);
+        let (sources, made, files) = Default::default();
+        let mut library = Self { guard, sources, made, textures, files };
         let folder = path.parent().unwrap_or(Path::new(""));
-        let own = find(
-            folder,
-            &path.with_extension("mtl").file_name().unwrap_or_default().to_string_lossy(),
-        );
-        let mut files = Vec::new();
+        let own = path.with_extension("mtl");
+        let own = || find(guard, folder, &own.file_name().unwrap_or_default().to_string_lossy());
         for name in names {
             // A name may hold spaces, and a line several names.
-            let whole = find(folder, name);
-            match whole.is_file() {
-                true => files.push(whole),
-                false => files.extend(names_of_line(name).into_iter().map(|n| find(folder, &n))),
+            if let Ok(file) = find(guard, folder, name) {
+                library.add(file, tally);
+                continue;
+            }
+            for name in names_of_line(name) {
+                match (find(guard, folder, &name), own()) {
+                    (Ok(file), _) => library.add(file, tally),
+                    (Err(error), Ok(own)) => {
+                        tally.say(format!(
+                            "the materials `{name}` are missing ({error}); those of {} take their \
+                             place",
+                            own.path.display()
+                        ));
+                        library.add(own, tally);
+                    }
+                    (Err(error), Err(_)) => tally
+                        .say(format!("the materials `{name}` are missing and drawn grey: {error}")),
+                }
             }
         }
-        if names.is_empty() && own.is_file() {
-            files.push(own.clone());
-        }
-        let mut done = Vec::new();
-        for file in files {
-            let read = if file.exists() || !own.is_file() { &file } else { &own };
-            if *read != file {
-                let [file, own] = [&file, &own].map(|path| path.display());
-                tally.say(format!("{file} is missing; the materials are those of {own}"));
-            }
-            if !done.contains(read) {
-                library.add(read, tally);
-                done.push(read.clone());
-            }
+        if let (true, Ok(own)) = (names.is_empty(), own()) {
+            library.add(own, tally);
         }
         library
     }
 
-    fn add(&mut self, path: &Path, tally: &mut Tally) {
-        let bytes = match crate::load::read(path) {
+    fn add(&mut self, file: Opened, tally: &mut Tally) {
+        if !self.files.insert(file.identity.clone()) {
+            return;
+        }
+        let path = &file.path.clone();
+        let bytes = match file.read(self.guard) {
             Ok(bytes) => bytes,
             Err(error) => {
                 tally.say(format!("the materials are missing and drawn grey: {error}"));
@@ -68,9 +77,8 @@ impl Library {
         };
         let materials = decode(&bytes).and_then(|text| {
             let clean = clean(&text, path, tally);
-            tobj::load_mtl_buf(&mut clean.as_bytes()).map_err(|e| {
-                crate::error::Error::input(format!("the materials cannot be read: {e}"))
-            })
+            tobj::load_mtl_buf(&mut clean.as_bytes())
+                .map_err(|e| Error::input(format!("the materials cannot be read: {e}")))
         });
         let folder = path.parent().unwrap_or(Path::new(""));
         match materials {

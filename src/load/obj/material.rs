@@ -19,20 +19,20 @@ const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 const IOR: f32 = 1.5;
 
 /// A material being made.
-pub struct Maker<'a> {
+pub struct Maker<'a, 'g> {
     /// What [`clean`](super::mtl::clean) has left of it.
     pub source: &'a tobj::Material,
     /// That of its MTL file.
     pub folder: &'a Path,
     /// Where its textures are added.
-    pub textures: &'a mut Textures,
+    pub textures: &'a mut Textures<'g>,
     /// Where it is added next.
     pub scene: &'a mut Scene,
     /// What cannot be drawn is said here.
     pub tally: &'a mut Tally,
 }
 
-impl<'a> Maker<'a> {
+impl<'a> Maker<'a, '_> {
     /// The material.
     pub fn make(mut self) -> Material {
         let source = self.source;

@@ -29,6 +29,8 @@ use glam::{DAffine3, DVec3};
 use self::library::Library;
 use self::rewrite::Part;
 use crate::error::{Error, Result};
+use crate::load::guard::{Guard, Opened};
+use crate::load::limits::Limit;
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
 use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
@@ -38,13 +40,13 @@ use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(path: &Path, wanted: bool) -> Result<Scene> {
-    let bytes = super::read(path)?;
-
-    import(path, &bytes, wanted).map_err(|e| e.at(path))
+pub fn load(file: Opened, guard: &Guard, wanted: bool) -> Result<Scene> {
+    let path = file.path.clone();
+    let bytes = file.read(guard)?;
+    import(&path, &bytes, guard, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scene> {
     let mut tally = Tally::default();
     let text = lines::decode(bytes)?;
     let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
@@ -53,7 +55,7 @@ fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
         tobj::load_obj_buf(made, &options, |_| Err(tobj::LoadError::GenericFailure))
     })?;
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
-    let mut library = Library::read(&made.libraries, path, &mut tally);
+    let mut library = Library::read(&made.libraries, path, guard, &mut tally);
     let mut scene = Scene::default();
     let unit = unit_of_colors(&models);
     for model in models {
@@ -63,6 +65,9 @@ fn import(path: &Path, bytes: &[u8], wanted: bool) -> Result<Scene> {
         let Some(mesh) = mesh(&model.mesh, part, unit, &mut tally) else { continue };
         let name = part.setting.material.as_deref().unwrap_or_default();
         let material = library.get(name, &mut scene, &mut tally);
+        guard.take(Limit::Vertices, mesh.positions.len() as u64)?;
+        guard.take(Limit::Triangles, mesh.triangles.len() as u64)?;
+        guard.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }

@@ -167,8 +167,8 @@ fn xyz(text: &str) -> Option<Vec3> {
         [-1.537_2, 1.875_8, -0.204_0],
         [-0.498_6, 0.041_5, 1.057_0],
     ]);
-    let numbers: Option<Vec<f32>> =
-        text.split_whitespace().skip(1).map(|word| word.parse().ok()).collect();
+    let number = |word: &str| word.parse().ok().filter(|x: &f32| x.is_finite());
+    let numbers: Option<Vec<f32>> = text.split_whitespace().skip(1).map(number).collect();
     // What no screen can show is brought to its edge.
     let color = |x, y, z| (to_rec_709 * Vec3::new(x, y, z)).max(Vec3::ZERO);
     match numbers?[..] {

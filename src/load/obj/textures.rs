@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::files::find;
 use super::map::Map;
+use crate::load::guard::Guard;
 use crate::load::picture;
 use crate::load::tally::Tally;
 use crate::scene::{
@@ -19,8 +20,8 @@ use crate::scene::{
 const MOSTLY: f64 = 0.9;
 
 /// The textures of a file.
-#[derive(Default)]
-pub struct Textures {
+pub struct Textures<'a> {
+    guard: &'a Guard,
     /// Those in the scene; no two are alike but for the picture's own.
     made: Vec<(Key, TextureId)>,
     /// Pictures that are still to be decoded.
@@ -34,6 +35,7 @@ pub struct Textures {
 /// What makes a texture different from others.
 #[derive(PartialEq)]
 struct Key {
+    /// The picture's canonical path, or the one that it should have.
     path: PathBuf,
     clamp: bool,
     transfer: Transfer,
@@ -43,11 +45,19 @@ struct Key {
 /// A picture that is still to be decoded, and the textures that show it.
 struct Picture {
     path: PathBuf,
+    /// The folder of the MTL file, and what that calls it.
+    folder: PathBuf,
     name: String,
     shown_by: Vec<TextureId>,
 }
 
-impl Textures {
+impl<'a> Textures<'a> {
+    /// None yet.
+    pub fn new(guard: &'a Guard) -> Self {
+        let (made, pictures, opacities, bumps) = Default::default();
+        Self { guard, made, pictures, opacities, bumps }
+    }
+
     /// The texture of a statement, whose file is beside the MTL file in `folder`.
     pub fn get(
         &mut self,
@@ -56,7 +66,9 @@ impl Textures {
         folder: &Path,
         scene: &mut Scene,
     ) -> TextureId {
-        let path = find(folder, &map.file);
+        // Files are many, and open ones few: this one is opened again when it is decoded.
+        let found = find(self.guard, folder, &map.file);
+        let path = found.map_or_else(|_| folder.join(&map.file), |file| file.identity);
         let key = Key { path, clamp: map.clamp, transfer, transform: transform(map) };
         if let Some(&(_, id)) = self.made.iter().find(|(made, _)| *made == key) {
             return id;
@@ -72,8 +84,9 @@ impl Textures {
         match self.pictures.iter_mut().find(|picture| picture.path == key.path) {
             Some(picture) => picture.shown_by.push(id),
             None => {
-                let (path, name) = (key.path.clone(), map.file.clone());
-                self.pictures.push(Picture { path, name, shown_by: vec![id] });
+                let (path, folder) = (key.path.clone(), folder.to_owned());
+                let (name, shown_by) = (map.file.clone(), vec![id]);
+                self.pictures.push(Picture { path, folder, name, shown_by });
             }
         }
         self.made.push((key, id));
@@ -98,7 +111,11 @@ impl Textures {
 
     /// Decodes the pictures, side by side, if they are `wanted`, and settles what depends on them.
     pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
-        let decode = |picture: Picture| (picture::read(&picture.path, wanted), picture);
+        let decode = |picture: Picture| {
+            let file = find(self.guard, &picture.folder, &picture.name);
+            let image = file.and_then(|file| picture::read(file, self.guard, wanted));
+            (image.map_err(|e| e.at(&picture.folder.join(&picture.name))), picture)
+        };
         let decoded: Vec<_> = self.pictures.into_par_iter().map(decode).collect();
         for (image, picture) in decoded {
             let image = Arc::new(image.unwrap_or_else(|error| {

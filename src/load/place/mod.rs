@@ -64,6 +64,12 @@ impl Part {
         Self { instances, lights, cameras, animation: model.animation, bounds }
     }
 
+    /// How many things are added to a scene each time that the model is placed.
+    pub fn count(&self) -> u64 {
+        let moving = self.animation.as_ref().map_or(0, |a| a.nodes.len() + a.movers.len());
+        (self.instances.len() + self.lights.len() + self.cameras.len() + moving) as u64
+    }
+
     /// How far from the origin something of it may be once it is placed.
     pub fn reach(&self, transform: &DAffine3) -> f64 {
         self.bounds.transformed(transform).max_abs()

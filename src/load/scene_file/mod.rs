@@ -25,9 +25,8 @@ mod tables;
 mod track;
 mod values;
 
-use std::path::Path;
-
 use crate::error::{Error, Place, Result};
+use crate::load::guard::{Guard, Opened};
 use crate::scene::Scene;
 
 pub use schema::schema;
@@ -38,12 +37,13 @@ pub use schema::schema;
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(path: &Path, all: bool) -> Result<Scene> {
-    let bytes = super::read(path)?;
+pub fn load(file: Opened, guard: &Guard, all: bool) -> Result<Scene> {
+    let path = &file.path.clone();
+    let bytes = file.read(guard)?;
     let text = utf8(&bytes).map_err(|e| e.at(path))?;
     let source = source::Source::new(path, text);
     let tables = toml::from_str(text).map_err(|e| report::error(&source, e))?;
-    resolve::scene(&source, tables, all)
+    resolve::scene(&source, tables, guard, all)
 }
 
 /// The text of a file, without the byte order mark that some editors put first.

@@ -1,35 +1,40 @@
 //! The models of a scene file.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::resolve::Resolver;
-use super::source::Source;
 use super::spanned::At;
 use super::tables::ModelTable;
 use crate::error::{Error, Result};
 use crate::load;
+use crate::load::guard::Opened;
+use crate::load::limits::Limit;
 use crate::load::place::{Part, Placement};
 use crate::scene::check::MAX_COORDINATE;
 
 /// The model files loaded so far, by their canonical paths and the animations that they play.
 #[derive(Default)]
-pub struct Models(HashMap<(PathBuf, Option<String>), Part>);
+pub struct Models {
+    loaded: HashMap<(PathBuf, Option<String>), Part>,
+    /// What stands in the scene so far.
+    placed: u64,
+}
 
 impl Models {
     /// Places a model in the scene; a file named twice is loaded once.
     pub fn place(&mut self, resolver: &mut Resolver<'_>, table: &ModelTable) -> Result<()> {
         let material = table.material.as_ref().map(|name| resolver.named(name)).transpose()?;
-        let path = resolver.source.file(&table.file.value);
-        let same = readable(resolver.source, &table.file, &path)?;
+        let file = open(resolver, &table.file)?;
+        let (path, same) = (file.path.clone(), file.identity.clone());
         let animation = table.animation.as_ref().map(|name| name.value.clone());
-        let part = match self.0.entry((same, animation.clone())) {
+        let part = match self.loaded.entry((same, animation.clone())) {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
                 let wanted = resolver.shown.model(&path);
-                let mut model = load::model(&path, animation.as_deref(), wanted)?;
+                let mut model = load::model(file, resolver.guard, animation.as_deref(), wanted)?;
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
                 resolver.scene.report.add(std::mem::take(&mut model.report));
@@ -59,35 +64,31 @@ impl Models {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             lights: table.lights.unwrap_or(true),
         };
+        let place = |e| resolver.source.place(&table.file.span, e);
+        self.placed += part.count();
+        resolver.guard.check(Limit::Instances, self.placed).map_err(place)?;
         part.place(&mut resolver.scene, &placement);
         Ok(())
     }
 }
 
-/// The canonical path of a model file that can be read. What is wrong with the name is the scene
-/// file's fault and is reported there; what is wrong in the file, its reader reports.
-fn readable(source: &Source<'_>, name: &At<String>, path: &Path) -> Result<PathBuf> {
-    let fail = |message: String| {
-        source.error(&name.span, format!("the model {}: {message}", path.display()))
-    };
-    let io = |e: std::io::Error| {
-        let paths = "a path is relative to the scene file's folder";
-        fail(Error::io("read", path, &e).message().to_owned()).help(paths)
-    };
-    match load::extension(path).as_str() {
+/// Opens a model file. What is wrong with the name is the scene file's fault and is reported there;
+/// what is wrong in the file, its reader reports.
+fn open(resolver: &Resolver<'_>, name: &At<String>) -> Result<Opened> {
+    let At { span, value: name } = name;
+    let source = resolver.source;
+    let fail = |message| source.cannot_have(span, "model", name, &message);
+    match load::extension(&source.file(name)).as_str() {
         "gltf" | "glb" | "obj" => {}
-        "toml" => return Err(fail("a scene file cannot stand in another one".to_owned())),
+        "toml" => return Err(fail(Error::input("a scene file cannot stand in another one"))),
         _ => {
-            return Err(fail("this kind of file is not read".to_owned())
-                .help("a model ends in .gltf, .glb or .obj"));
+            return Err(fail(
+                Error::input("this kind of file is not read")
+                    .help("a model ends in .gltf, .glb or .obj"),
+            ));
         }
     }
-    let metadata = std::fs::metadata(path).map_err(io)?;
-    if !metadata.is_file() {
-        return Err(fail("this is no file".to_owned()));
-    }
-    std::fs::File::open(path).map_err(io)?;
-    path.canonicalize().map_err(io)
+    resolver.guard.open(source.folder(), &[name]).map_err(fail)
 }
 
 /// translate · rotate · scale, the rotation about the fixed x axis first, then y, then z.

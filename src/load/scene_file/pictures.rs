@@ -10,6 +10,7 @@ use super::source::{Source, Span};
 use super::spanned::At;
 use super::tables::MapFilter;
 use crate::error::Result;
+use crate::load::guard::Guard;
 use crate::load::picture;
 use crate::scene::{Filter, Image, Scene, Texture, TextureId, Transfer};
 
@@ -24,7 +25,8 @@ pub struct Pictures {
 
 /// A picture to be decoded.
 struct File {
-    path: PathBuf,
+    /// As the scene file names it.
+    name: String,
     wanted: bool,
     /// Where it is named first.
     span: Span,
@@ -33,23 +35,30 @@ struct File {
 
 impl Pictures {
     /// The texture for a picture that a material names; it is read if it is `wanted`.
+    ///
+    /// # Errors
+    /// When there is no such file, or it may not be read.
     pub fn texture(
         &mut self,
-        source: &Source<'_>,
+        (source, guard): (&Source<'_>, &Guard),
         At { span, value: name }: &At<String>,
         transfer: Transfer,
         filter: MapFilter,
         wanted: bool,
         scene: &mut Scene,
-    ) -> TextureId {
-        let path = source.file(name);
-        let same = (path.canonicalize().unwrap_or_else(|_| path.clone()), wanted);
+    ) -> Result<TextureId> {
+        // Open files are few at a time: this one is opened again when it is read.
+        let file = guard
+            .open(source.folder(), &[name])
+            .map_err(|e| source.cannot_have(span, "picture", name, &e))?;
+        let same = (file.identity, wanted);
         let files = &mut self.files;
         let number = *self.numbers.entry(same).or_insert_with(|| {
-            files.push(File { path, wanted, span: span.clone(), shown_by: Vec::new() });
+            let (name, span) = (name.clone(), span.clone());
+            files.push(File { name, wanted, span, shown_by: Vec::new() });
             files.len() - 1
         });
-        *self.textures.entry((number, transfer, filter)).or_insert_with(|| {
+        Ok(*self.textures.entry((number, transfer, filter)).or_insert_with(|| {
             let texture = scene.add_texture(Texture {
                 transfer,
                 filter: if filter == MapFilter::Nearest { Filter::Nearest } else { Filter::Linear },
@@ -58,22 +67,22 @@ impl Pictures {
             });
             files[number].shown_by.push(texture);
             texture
-        })
+        }))
     }
 
     /// Decodes them.
     ///
     /// # Errors
     /// When one of them cannot be read; of several the one that is named first.
-    pub fn decode(self, source: &Source<'_>, scene: &mut Scene) -> Result<()> {
-        let read = |file: &File| picture::read(&file.path, file.wanted);
+    pub fn decode(self, source: &Source<'_>, guard: &Guard, scene: &mut Scene) -> Result<()> {
+        let read = |file: &File| {
+            let opened = guard.open(source.folder(), &[&file.name])?;
+            picture::read(opened, guard, file.wanted)
+        };
         let images: Vec<_> = self.files.par_iter().map(read).collect();
         for (file, image) in self.files.iter().zip(images) {
-            let image = Arc::new(image.map_err(|e| {
-                let message = format!("the picture {}: {}", file.path.display(), e.message());
-                let help = "a path is relative to the scene file's folder";
-                source.error(&file.span, message).help(help)
-            })?);
+            let fail = |e| source.cannot_have(&file.span, "picture", &file.name, &e);
+            let image = Arc::new(image.map_err(fail)?);
             for texture in &file.shown_by {
                 scene.textures[texture.0 as usize].image = image.clone();
             }

@@ -23,6 +23,7 @@ use super::tables::{
 };
 use super::values::SampleRange;
 use crate::error::Result;
+use crate::load::guard::Guard;
 use crate::scene::animation::Mover;
 use crate::scene::check::{self, MAX_COORDINATE};
 use crate::scene::{
@@ -30,8 +31,11 @@ use crate::scene::{
     Plane, Scene, Sphere, TextureId, Transfer,
 };
 
+/// So many materials that are too bright are named; the others are counted.
+const MAX_NAMED: u64 = 100;
+
 /// The scene that the tables of a file describe, with `all` pictures or those that something shows.
-pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene> {
+pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -43,6 +47,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
     let (animation, rigs) = animation::animation(source, &tables, &names)?;
     let mut resolver = Resolver {
         source,
+        guard,
         names: &names,
         shown: Shown::of(source, &tables, all),
         rigs: &rigs,
@@ -50,6 +55,7 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
         materials: HashMap::new(),
         plain: None,
         pictures: Pictures::default(),
+        too_bright: 0,
     };
     tables.camera.0.iter().try_for_each(|c| resolver.camera(c))?;
     tables.material.0.iter().try_for_each(|m| resolver.material(m))?;
@@ -59,7 +65,11 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, all: bool) -> Result<Scene
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
     let mut scene = resolver.scene;
-    resolver.pictures.decode(source, &mut scene)?;
+    resolver.pictures.decode(source, guard, &mut scene)?;
+    if let more @ 1.. = resolver.too_bright.saturating_sub(MAX_NAMED) {
+        let file = source.shown(&(0..0));
+        scene.warnings.push(format!("{file}: {more} more materials scatter more than they get"));
+    }
     Ok(scene)
 }
 
@@ -117,6 +127,8 @@ struct Reading {
 pub struct Resolver<'a> {
     /// The file.
     pub source: &'a Source<'a>,
+    /// The bounds of the load.
+    pub guard: &'a Guard,
     /// Which pictures something shows.
     pub shown: Shown,
     /// Its objects with names.
@@ -131,6 +143,8 @@ pub struct Resolver<'a> {
     plain: Option<MaterialId>,
     /// The pictures so far.
     pictures: Pictures,
+    /// How many materials scatter more light than they get.
+    too_bright: u64,
 }
 
 impl Resolver<'_> {
@@ -176,19 +190,19 @@ impl Resolver<'_> {
         let filter = table.filter.unwrap_or_default();
         let colors = Reading { transfer: Transfer::Srgb, filter, wanted };
         let data = Reading { transfer: Transfer::None, ..colors };
-        let diffuse_map = self.picture(table.diffuse_map.as_ref(), &colors);
+        let diffuse_map = self.picture(table.diffuse_map.as_ref(), &colors)?;
         let coverage = self.coverage(table, diffuse_map)?;
         let is_blended = coverage.is_some_and(|c| c.mode == AlphaMode::Blend);
-        let normal_map = self.picture(table.normal_map.as_ref(), &data);
+        let normal_map = self.picture(table.normal_map.as_ref(), &data)?;
         let material = Material {
             name: name.clone(),
             diffuse: self.color(table.diffuse.as_ref().map(|c| c.value), default.diffuse),
             diffuse_map,
             specular: self.color(table.specular, default.specular),
-            specular_map: self.picture(table.specular_map.as_ref(), &colors),
+            specular_map: self.picture(table.specular_map.as_ref(), &colors)?,
             shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
             emission: self.color(table.emission, default.emission),
-            emission_map: self.picture(table.emission_map.as_ref(), &colors),
+            emission_map: self.picture(table.emission_map.as_ref(), &colors)?,
             normal_map: normal_map.map(|texture| NormalMap { texture, scale: 1.0 }),
             coverage,
             reflect: self.color(table.reflect.as_ref().map(|c| c.value), default.reflect),
@@ -203,11 +217,15 @@ impl Resolver<'_> {
         if let Some(At { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
         {
-            self.scene.warnings.push(format!(
-                "{}: the material `{name}` scatters more light than it gets (numbers in \
-                 `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
-                self.source.shown(span)
-            ));
+            self.too_bright += 1;
+            // To find a line takes as long as there are lines before it.
+            if self.too_bright <= MAX_NAMED {
+                self.scene.warnings.push(format!(
+                    "{}: the material `{name}` scatters more light than it gets (numbers in \
+                     `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
+                    self.source.shown(span)
+                ));
+            }
         }
         if let Some(At { span, .. }) = table.transmit.as_ref().or(table.reflect.as_ref())
             && (material.reflect + material.transmit).max_element() > 1.0 + 1e-6
@@ -229,10 +247,12 @@ impl Resolver<'_> {
     }
 
     /// The texture for a picture that a material names.
-    fn picture(&mut self, file: Option<&At<String>>, read: &Reading) -> Option<TextureId> {
+    fn picture(&mut self, file: Option<&At<String>>, read: &Reading) -> Result<Option<TextureId>> {
         let Reading { transfer, filter, wanted } = *read;
-        let Self { pictures, source, scene, .. } = self;
-        file.map(|file| pictures.texture(source, file, transfer, filter, wanted, scene))
+        let Self { pictures, source, guard, scene, .. } = self;
+        let texture =
+            |file| pictures.texture((*source, *guard), file, transfer, filter, wanted, scene);
+        file.map(texture).transpose()
     }
 
     /// What the alpha of a material's picture means, if it means anything.

@@ -31,9 +31,21 @@ impl<'a> Source<'a> {
         error.at(self.path).place(Place::in_text(self.text, span.clone()))
     }
 
-    /// The path of a file that the scene names: relative to the scene file's folder.
+    /// The scene file's folder, to which the paths that it names are relative.
+    pub fn folder(&self) -> &Path {
+        self.path.parent().unwrap_or(Path::new(""))
+    }
+
+    /// The path of a file that the scene names.
     pub fn file(&self, name: &str) -> PathBuf {
-        self.path.parent().unwrap_or(Path::new("")).join(name)
+        self.folder().join(name)
+    }
+
+    /// The error that a file, a model or a picture, which the scene names is not to be had.
+    pub fn cannot_have(&self, span: &Span, what: &str, name: &str, error: &Error) -> Error {
+        let message = format!("the {what} {}: {}", self.file(name).display(), error.message());
+        let help = error.advice().unwrap_or("a path is relative to the scene file's folder");
+        self.error(span, message).help(help)
     }
 
     /// The line of a place, counted from 1.

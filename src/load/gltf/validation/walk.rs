@@ -1,5 +1,7 @@
 //! All objects of a file beside what the standard says of each.
 
+use std::collections::HashSet;
+
 use gltf::json::Value;
 
 use super::extensions::{EXTENSIONS, WITHOUT_OBJECT};
@@ -21,7 +23,7 @@ enum Step<'v> {
 
 struct Walk<'v, 'f> {
     root: &'v Value,
-    used: Vec<&'v str>,
+    used: HashSet<&'v str>,
     path: Vec<Step<'v>>,
     faults: &'f mut Faults,
 }

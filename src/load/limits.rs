@@ -1,0 +1,198 @@
+//! How much a load may make of what it reads: files from strangers can ask for anything.
+
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+
+/// Something that a load has no more of than its [`Limits`] say, whatever number of files it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Limit {
+    /// Bytes of all files that are read.
+    Bytes,
+    /// Nodes of glTF files.
+    Nodes,
+    /// Nodes of a glTF file that stand one below the other.
+    Depth,
+    /// What stands in the scene: meshes, each time that they stand there, and the lights, cameras
+    /// and movements of models.
+    Instances,
+    /// Stored vertices.
+    Vertices,
+    /// Stored triangles.
+    Triangles,
+    /// Elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
+    /// without a buffer view, and those that several accessors read from the same bytes.
+    Elements,
+    /// Keys of glTF files' animations, those of all channels together.
+    Keys,
+    /// Decoded pictures.
+    Pictures,
+    /// Pixels of all pictures beyond 16 for each byte of their files, so that what counts are
+    /// pictures that are much larger than their files. A pixel of floats counts four times.
+    Pixels,
+}
+
+impl Limit {
+    /// All limits, in the order in which they are listed.
+    pub const ALL: [Self; 10] = [
+        Self::Bytes,
+        Self::Nodes,
+        Self::Depth,
+        Self::Instances,
+        Self::Vertices,
+        Self::Triangles,
+        Self::Elements,
+        Self::Keys,
+        Self::Pictures,
+        Self::Pixels,
+    ];
+
+    /// What it is called in flags and messages.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Bytes => "bytes",
+            Self::Nodes => "nodes",
+            Self::Depth => "depth",
+            Self::Instances => "instances",
+            Self::Vertices => "vertices",
+            Self::Triangles => "triangles",
+            Self::Elements => "elements",
+            Self::Keys => "keys",
+            Self::Pictures => "pictures",
+            Self::Pixels => "pixels",
+        }
+    }
+
+    /// What it is unless somebody says otherwise. With these a small file takes less than 1 GiB,
+    /// whatever it says.
+    pub const fn default(self) -> u64 {
+        match self {
+            Self::Bytes => 1 << 30,
+            Self::Nodes | Self::Instances => 1 << 20,
+            Self::Depth => 1 << 12,
+            Self::Vertices | Self::Triangles => 1 << 27,
+            Self::Elements => 1 << 25,
+            Self::Keys => 1 << 22,
+            Self::Pictures => 1 << 14,
+            Self::Pixels => 1 << 26,
+        }
+    }
+
+    /// What is counted, for messages.
+    const fn counted(self) -> &'static str {
+        match self {
+            Self::Bytes => "bytes to read",
+            Self::Nodes => "nodes",
+            Self::Depth => "nodes one below the other",
+            Self::Instances => "instances",
+            Self::Vertices => "vertices",
+            Self::Triangles => "triangles",
+            Self::Elements => "elements of accessors beyond the bytes of the buffers",
+            Self::Keys => "keys of an animation",
+            Self::Pictures => "pictures",
+            Self::Pixels => "pixels beyond 16 for each byte of the pictures' files",
+        }
+    }
+}
+
+/// The most of each [`Limit`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits([u64; Limit::ALL.len()]);
+
+impl Default for Limits {
+    /// [`Limit::default`] of each.
+    fn default() -> Self {
+        Self(Limit::ALL.map(Limit::default))
+    }
+}
+
+impl Limits {
+    /// The most of something.
+    pub const fn get(&self, limit: Limit) -> u64 {
+        self.0[limit as usize]
+    }
+
+    /// The same, but with this much of something.
+    #[must_use]
+    pub const fn with(mut self, limit: Limit, most: u64) -> Self {
+        self.0[limit as usize] = most;
+        self
+    }
+
+    /// Checks that there is no more of something than the limit.
+    ///
+    /// # Errors
+    /// When there is.
+    pub fn check(&self, limit: Limit, found: u64) -> Result<()> {
+        let (most, name) = (self.get(limit), limit.name());
+        if found <= most {
+            return Ok(());
+        }
+        Err(Error::input(format!("{found} {} are more than the limit of {most}", limit.counted()))
+            .help(format!("`--limit {name}={found}` allows so many, if you trust the file")))
+    }
+}
+
+/// One limit as a flag names it: `NAME=NUMBER`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedLimit(pub Limit, pub u64);
+
+impl FromStr for NamedLimit {
+    type Err = Error;
+
+    /// # Errors
+    /// When the name is that of no limit, or the number is none from 0 to 2⁶⁴ − 1.
+    fn from_str(text: &str) -> Result<Self> {
+        let (name, number) =
+            text.split_once('=').ok_or_else(|| Error::input("not of the form NAME=NUMBER"))?;
+        let limit = Limit::ALL.into_iter().find(|limit| limit.name() == name).ok_or_else(|| {
+            let names = Limit::ALL.map(Limit::name).join(", ");
+            Error::input(format!("no limit is called `{name}`; they are {names}"))
+        })?;
+        match number.parse() {
+            Ok(number) => Ok(Self(limit, number)),
+            Err(_) => Err(Error::input(format!("`{number}` is no whole number below 2^64"))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_is_the_most_that_there_may_be() {
+        for limit in Limit::ALL {
+            let limits = Limits::default().with(limit, 7);
+            assert!(limits.check(limit, 7).is_ok());
+            let error = limits.check(limit, 8).unwrap_err();
+            let allows = format!("`--limit {}=8`", limit.name());
+            assert!(error.advice().is_some_and(|advice| advice.contains(&allows)), "{error}");
+        }
+    }
+
+    #[test]
+    fn other_limits_stay_as_they_are() {
+        let limits = Limits::default().with(Limit::Nodes, 7);
+        for limit in Limit::ALL.into_iter().filter(|limit| *limit != Limit::Nodes) {
+            assert_eq!(limits.get(limit), limit.default());
+        }
+    }
+
+    #[test]
+    fn a_named_limit_reads_as_it_is_written() {
+        for limit in Limit::ALL {
+            let text = format!("{}=123", limit.name());
+            assert_eq!(text.parse::<NamedLimit>().unwrap(), NamedLimit(limit, 123));
+        }
+    }
+
+    #[test]
+    fn what_is_no_limit_is_told_from_what_is_no_number() {
+        let error = |text: &str| text.parse::<NamedLimit>().unwrap_err().to_string();
+        assert!(error("pixel=3").contains("they are bytes, nodes"));
+        assert!(error("pixels=-3").contains("no whole number"));
+        assert!(error("pixels").contains("NAME=NUMBER"));
+    }
+}
