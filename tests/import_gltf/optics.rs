@@ -189,7 +189,9 @@ fn a_volume_at_no_distance_absorbs_nothing() {
             "attenuationColor": [0.5, 0.5, 0.5],
         });
         // The standard wants it above 0, which is a warning.
-        let scene = glass([1.0; 4], extensions).load().unwrap();
+        let mut model = Model::triangle();
+        model.material(glass([1.0; 4], extensions));
+        let scene = model.load().unwrap();
         assert_eq!(material(&scene).absorption, Vec3::ZERO);
     }
 }
