@@ -225,8 +225,8 @@ impl Importer<'_> {
         let weight = |i: usize| own.and_then(|w| w.get(i)).map_or(0.0, |w| f64::from(*w));
         let weights: Vec<_> = (0..morphs.len()).map(weight).collect();
         let curves = self.clip.weights(placed.index).filter(|c| c.len() == morphs.len());
-        let changes = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
-        if skin.is_none() && !(changes && !morphs.is_empty()) {
+        let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
+        if skin.is_none() && !is_morphed {
             return Ok((self.store(made, mesh), false));
         }
         let mut deformation = Deformation {
@@ -269,8 +269,8 @@ impl Importer<'_> {
 
     /// Stores a part as it was modelled, once for all nodes.
     fn store(&mut self, made: &Made, mesh: usize) -> MeshId {
-        let all = self.meshes.get_mut(&mesh).into_iter().flatten();
-        let stored = all.filter(|m| Arc::ptr_eq(&m.part.mesh, &made.part.mesh)).next();
+        let mut all = self.meshes.get_mut(&mesh).into_iter().flatten();
+        let stored = all.find(|m| Arc::ptr_eq(&m.part.mesh, &made.part.mesh));
         match stored.as_ref().and_then(|m| m.stored) {
             Some(id) => id,
             None => {

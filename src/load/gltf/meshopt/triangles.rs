@@ -79,7 +79,7 @@ impl Decoder<'_> {
         if spelled && how == 0 {
             self.next = 0;
         }
-        let a = if low == 15 { self.spelled_out()? } else { self.new() };
+        let a = if low == 15 { self.spelled_out()? } else { self.fresh() };
         let (b, is_new_b) = self.vertex(how >> 4, spelled)?;
         let (c, is_new_c) = self.vertex(how & 15, spelled)?;
         self.edges.push([b, a]);
@@ -99,7 +99,7 @@ impl Decoder<'_> {
     fn beside_edge(&mut self, edge: usize, how: usize) -> Option<[u32; 3]> {
         let [a, b] = self.edges.get(edge);
         let c = match how {
-            0 => self.new(),
+            0 => self.fresh(),
             1..13 => self.vertices.get(how),
             13 | 14 => {
                 let step = if how == 13 { u32::MAX } else { 1 };
@@ -119,16 +119,16 @@ impl Decoder<'_> {
     /// A vertex, and whether it is to be remembered.
     fn vertex(&mut self, how: u8, spelled: bool) -> Option<(u32, bool)> {
         Some(match how {
-            0 => (self.new(), true),
+            0 => (self.fresh(), true),
             15 if spelled => (self.spelled_out()?, true),
             n => (self.vertices.get(usize::from(n) - 1), false),
         })
     }
 
-    fn new(&mut self) -> u32 {
-        let new = self.next;
+    fn fresh(&mut self) -> u32 {
+        let fresh = self.next;
         self.next = self.next.wrapping_add(1);
-        new
+        fresh
     }
 
     fn spelled_out(&mut self) -> Option<u32> {
