@@ -5,8 +5,8 @@ mod common;
 
 use common::{Folder, assert_warns, png};
 use envers::error::{Error, Place};
-use envers::scene::{Material, Scene, Texels, Wrap};
-use glam::Vec3;
+use envers::scene::{AlphaMode, Material, Scene, ShininessMap, Texels, Transfer, Wrap};
+use glam::{Vec2, Vec3};
 
 /// A triangle's vertices.
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -125,6 +125,14 @@ fn vertex_colours_are_decoded_and_white_where_missing() {
     let colors = &scene.meshes[0].colors;
     assert_eq!((colors[1], colors[2]), ([1.; 3], [0.; 3]));
     assert!((colors[0][1] - 0.214_041).abs() < 1e-5, "{colors:?}");
+}
+
+#[test]
+fn vertex_colours_above_1_go_up_to_255() {
+    let scene = load("v 0 0 0 255 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3");
+    let colors = &scene.meshes[0].colors;
+    assert_eq!(colors[0], [1.0, 0.0, 0.0]);
+    assert!(colors[1][1] < 1e-3, "{colors:?}");
 }
 
 #[test]
@@ -355,12 +363,6 @@ fn glass_that_lets_nothing_through_is_none() {
 }
 
 #[test]
-fn a_picture_of_opacity_is_a_warning() {
-    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nmap_d a.png");
-    assert_warns(&scene, "textures of opacity");
-}
-
-#[test]
 fn glass_of_a_mesh_that_is_not_closed_is_a_warning() {
     let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nTf 1 1 1\nillum 7");
     assert_warns(&scene, "not closed at 3 edges");
@@ -381,6 +383,35 @@ fn missing_mtl_file_is_a_warning() {
     let scene = load(format!("mtllib none.mtl\nusemtl m\n{VERTICES}f 1 2 3"));
     assert_eq!(scene.materials[0].diffuse, Material::default().diffuse);
     assert_warns(&scene, "none.mtl");
+}
+
+#[test]
+fn an_mtl_file_of_the_models_name_takes_the_place_of_a_missing_one() {
+    let folder = Folder::new();
+    folder.write("model.mtl", "newmtl m\nKd 1 0 0");
+    let text = |line: &str| format!("{line}\nusemtl m\n{VERTICES}f 1 2 3");
+    let scene = folder.load("model.obj", text("mtllib none.mtl")).unwrap();
+    assert_eq!(scene.materials[0].diffuse, Vec3::X);
+    assert_warns(&scene, "`none.mtl` are missing");
+    let scene = folder.load("model.obj", text("")).unwrap();
+    assert_eq!((scene.materials[0].diffuse, scene.warnings.len()), (Vec3::X, 0));
+}
+
+#[test]
+fn files_are_found_in_any_case() {
+    let folder = Folder::new();
+    folder.write("Lib/M.mtl", "newmtl m\nmap_Kd TEX\\A.PNG");
+    folder.write("Lib/Tex/a.Png", png(&[RED]));
+    let text = format!("mtllib lib\\m.MTL\nusemtl m\n{VERTICES}f 1 2 3");
+    let scene = folder.load("model.obj", text).unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.textures[0].image.texels, Texels::Bytes(vec![RED]));
+}
+
+#[test]
+fn a_colour_that_is_a_spectrum_is_a_warning_with_its_line() {
+    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nKd spectral a.rfl");
+    assert_warns(&scene, "m.mtl:2 (`Kd spectral a.rfl`)");
 }
 
 #[test]
@@ -421,9 +452,129 @@ fn texture_file_with_options_spaces_and_windows_paths() {
 fn texture_options_that_are_not_read_are_a_warning() {
     let folder = Folder::new();
     folder.write("a.png", png(&[RED]));
-    let (scene, _) = with_mtl(&folder, "newmtl m\nmap_Kd -s 2 2 -mm 0.1 2 a.png");
-    assert_warns(&scene, "without their options `-s` and `-o`");
-    assert_warns(&scene, "the option `-mm 0.1 2`");
+    for option in ["-mm 0.1 2", "-bm 0.5", "-imfchan z", "-imfchan r"] {
+        let (scene, _) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {option} a.png"));
+        assert_warns(&scene, &format!("the option `{}", option.split(' ').next().unwrap()));
+    }
+}
+
+/// Loads a triangle whose material has maps that show `a.png`, of which there is nothing to say.
+fn mapped(pixel: [u8; 4], mtl: &str) -> (Scene, Material) {
+    let folder = Folder::new();
+    folder.write("a.png", png(&[pixel]));
+    let (scene, m) = with_mtl(&folder, &format!("newmtl m\n{mtl}"));
+    assert_eq!(scene.warnings, [""; 0], "{mtl}");
+    (scene, m)
+}
+
+const GREY: [u8; 4] = [128, 128, 128, 255];
+
+#[test]
+fn texture_is_scaled_and_shifted_with_v_up() {
+    let (scene, _) = mapped(RED, "map_Kd -s 2 3 1 -o 0.25 0.5 a.png");
+    // v runs down here: the picture's lower left corner, (0, 1), is where u and v are 0.
+    let at = |u, v| scene.textures[0].transform.transform_point2(Vec2::new(u, v));
+    assert_eq!(at(0.0, 1.0), Vec2::new(0.25, 0.5));
+    assert_eq!(at(1.0, 0.0), Vec2::new(2.25, -2.5));
+}
+
+#[test]
+fn picture_of_normals_is_a_normal_map() {
+    for key in ["norm", "map_Kn"] {
+        let (scene, m) = mapped([128, 128, 255, 255], &format!("{key} -bm 0.5 a.png"));
+        let map = m.normal_map.unwrap();
+        assert_eq!(map.scale, 0.5, "{key}");
+        assert_eq!(scene.textures[map.texture.0 as usize].transfer, Transfer::None);
+    }
+}
+
+#[test]
+fn bump_that_shows_normals_is_a_normal_map() {
+    for key in ["bump", "map_bump", "map_Bump"] {
+        let (_, m) = mapped([128, 128, 255, 255], &format!("{key} -bm 0.5 a.png"));
+        assert_eq!(m.normal_map.unwrap().scale, 0.5, "{key}");
+    }
+}
+
+#[test]
+fn bump_that_shows_heights_is_a_warning() {
+    let folder = Folder::new();
+    folder.write("a.png", png(&[GREY]));
+    let (scene, m) = with_mtl(&folder, "newmtl m\nbump a.png");
+    assert_eq!(m.normal_map, None);
+    assert_warns(&scene, "textures of heights (`bump`) are not read");
+    assert_eq!(scene.report.unsupported.len(), 1);
+}
+
+#[test]
+fn picture_of_opacity_covers_by_its_grey_or_its_alpha() {
+    for (pixel, options, channel) in
+        [(GREY, "", 0), ([255, 255, 255, 9], "", 3), (GREY, "-imfchan g ", 1)]
+    {
+        let (_, m) = mapped(pixel, &format!("d 0.5\nmap_d {options}a.png"));
+        let coverage = m.coverage.unwrap();
+        assert_eq!((coverage.alpha, coverage.mode), (0.5, AlphaMode::Blend));
+        assert_eq!(coverage.map.unwrap().channel, channel, "{pixel:?}");
+        assert_eq!((m.transmit, m.thin, m.ior), (Vec3::ZERO, true, 1.0));
+    }
+}
+
+#[test]
+fn glass_with_a_picture_of_opacity_is_a_warning() {
+    let folder = Folder::new();
+    folder.write("a.png", png(&[GREY]));
+    let (scene, m) = with_mtl(&folder, "newmtl m\nillum 4\nTf 1 1 1\nmap_d a.png");
+    assert_eq!((m.coverage, m.transmit), (None, Vec3::ONE));
+    assert_warns(&scene, "their materials are glass");
+}
+
+#[test]
+fn pictures_of_highlights_and_their_size() {
+    let (scene, m) = mapped(RED, "Ns 20\nmap_Ks a.png\nmap_Ns a.png");
+    assert_eq!(m.specular, Vec3::ONE);
+    assert_eq!(scene.textures[m.specular_map.unwrap().0 as usize].transfer, Transfer::Srgb);
+    let Some(ShininessMap::Factor(map)) = m.shininess_map else { panic!("{m:?}") };
+    assert_eq!((map.channel, m.shininess), (0, 20.0));
+    assert_eq!(scene.textures[map.texture.0 as usize].transfer, Transfer::None);
+}
+
+#[test]
+fn picture_of_emission() {
+    let (_, m) = mapped(RED, "map_Ke a.png");
+    assert_eq!((m.emission, m.emission_map.is_some()), (Vec3::ONE, true));
+}
+
+#[test]
+fn roughness_and_metalness_are_gltfs() {
+    let metal = optics("Kd 1 0.5 0\nPr 0.5\nPm 1");
+    assert_eq!((metal.diffuse, metal.specular), (Vec3::ZERO, Vec3::new(1.0, 0.5, 0.0)));
+    assert!((metal.shininess - 30.0).abs() < 1e-3, "{}", metal.shininess);
+    let plastic = optics("Kd 1 0.5 0\nPr 0.5");
+    assert_eq!((plastic.diffuse, plastic.metallic), (Vec3::new(1.0, 0.5, 0.0), None));
+    assert!((plastic.specular - 0.04).abs().max_element() < 1e-6, "{}", plastic.specular);
+}
+
+#[test]
+fn roughness_that_is_missing_is_that_of_the_shininess() {
+    let m = optics("Kd 1 1 1\nPm 1\nNs 30");
+    assert!((m.metallic.unwrap().factors.roughness - 0.5).abs() < 1e-6);
+}
+
+#[test]
+fn pictures_of_roughness_and_metalness_count_in_place_of_their_values() {
+    let (scene, m) = mapped(GREY, "Pr 0.1\nPm 0\nmap_Pr a.png\nmap_Pm -imfchan b a.png");
+    let maps = m.metallic.unwrap();
+    assert_eq!((maps.factors.roughness, maps.factors.metallic), (1.0, 1.0));
+    assert_eq!((maps.roughness.unwrap().channel, maps.metallic.unwrap().channel), (0, 2));
+    assert_eq!(scene.textures.len(), 1);
+}
+
+#[test]
+fn metal_with_an_opacity_is_blended() {
+    let m = optics("Kd 1 1 1\nPm 1\nPr 0\nd 0.25");
+    let coverage = m.coverage.unwrap();
+    assert_eq!((coverage.alpha, coverage.mode), (0.25, AlphaMode::Blend));
+    assert_eq!((m.reflect, m.transmit, m.thin), (Vec3::ONE, Vec3::ZERO, true));
 }
 
 #[test]

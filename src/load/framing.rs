@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::Bounds;
-use crate::scene::{Camera, Instance, Lens, Mesh, Scene};
+use crate::scene::{Camera, GRAIN, Instance, Lens, Mesh, Scene, Sphere};
 
 /// Half the vertical field of view of the framing camera, in radians: 35° in all, about that of a
 /// portrait lens, which does not distort.
@@ -43,11 +43,11 @@ pub fn frame(scene: &mut Scene) {
     }
     let [width, height] = scene.film.size.map(f64::from);
     let tangent = HALF_FOV.tan() * FILLED;
-    let extent = |along| match is_point {
-        true => extent_of_box(&bounds, along),
-        false => extent(scene, &bounds, along),
+    let extents = |along: [DVec3; 4]| match is_point {
+        true => along.map(|along| extent_of_box(&bounds, along)),
+        false => extents(scene, &bounds, along),
     };
-    camera.position = stand(extent, bounds.center(), &camera, [tangent * width / height, tangent]);
+    camera.position = stand(extents, bounds.center(), &camera, [tangent * width / height, tangent]);
     camera.name = "framing".to_owned();
     scene.cameras.push(camera);
 }
@@ -73,57 +73,62 @@ fn direction(size: DVec3) -> DVec3 {
 /// points p, the eye being c and s the tangent; and so for the other edges. The greatest px − s·pz
 /// is all that counts of the model: the plane then touches it.
 fn stand(
-    extent: impl Fn(DVec3) -> f64,
+    extents: impl Fn([DVec3; 4]) -> [f64; 4],
     middle: DVec3,
     camera: &Camera,
     [side, up]: [f64; 2],
 ) -> DVec3 {
-    let reach = |axis: DVec3, tangent: f64| {
-        let normal = axis - camera.forward * tangent;
-        // From the middle, so that less is rounded.
-        extent(normal) - middle.dot(normal)
-    };
-    let [right, left] = [1.0, -1.0].map(|sign| reach(camera.right * sign, side));
-    let [above, below] = [1.0, -1.0].map(|sign| reach(camera.up * sign, up));
+    let [right, top] = [camera.right, camera.up];
+    let edges = [(right, side), (-right, side), (top, up), (-top, up)];
+    let normals = edges.map(|(axis, tangent)| axis - camera.forward * tangent);
+    let reached = extents(normals);
+    // From the middle, so that less is rounded.
+    let [right, left, above, below] = std::array::from_fn(|i| reached[i] - middle.dot(normals[i]));
     let depth = ((right + left) / side).max((above + below) / up) / 2.0;
     let [x, y] = [(right - left) / 2.0, (above - below) / 2.0];
     middle + camera.right * x + camera.up * y - camera.forward * depth
 }
 
-/// How far a scene reaches along a direction, which is of any length; what moves, or is nothing,
-/// with its whole box.
-pub fn extent(scene: &Scene, bounds: &Bounds, along: DVec3) -> f64 {
+/// How far a scene reaches along some directions, which are of any length; what moves, or is
+/// nothing, with its whole box.
+pub fn extents<const N: usize>(scene: &Scene, bounds: &Bounds, along: [DVec3; N]) -> [f64; N] {
     if scene.animation.is_some() || scene.spheres.is_empty() && scene.triangle_count() == 0 {
-        return extent_of_box(bounds, along);
+        return along.map(|along| extent_of_box(bounds, along));
     }
-    let spheres = scene.spheres.iter().map(|s| s.center.dot(along) + s.radius * along.length());
+    let sphere = |s: &Sphere| along.map(|a| s.center.dot(a) + s.radius * a.length());
     let meshes = scene.instances.iter().filter_map(|instance| {
         let mesh = scene.meshes.get(instance.mesh.0 as usize)?;
-        Some(mesh_extent(mesh, instance, along))
+        Some(mesh_extents(mesh, instance, along))
     });
-    spheres.chain(meshes).fold(f64::NEG_INFINITY, f64::max)
+    scene.spheres.iter().map(sphere).chain(meshes).fold([f64::NEG_INFINITY; N], greater)
+}
+
+fn greater<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|i| a[i].max(b[i]))
 }
 
 fn extent_of_box(bounds: &Bounds, along: DVec3) -> f64 {
     bounds.upper.dot(along.max(DVec3::ZERO)) + bounds.lower.dot(along.min(DVec3::ZERO))
 }
 
-fn mesh_extent(mesh: &Mesh, instance: &Instance, along: DVec3) -> f64 {
-    let matrix = instance.transform.matrix3;
-    let local = matrix.transpose() * along;
-    let reach = |triangle: &[u32; 3]| {
-        let corner = |&i: &u32| mesh.positions.get(i as usize).copied().unwrap_or_default();
-        let reach = |p: [f32; 3]| DVec3::from(p.map(f64::from)).dot(local);
-        triangle.iter().map(corner).map(reach).fold(f64::NEG_INFINITY, f64::max)
+fn mesh_extents<const N: usize>(mesh: &Mesh, instance: &Instance, along: [DVec3; N]) -> [f64; N] {
+    let none = [f64::NEG_INFINITY; N];
+    let local = along.map(|along| instance.transform.matrix3.transpose() * along);
+    let reach = |triangles: &[[u32; 3]]| {
+        triangles.as_flattened().iter().fold(none, |most, &i| {
+            let corner = mesh.positions.get(i as usize).copied().unwrap_or_default();
+            let corner = DVec3::from(corner.map(f64::from));
+            greater(most, local.map(|local| corner.dot(local)))
+        })
     };
-    let most = mesh.triangles.par_iter().map(reach).reduce(|| f64::NEG_INFINITY, f64::max);
-    instance.transform.translation.dot(along) + most
+    let most = mesh.triangles.par_chunks(GRAIN).map(reach).reduce(|| none, greater);
+    std::array::from_fn(|i| instance.transform.translation.dot(along[i]) + most[i])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MaterialId, Sphere};
+    use crate::scene::MaterialId;
     use glam::DAffine3;
 
     /// Where a point falls in the picture, from −1 to 1 across it and upwards.

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::framing::extent;
-use crate::scene::{Camera, Light, LightKind, Material, Plane, Scene, Shadow};
+use super::framing::extents;
+use crate::scene::{Camera, Light, LightKind, Material, Metallic, Plane, Scene, Shadow, sharpness};
 
 /// The radiance of the backdrop, linear: a PNG shows it as #808080, on which white and black things
 /// both stand out, and which metals have to mirror.
@@ -13,25 +13,72 @@ const GAP: f64 = 1e-4;
 /// The light from everywhere, of ours and beside a file's own lights, whose shadows would be black.
 const AMBIENT: [f32; 2] = [0.2, 0.1];
 
+/// How bright a file's own lights may make white in the middle of the model, as they are.
+const SHOWN: std::ops::RangeInclusive<f32> = 0.25..=4.0;
+
 /// Gives a bare model a neutral backdrop and, where it has none, lights, as its first camera sees
 /// it: a key light from the upper left, a weaker one from the right, and a little from everywhere.
-/// A file's own lights are kept, with a little from everywhere beside them.
+/// A file's own lights are kept, with a little from everywhere beside them; where they are far
+/// brighter or darker than a picture shows, it is exposed for them, and backdrop and ambient light
+/// are as much brighter or darker.
 pub fn light(scene: &mut Scene) {
-    scene.film.background = Vec3::splat(BACKDROP);
     let has_own = !scene.lights.is_empty();
     let is_ambient = |light: &Light| light.kind == LightKind::Ambient;
-    if !has_own {
+    let mut unit = 1.0;
+    if has_own {
+        let bright = brightness(scene);
+        if bright > 0.0 && bright.is_finite() && !SHOWN.contains(&bright) {
+            unit = bright;
+        }
+    } else {
         let camera = scene.cameras.first();
         scene.lights.extend(camera.map(directional).into_iter().flatten());
     }
+    scene.film.background = Vec3::splat(BACKDROP * unit);
+    scene.materials.iter_mut().for_each(|material| blur(material, scene.film.background));
+    scene.film.exposure = -f64::from(unit).log2();
     if !scene.lights.iter().any(is_ambient) {
         scene.lights.push(Light {
             name: "ambient".to_owned(),
             kind: LightKind::Ambient,
-            intensity: Vec3::splat(AMBIENT[usize::from(has_own)]),
+            intensity: Vec3::splat(AMBIENT[usize::from(has_own)] * unit),
             shadow: Shadow::None,
         });
     }
+}
+
+/// Adds what a rough metal has of the backdrop: a reflection so blurred that no ray shows it, which,
+/// where all around looks the same, is as bright as that. Only where the metal is one everywhere.
+fn blur(material: &mut Material, backdrop: Vec3) {
+    let Some(maps) = &material.metallic else { return };
+    if maps.metallic.is_some() || maps.roughness.is_some() || material.emission != Vec3::ZERO {
+        return;
+    }
+    let Metallic { base, metallic, roughness, .. } = maps.factors;
+    let share = metallic * (1.0 - sharpness(roughness));
+    if share > 0.0 {
+        material.emission = base.min(Vec3::ONE) * share * backdrop;
+        material.emission_map = maps.base;
+        // Colours of vertices are those of the metal.
+        material.unlit = true;
+    }
+}
+
+/// How bright white is that faces all lights at once: the median of the middle of the model and the
+/// corners of its box, since a light may stand right beside one of them.
+fn brightness(scene: &Scene) -> f32 {
+    let bounds = scene.bounds();
+    let corner = |i: u32| {
+        let side = |k: u32| if i >> k & 1 == 0 { bounds.lower } else { bounds.upper };
+        DVec3::new(side(0).x, side(1).y, side(2).z)
+    };
+    let at = |point: DVec3| -> f32 {
+        let arrivals = scene.lights.iter().filter_map(|light| light.arrival(point));
+        arrivals.map(|arrival| arrival.intensity.max_element()).sum()
+    };
+    let mut found: Vec<f32> = (0..8).map(corner).chain([bounds.center()]).map(at).collect();
+    found.sort_by(f32::total_cmp);
+    found[found.len() / 2]
 }
 
 /// The key light, which casts shadows, and the fill, which brightens them.
@@ -59,7 +106,7 @@ fn directional(camera: &Camera) -> [Light; 2] {
 /// Nothing happens to a scene that has no finite lowest point.
 pub fn add_ground(scene: &mut Scene) {
     let bounds = scene.bounds_over_time();
-    let lowest = -extent(scene, &bounds, DVec3::NEG_Y);
+    let [lowest] = extents(scene, &bounds, [DVec3::NEG_Y]).map(|extent| -extent);
     if bounds.is_empty() || !lowest.is_finite() {
         return;
     }
@@ -87,7 +134,7 @@ pub fn add_ground(scene: &mut Scene) {
 mod tests {
     use super::*;
     use crate::load::framing::frame;
-    use crate::scene::{MaterialId, Sphere};
+    use crate::scene::{MaterialId, MetallicMaps, Sphere};
 
     fn ball() -> Scene {
         let mut scene = Scene::default();
@@ -119,6 +166,52 @@ mod tests {
         let lights = scene.lights.clone();
         light(&mut scene);
         assert_eq!(scene.lights, lights);
+    }
+
+    #[test]
+    fn lights_far_brighter_than_a_picture_are_exposed_for() {
+        let mut scene = ball();
+        light(&mut scene);
+        scene.lights.truncate(1);
+        scene.lights[0].intensity = Vec3::splat(1024.0);
+        light(&mut scene);
+        assert_eq!(scene.film.exposure, -10.0);
+        assert_eq!(scene.film.background, Vec3::splat(BACKDROP * 1024.0));
+        assert_eq!(scene.lights[1].intensity, Vec3::splat(AMBIENT[1] * 1024.0));
+    }
+
+    #[test]
+    fn lights_that_a_picture_shows_are_not_exposed_for() {
+        let mut scene = ball();
+        light(&mut scene);
+        scene.lights.truncate(1);
+        scene.lights[0].intensity = Vec3::splat(3.0);
+        light(&mut scene);
+        assert_eq!((scene.film.exposure, scene.film.background), (0.0, Vec3::splat(BACKDROP)));
+    }
+
+    #[test]
+    fn rough_metals_have_the_light_of_the_backdrop_and_smooth_ones_mirror_it() {
+        let emission = |metallic: f32, roughness: f32| {
+            let mut scene = ball();
+            let factors = Metallic {
+                base: Vec3::new(1.0, 0.5, 0.0),
+                metallic,
+                roughness,
+                specular: 1.0,
+                specular_color: Vec3::ONE,
+                transmission: 0.0,
+                ior: 1.5,
+            };
+            let mut material = Material::default();
+            material.set_metallic(MetallicMaps::new(factors));
+            let id = scene.add_material(material);
+            light(&mut scene);
+            scene.materials[id.0 as usize].emission / BACKDROP
+        };
+        assert_eq!(emission(1.0, 1.0), Vec3::new(1.0, 0.5, 0.0));
+        assert_eq!(emission(0.5, 1.0), Vec3::new(0.5, 0.25, 0.0));
+        assert_eq!((emission(1.0, 0.0), emission(0.0, 1.0)), (Vec3::ZERO, Vec3::ZERO));
     }
 
     #[test]

@@ -150,6 +150,22 @@ impl Material {
         Finish { diffuse, specular, shininess, emission, reflect, transmit }
     }
 
+    /// Makes it a metallic-roughness material: a plain one where its base colour is just the
+    /// diffuse one.
+    pub fn set_metallic(&mut self, maps: MetallicMaps) {
+        let Finish { diffuse, specular, shininess, reflect, transmit, .. } = maps.factors.finish();
+        (self.diffuse, self.specular, self.shininess) = (diffuse, specular, shininess);
+        (self.reflect, self.transmit) = (reflect, transmit);
+        let is_plain = MetallicMaps { base: None, ..maps.clone() }
+            == MetallicMaps::new(maps.factors)
+            && maps.factors.metallic == 0.0
+            && maps.factors.transmission == 0.0;
+        match is_plain {
+            true => (self.diffuse_map, self.metallic) = (maps.base, None),
+            false => (self.diffuse_map, self.metallic) = (None, Some(Box::new(maps))),
+        }
+    }
+
     /// Whether it is a mirror anywhere.
     pub fn may_reflect(&self) -> bool {
         self.reflect != Vec3::ZERO || self.metallic.as_ref().is_some_and(|m| m.may_reflect())

@@ -158,21 +158,7 @@ impl<'a> Maker<'_, 'a> {
         }
         self.specular(&mut maps)?;
         self.transmission(&mut maps)?;
-        let finish = maps.factors.finish();
-        material.diffuse = finish.diffuse;
-        material.specular = finish.specular;
-        material.shininess = finish.shininess;
-        material.reflect = finish.reflect;
-        material.transmit = finish.transmit;
-        let is_plain = MetallicMaps { base: None, ..maps.clone() }
-            == MetallicMaps::new(maps.factors)
-            && maps.factors.metallic == 0.0
-            && maps.factors.transmission == 0.0;
-        match is_plain {
-            // Then the base colour is the diffuse one, and nothing else depends on it.
-            true => material.diffuse_map = base_map,
-            false => material.metallic = Some(Box::new(maps)),
-        }
+        material.set_metallic(maps);
         self.inside(material);
         Ok(base_map)
     }

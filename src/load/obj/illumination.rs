@@ -22,9 +22,7 @@ pub struct Illumination {
 impl Illumination {
     /// Gives the material, whose `Ks` is its specular colour, its mirror and its glass.
     pub fn apply(&self, material: &mut Material) {
-        // Programs write 4 to 9 for opaque things too, and a filter of 1 for anything.
-        let is_glass = matches!(self.model, 4 | 6 | 7) && (self.opacity < 1.0 || self.has_filter());
-        if is_glass {
+        if self.is_glass() {
             let filter = self.filter.unwrap_or(Vec3::ONE).min(Vec3::ONE);
             let share = if self.opacity < 1.0 { 1.0 - self.opacity } else { 1.0 };
             material.transmit = filter * share;
@@ -41,6 +39,12 @@ impl Illumination {
             material.thin = true;
             material.ior = 1.0;
         }
+    }
+
+    /// Whether light goes through it as through glass.
+    pub fn is_glass(&self) -> bool {
+        // Programs write 4 to 9 for opaque things too, and a filter of 1 for anything.
+        matches!(self.model, 4 | 6 | 7) && (self.opacity < 1.0 || self.has_filter())
     }
 
     fn has_filter(&self) -> bool {

@@ -4,65 +4,61 @@
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use glam::Vec3;
-
-use super::illumination::Illumination;
+use super::files::find;
 use super::lines::decode;
-use super::map::Map;
+use super::material::Maker;
 use super::mtl::{UNNAMED, clean};
-use crate::error::{Error, Result};
+use super::textures::Textures;
+use crate::error::Error;
 use crate::load::guard::{Guard, Opened};
-use crate::load::picture;
 use crate::load::tally::Tally;
-use crate::scene::{Material, MaterialId, Scene, Texture, TextureId, Wrap};
-
-/// The range of shininess that is drawn.
-const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
+use crate::scene::{Material, MaterialId, Scene};
 
 /// The materials that an OBJ file can name, each made when a face first uses it.
 pub struct Library<'a> {
     guard: &'a Guard,
-    /// Whether anything shows the pictures; otherwise they are only named.
-    wanted: bool,
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     made: HashMap<String, MaterialId>,
-    textures: HashMap<(String, bool), TextureId>,
+    textures: Textures<'a>,
     /// The files that were read.
     files: HashSet<PathBuf>,
 }
 
 impl<'a> Library<'a> {
-    /// Reads the files that an OBJ file's `mtllib` lines name, beside it in `folder`; pictures are
-    /// read where they are `wanted`.
-    pub fn read(
-        names: &[String],
-        folder: &Path,
-        guard: &'a Guard,
-        wanted: bool,
-        tally: &mut Tally,
-    ) -> Self {
-        let mut library = Self {
-            guard,
-            wanted,
-            sources: HashMap::new(),
-            made: HashMap::new(),
-            textures: HashMap::new(),
-            files: HashSet::new(),
-        };
+    /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. In place
+    /// of one that is missing, or where none is named, that of the OBJ file's own name is read.
+    pub fn read(names: &[String], path: &Path, guard: &'a Guard, tally: &mut Tally) -> Self {
+        let textures = Textures::new(guard);
+        let (sources, made, files) = Default::default();
+        let mut library = Self { guard, sources, made, textures, files };
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let own = path.with_extension("mtl");
+        let own = || find(guard, folder, &own.file_name().unwrap_or_default().to_string_lossy());
         for name in names {
             // A name may hold spaces, and a line several names.
-            match find(guard, folder, name) {
-                Ok(file) => library.add(file, tally),
-                Err(whole) => match names_of_line(name).as_slice() {
-                    [_] => say_missing(name, &whole, tally),
-                    names => names.iter().for_each(|name| match find(guard, folder, name) {
-                        Ok(file) => library.add(file, tally),
-                        Err(error) => say_missing(name, &error, tally),
-                    }),
-                },
+            if let Ok(file) = find(guard, folder, name) {
+                library.add(file, tally);
+                continue;
             }
+            for name in names_of_line(name) {
+                match (find(guard, folder, &name), own()) {
+                    (Ok(file), _) => library.add(file, tally),
+                    (Err(error), Ok(own)) => {
+                        tally.say(format!(
+                            "the materials `{name}` are missing ({error}); those of {} take their \
+                             place",
+                            own.path.display()
+                        ));
+                        library.add(own, tally);
+                    }
+                    (Err(error), Err(_)) => tally
+                        .say(format!("the materials `{name}` are missing and drawn grey: {error}")),
+                }
+            }
+        }
+        if let (true, Ok(own)) = (names.is_empty(), own()) {
+            library.add(own, tally);
         }
         library
     }
@@ -103,7 +99,10 @@ impl<'a> Library<'a> {
             return id;
         }
         let material = match self.sources.remove(name) {
-            Some((source, folder)) => self.make(&source, &folder, scene, tally),
+            Some((source, folder)) => {
+                let textures = &mut self.textures;
+                Maker { source: &source, folder: &folder, textures, scene, tally }.make()
+            }
             None => {
                 if !name.is_empty() {
                     let reason = "{} materials are in no MTL file and drawn grey";
@@ -117,106 +116,10 @@ impl<'a> Library<'a> {
         id
     }
 
-    fn make(
-        &mut self,
-        source: &tobj::Material,
-        folder: &Path,
-        scene: &mut Scene,
-        tally: &mut Tally,
-    ) -> Material {
-        let name = || format!("`{}`", source.name);
-        let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
-        let diffuse_map = source.diffuse_texture.as_deref();
-        let emission_map = other("map_Ke").or(other("map_ke"));
-        let mut material = Material { name: source.name.clone(), ..Material::default() };
-        if let Some(diffuse) = source.diffuse {
-            material.diffuse = Vec3::from(diffuse);
-        } else if diffuse_map.is_some() {
-            material.diffuse = Vec3::ONE;
-        }
-        material.diffuse_map = diffuse_map.and_then(|m| self.texture(m, folder, scene, tally));
-        // Models 0 and 1 are those without a highlight.
-        if source.illumination_model.is_none_or(|model| model > 1) {
-            material.specular = source.specular.map_or(Vec3::ZERO, Vec3::from);
-        }
-        if let Some(shininess) = source.shininess {
-            material.shininess = shininess.clamp(*SHININESS.start(), *SHININESS.end());
-        }
-        material.emission = source.emissive.map_or(Vec3::ZERO, Vec3::from);
-        if let Some(map) = emission_map {
-            if source.emissive.is_none() {
-                material.emission = Vec3::ONE;
-            }
-            material.emission_map = self.texture(map, folder, scene, tally);
-        }
-        let illumination = illumination(source);
-        illumination.apply(&mut material);
-        if illumination.opacity == 0.0 {
-            tally.add("{} materials have an opacity of 0 (d 0, or Tr 1)", 1, name);
-        }
-        let pictures = [&source.specular_texture, &source.shininess_texture];
-        let pictures = pictures.into_iter().flatten().count();
-        tally.unsupported("{} textures of highlights are not read", pictures as u64, name);
-        let bumps = source.normal_texture.iter().count() + other("norm").iter().count();
-        tally.unsupported("{} textures of bumps and normals are not read", bumps as u64, name);
-        let metal = ["Pr", "Pm", "map_Pr", "map_Pm"].into_iter().flat_map(other).count();
-        tally.unsupported("{} values of roughness and metalness are not read", metal as u64, name);
-        let opacities = u64::from(source.dissolve_texture.is_some());
-        tally.unsupported("{} textures of opacity are not read", opacities, name);
-        material
-    }
-
-    fn texture(
-        &mut self,
-        value: &str,
-        folder: &Path,
-        scene: &mut Scene,
-        tally: &mut Tally,
-    ) -> Option<TextureId> {
-        let map = Map::parse(value)?;
-        if (map.scale, map.offset) != ([1.0; 2], [0.0; 2]) {
-            let reason = "{} textures are laid on without their options `-s` and `-o`";
-            tally.unsupported(reason, 1, || format!("`{value}`"));
-        }
-        for option in &map.ignored {
-            let reason = format!("the option `{option}` of {{}} textures is not read");
-            tally.unsupported(&reason, 1, || format!("`{value}`"));
-        }
-        let file = find(self.guard, folder, &map.file);
-        let shown = folder.join(&map.file).display().to_string();
-        let name = file.as_ref().map_or(shown, |file| file.identity.display().to_string());
-        let key = (name, map.clamp);
-        if let Some(&id) = self.textures.get(&key) {
-            return Some(id);
-        }
-        let read = file.and_then(|file| picture::read(file, self.guard, self.wanted));
-        let image = read.unwrap_or_else(|error| {
-            let error = error.at(&folder.join(&*map.file));
-            tally.placeholder(format!("{error}; a magenta checker takes its place"));
-            picture::placeholder(&map.file)
-        });
-        let id = scene.add_texture(Texture {
-            wrap: [if map.clamp { Wrap::Clamp } else { Wrap::Repeat }; 2],
-            ..Texture::new(Arc::new(image))
-        });
-        self.textures.insert(key, id);
-        Some(id)
-    }
-}
-
-/// What [`clean`] has left of a material's illumination.
-fn illumination(source: &tobj::Material) -> Illumination {
-    let other = |key: &str| source.unknown_param.get(key).map(String::as_str);
-    let transparency = other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
-    let filter = other("Tf").map(|tf| {
-        let mut numbers = tf.split_whitespace().flat_map(str::parse);
-        Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
-    });
-    Illumination {
-        model: source.illumination_model.unwrap_or(2),
-        opacity: source.dissolve.unwrap_or(1.0 - transparency).clamp(0.0, 1.0),
-        filter,
-        ior: source.optical_density,
+    /// Decodes the pictures that the materials show, if they are `wanted`; otherwise they are only
+    /// named.
+    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
+        self.textures.decode(wanted, scene, tally);
     }
 }
 
@@ -236,18 +139,6 @@ fn names_of_line(line: &str) -> Vec<String> {
     }
     names.extend(name.split(' ').filter(|n| !n.is_empty()).map(str::to_owned));
     names.into_iter().map(|n| n.replace('\0', " ")).collect()
-}
-
-/// A file named in a model: as it stands, or as written on Windows, or beside the model when the
-/// folder it was in is on another machine.
-fn find(guard: &Guard, folder: &Path, name: &str) -> Result<Opened> {
-    let slashes = name.replace('\\', "/");
-    let last = slashes.rsplit('/').next().unwrap_or_default();
-    guard.open(folder, &[name, &slashes, last])
-}
-
-fn say_missing(name: &str, error: &Error, tally: &mut Tally) {
-    tally.say(format!("the materials `{name}` are missing and drawn grey: {error}"));
 }
 
 #[cfg(test)]

@@ -64,8 +64,15 @@ pub struct Statement<'a> {
 /// The lines of a text, with those that end in `\` joined.
 pub fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let (mut start, mut next) = (0, 1);
+    let joins = memchr::memchr(b'\\', text.as_bytes()).is_some();
     std::iter::from_fn(move || {
         let rest = text.get(start..).filter(|rest| !rest.is_empty())?;
+        if !joins {
+            let (length, number) = (end_of_line(rest.as_bytes()), next);
+            let line = Line { text: rest.get(..length)?, start, number };
+            (start, next) = (start + length, next + 1);
+            return Some(line);
+        }
         let (mut length, mut count) = (0, 0);
         loop {
             let line = rest.get(length..).unwrap_or_default();

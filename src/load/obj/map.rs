@@ -11,6 +11,10 @@ pub struct Map {
     pub scale: [f32; 2],
     /// What is added to them then, by `-o`.
     pub offset: [f32; 2],
+    /// How much a bump counts, by `-bm`.
+    pub gain: Option<f32>,
+    /// The channel that counts, by `-imfchan`: 0 to 3, red, green, blue or alpha (`m`, the matte).
+    pub channel: Option<u8>,
     /// Options that are not read.
     pub ignored: Vec<String>,
 }
@@ -23,6 +27,8 @@ impl Map {
             clamp: false,
             scale: [1.0; 2],
             offset: [0.0; 2],
+            gain: None,
+            channel: None,
             ignored: Vec::new(),
         };
         let mut file = text.trim();
@@ -50,8 +56,14 @@ impl Map {
             "-mm" if values.split_whitespace().map(str::parse).eq([Ok(0.0f32), Ok(1.0)]) => {}
             "-t" if words.all(|w| w.parse() == Ok(0.0f32)) => {}
             "-cc" if values == "off" => {}
+            "-bm" if read_one(values).is_some() => self.gain = read_one(values),
+            "-imfchan" if values.len() == 1 && "rgbm".contains(values) => {
+                self.channel = "rgbm".find(values).map(|at| at as u8);
+            }
+            // Luminance is that of a grey picture, whose channels are alike.
+            "-imfchan" if values == "l" => self.channel = Some(0),
             // These are about how pixels are mixed and kept.
-            "-blendu" | "-blendv" | "-boost" | "-texres" | "-type" | "-bm" | "-imfchan" => {}
+            "-blendu" | "-blendv" | "-boost" | "-texres" | "-type" => {}
             other => self.ignored.push(format!("{other} {values}")),
         }
     }
@@ -64,6 +76,10 @@ fn read<'a>(numbers: &mut [f32], words: impl Iterator<Item = &'a str>) {
             *number = value;
         }
     }
+}
+
+fn read_one(text: &str) -> Option<f32> {
+    text.parse().ok().filter(|x: &f32| x.is_finite())
 }
 
 /// An option at the beginning of a text, and what follows it; a name may start with a dash, too.
@@ -134,6 +150,14 @@ mod tests {
         assert!(map.clamp);
         assert_eq!((map.scale, map.offset), ([2.0, 1.0], [0.5, -1.0]));
         assert!(!Map::parse("-clamp off a").unwrap().clamp);
+    }
+
+    #[test]
+    fn gain_and_channel_are_read() {
+        let map = Map::parse("-bm 0.3 -imfchan m a").unwrap();
+        assert_eq!((map.gain, map.channel), (Some(0.3), Some(3)));
+        let map = Map::parse("-bm x -imfchan z a").unwrap();
+        assert_eq!((map.gain, map.channel, map.ignored.len()), (None, None, 2));
     }
 
     #[test]

@@ -5,10 +5,12 @@
 //! docs/formats.md.
 
 mod corners;
+mod files;
 mod illumination;
 mod library;
 mod lines;
 mod map;
+mod material;
 mod mtl;
 mod plain;
 mod polygon;
@@ -16,6 +18,8 @@ mod rewrite;
 mod segments;
 mod smooth;
 mod sorter;
+mod stream;
+mod textures;
 mod vertices;
 
 use std::path::Path;
@@ -45,20 +49,20 @@ pub fn load(file: Opened, guard: &Guard, wanted: bool) -> Result<Scene> {
 fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scene> {
     let mut tally = Tally::default();
     let text = lines::decode(bytes)?;
-    let made = rewrite::rewrite(&text, &mut tally)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut library = Library::read(&made.libraries, folder, guard, wanted, &mut tally);
+    let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
+        let options = tobj::LoadOptions { single_index: true, ..Default::default() };
+        // No `mtllib` is left in the text.
+        tobj::load_obj_buf(made, &options, |_| Err(tobj::LoadError::GenericFailure))
+    })?;
+    let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
+    let mut library = Library::read(&made.libraries, path, guard, &mut tally);
     let mut scene = Scene::default();
-    let options = tobj::LoadOptions { single_index: true, ..Default::default() };
-    // No `mtllib` is left in the text.
-    let no_library = |_: &Path| Err(tobj::LoadError::GenericFailure);
-    let (models, _) = tobj::load_obj_buf(&mut made.reader(&text), &options, no_library)
-        .map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
+    let unit = unit_of_colors(&models);
     for model in models {
         let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
             continue;
         };
-        let Some(mesh) = mesh(&model.mesh, part, &mut tally) else { continue };
+        let Some(mesh) = mesh(&model.mesh, part, unit, &mut tally) else { continue };
         let name = part.setting.material.as_deref().unwrap_or_default();
         let material = library.get(name, &mut scene, &mut tally);
         guard.take(Limit::Vertices, mesh.positions.len() as u64)?;
@@ -67,6 +71,7 @@ fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scen
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }
+    library.decode(wanted, &mut scene, &mut tally);
     if scene.instances.is_empty() {
         tally.say("there is no face in the file");
     }
@@ -74,8 +79,14 @@ fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scen
     Ok(scene)
 }
 
-/// The mesh of a part; nothing where it has no triangle.
-fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
+/// What stands for a full vertex colour: 1, or 255 where a value is above 1.
+fn unit_of_colors(models: &[tobj::Model]) -> f32 {
+    let mut values = models.iter().flat_map(|model| &model.mesh.vertex_color);
+    if values.any(|&x| x > 1.0) { 255.0 } else { 1.0 }
+}
+
+/// The mesh of a part; nothing where it has no triangle. Its vertices' colours go up to `unit`.
+fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Tally) -> Option<Mesh> {
     let name = part.setting.name.as_deref();
     let place = name.unwrap_or("the object without a name");
     let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
@@ -84,7 +95,7 @@ fn mesh(source: &tobj::Mesh, part: &Part, tally: &mut Tally) -> Option<Mesh> {
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
     let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x));
+    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / unit));
     let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
     let mut mesh = Mesh {
         name: name.unwrap_or_default().to_owned(),

@@ -6,6 +6,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::lines::lines;
+use glam::{Mat3, Vec3};
+
 use crate::load::tally::Tally;
 
 /// The name, for tobj, of a material whose name is empty.
@@ -128,6 +130,9 @@ impl Value {
                 let is_off = text.split_whitespace().all(|w| number(w) == Some(0.0));
                 return if is_off { Ok(None) } else { Err(Unusable::Unread(what)) };
             }
+            Self::Color if text.starts_with("xyz ") => {
+                xyz(text).map(|c| format!("{} {} {}", c.x, c.y, c.z))
+            }
             Self::Color => {
                 let numbers: Option<Vec<f32>> = text.split_whitespace().map(number).collect();
                 match numbers.as_deref() {
@@ -155,6 +160,25 @@ impl Value {
     }
 }
 
+/// `xyz` and a colour in CIE XYZ (D65): linear Rec. 709, by the matrix of IEC 61966-2-1.
+fn xyz(text: &str) -> Option<Vec3> {
+    let to_rec_709 = Mat3::from_cols_array_2d(&[
+        [3.240_6, -0.968_9, 0.055_7],
+        [-1.537_2, 1.875_8, -0.204_0],
+        [-0.498_6, 0.041_5, 1.057_0],
+    ]);
+    let number = |word: &str| word.parse().ok().filter(|x: &f32| x.is_finite());
+    let numbers: Option<Vec<f32>> = text.split_whitespace().skip(1).map(number).collect();
+    // What no screen can show is brought to its edge.
+    let color = |x, y, z| (to_rec_709 * Vec3::new(x, y, z)).max(Vec3::ZERO);
+    match numbers?[..] {
+        [x] => Some(color(x, x, x)),
+        [x, y, z, ..] => Some(color(x, y, z)),
+        _ => None,
+    }
+    .filter(|color| color.is_finite())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,6 +198,13 @@ mod tests {
         let first = "a.obj: 1 lines are ignored: `Ks` wants three numbers from 0 up, or one, at \
                      a.mtl:3 (`Ks 1 2`)";
         assert_eq!(said[0], first);
+    }
+
+    #[test]
+    fn white_in_xyz_is_white() {
+        let white = xyz("xyz 0.9505 1 1.089").unwrap();
+        assert!((white - Vec3::ONE).abs().max_element() < 1e-3, "{white}");
+        assert_eq!((xyz("xyz 1 1"), xyz("xyz nan")), (None, None));
     }
 
     #[test]

@@ -5,16 +5,16 @@
 //! exist, sorted into [`Part`]s whose faces all have the same attributes. Nearly all of it are
 //! stretches of the file as it stands. Threads share the file in chunks: they first [survey] them,
 //! since a line's meaning depends on what stands before it, and a face may name a vertex that
-//! stands after it; and then [sort](super::sorter) their lines.
+//! stands after it; and then [sort](super::sorter) their lines, while tobj already reads what they
+//! have [done](super::stream).
 
-use std::collections::HashMap;
-use std::io::BufRead;
+use std::sync::mpsc;
 
 use rayon::prelude::*;
 
 use super::lines::{Statement, end_of_line, is_open, lines};
-use super::segments::Segments;
-use super::sorter::{Sorted, Sorter};
+use super::sorter::Sorter;
+use super::stream::Stream;
 use crate::error::Result;
 use crate::load::tally::Tally;
 
@@ -87,28 +87,25 @@ pub struct Place {
     pub setting: Setting,
 }
 
-/// An OBJ file rewritten.
+/// What an OBJ file says beside vertices and faces.
 #[derive(Debug, Default)]
 pub struct Rewritten {
-    segments: Segments,
     /// The parts; tobj finds them as groups that are named by their number.
     pub parts: Vec<Part>,
     /// The material libraries that the file names.
     pub libraries: Vec<String>,
 }
 
-impl Rewritten {
-    /// What tobj is to read, made of the text that was rewritten.
-    pub fn reader<'a>(&'a self, text: &'a str) -> impl BufRead + 'a {
-        self.segments.reader(text)
-    }
-}
-
-/// Rewrites a file.
+/// Rewrites a file for `read`, on a thread of its own, and gives what it makes of it.
 ///
 /// # Errors
-/// When a line's numbers are no numbers; the error names the line.
-pub fn rewrite(text: &str, tally: &mut Tally) -> Result<Rewritten> {
+/// When a line's numbers are no numbers; the error names the line. What `read` then makes of half
+/// a file is dropped.
+pub fn rewrite<T: Send>(
+    text: &str,
+    tally: &mut Tally,
+    read: impl FnOnce(&mut Stream) -> T + Send,
+) -> Result<(Rewritten, T)> {
     let chunks = chunks(text);
     let surveys: Vec<Place> = chunks.par_iter().map(|chunk| survey(chunk)).collect();
     let mut here = Place::default();
@@ -117,40 +114,24 @@ pub fn rewrite(text: &str, tally: &mut Tally) -> Result<Rewritten> {
         let next = here.then(&there);
         places.push(std::mem::replace(&mut here, next));
     }
-    let sorted: Vec<Result<(Sorted, Tally)>> = chunks
-        .into_par_iter()
-        .zip(places)
-        .map(|(chunk, place)| Sorter::new(chunk, place, here.counts).sort())
-        .collect();
-    merge(sorted, tally)
-}
-
-/// Puts the chunks' parts together, in the order in which they come up in the file.
-fn merge(sorted: Vec<Result<(Sorted, Tally)>>, tally: &mut Tally) -> Result<Rewritten> {
-    let mut made = Rewritten::default();
-    let mut numbers: HashMap<Part, usize> = HashMap::new();
-    let mut faces: Vec<Segments> = Vec::new();
-    for chunk in sorted {
-        let (chunk, said) = chunk?;
-        tally.append(said);
-        made.segments.append(chunk.vertices);
-        made.libraries.extend(chunk.libraries);
-        for (part, segments) in chunk.parts {
-            let number = *numbers.entry(part.clone()).or_insert(faces.len());
-            match faces.get_mut(number) {
-                Some(faces) => faces.append(segments),
-                None => {
-                    made.parts.push(part);
-                    faces.push(segments);
-                }
+    let (senders, receivers): (Vec<_>, Vec<_>) = chunks.iter().map(|_| mpsc::channel()).unzip();
+    let mut stream = Stream::new(text, receivers);
+    std::thread::scope(|threads| {
+        // It waits for the others, and so must be none of rayon's.
+        let reader = threads.spawn(|| {
+            let made = read(&mut stream);
+            stream.finish(tally).map(|rewritten| (rewritten, made))
+        });
+        rayon::scope_fifo(|sorters| {
+            for ((chunk, place), sender) in chunks.into_iter().zip(places).zip(senders) {
+                // Nobody takes it after an error.
+                sorters.spawn_fifo(move |_| {
+                    let _ = sender.send(Sorter::new(chunk, place, here.counts).sort());
+                });
             }
-        }
-    }
-    for (i, faces) in faces.into_iter().enumerate() {
-        made.segments.write().push_str(&format!("g {i}\n"));
-        made.segments.append(faces);
-    }
-    Ok(made)
+        });
+        reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
 }
 
 /// A text cut after lines that the next one does not continue.
@@ -211,7 +192,7 @@ impl Counts {
         }
         // Six numbers, whatever their form.
         self.colored |= kind == 0 && {
-            let spaces = line.bytes().filter(|b| matches!(b, b' ' | b'\t')).count();
+            let spaces = line.bytes().fold(0u32, |n, b| n + u32::from((b == b' ') | (b == b'\t')));
             spaces > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
         };
     }
@@ -236,6 +217,7 @@ impl Place {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::BufRead;
 
     #[test]
     fn chunks_end_where_lines_do_and_make_the_text() {
@@ -253,8 +235,8 @@ mod tests {
         let text =
             format!("{vertices}usemtl a\n{filler}f -3 -2 -1\n{filler}{vertices}f 4 5 6\np 1");
         let mut tally = Tally::default();
-        let made = rewrite(&text, &mut tally).unwrap();
-        let read: Vec<_> = made.reader(&text).lines().map(Result::unwrap).collect();
+        let read = |made: &mut Stream| made.lines().map(Result::unwrap).collect::<Vec<_>>();
+        let (made, read) = rewrite(&text, &mut tally, read).unwrap();
         let read: Vec<_> = read.iter().filter(|l| !l.starts_with('#')).collect();
         assert_eq!(read[6..], ["g 0", "f 1 2 3", "f 4 5 6"]);
         assert_eq!(made.parts.len(), 1);

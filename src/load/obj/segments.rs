@@ -1,15 +1,24 @@
 //! A text in pieces: stretches of another text, and what had to be written anew.
 
-use std::io::{self, BufRead, Read};
 use std::ops::Range;
 
 /// A piece.
 #[derive(Debug, PartialEq)]
-enum Segment {
+pub enum Segment {
     /// A stretch of the original.
     Kept(Range<usize>),
     /// What takes the place of something in it.
     Written(String),
+}
+
+impl Segment {
+    /// What the piece says, given the original.
+    pub fn text<'a>(&'a self, original: &'a str) -> &'a str {
+        match self {
+            Self::Kept(range) => original.get(range.clone()).unwrap_or_default(),
+            Self::Written(text) => text,
+        }
+    }
 }
 
 /// Pieces of whole lines.
@@ -40,46 +49,14 @@ impl Segments {
     pub fn append(&mut self, mut other: Self) {
         self.0.append(&mut other.0);
     }
-
-    /// The whole, to be read.
-    pub fn reader<'a>(&'a self, original: &'a str) -> Reader<'a> {
-        let text = |segment: &'a Segment| match segment {
-            Segment::Kept(range) => original.get(range.clone()).unwrap_or_default(),
-            Segment::Written(text) => text,
-        };
-        // The last line of a file may lack its end.
-        let closed = |text: &'a str| [text, if text.ends_with('\n') { "" } else { "\n" }];
-        Reader { rest: Box::new(self.0.iter().map(text).flat_map(closed)), piece: &[] }
-    }
 }
 
-/// Reads pieces one after the other.
-pub struct Reader<'a> {
-    rest: Box<dyn Iterator<Item = &'a str> + 'a>,
-    piece: &'a [u8],
-}
+impl IntoIterator for Segments {
+    type Item = Segment;
+    type IntoIter = std::vec::IntoIter<Segment>;
 
-impl BufRead for Reader<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        while self.piece.is_empty() {
-            match self.rest.next() {
-                Some(text) => self.piece = text.as_bytes(),
-                None => break,
-            }
-        }
-        Ok(self.piece)
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.piece = self.piece.get(count..).unwrap_or_default();
-    }
-}
-
-impl Read for Reader<'_> {
-    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-        let count = self.fill_buf()?.read(out)?;
-        self.consume(count);
-        Ok(count)
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
     }
 }
 
@@ -88,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pieces_are_read_in_their_order_and_end_in_line_breaks() {
+    fn pieces_that_join_are_one() {
         let original = "a\nb\n#\nc\nd";
         let mut segments = Segments::default();
         segments.keep(0..2, false);
@@ -96,8 +73,7 @@ mod tests {
         segments.write().push_str("x\n");
         segments.write().push_str("y\n");
         segments.keep(8..9, false);
-        let lines: Vec<_> = segments.reader(original).lines().map(Result::unwrap).collect();
-        assert_eq!(lines, ["a", "b", "x", "y", "d"]);
-        assert_eq!(segments.0.len(), 3);
+        let texts: Vec<_> = segments.into_iter().map(|s| s.text(original).to_owned()).collect();
+        assert_eq!(texts, ["a\nb\n", "x\ny\n", "d"]);
     }
 }

@@ -1,0 +1,199 @@
+//! The textures of an OBJ file's materials. What they show is decoded when all are known, each
+//! picture once.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::{Affine2, Vec2};
+use rayon::prelude::*;
+
+use super::files::find;
+use super::map::Map;
+use crate::load::guard::Guard;
+use crate::load::picture;
+use crate::load::tally::Tally;
+use crate::scene::{
+    Channel, Image, MaterialId, NormalMap, Scene, Texture, TextureId, Transfer, Wrap,
+};
+
+/// How much of a picture must look like normals for it to be one of normals.
+const MOSTLY: f64 = 0.9;
+
+/// The textures of a file.
+pub struct Textures<'a> {
+    guard: &'a Guard,
+    /// Those in the scene; no two are alike but for the picture's own.
+    made: Vec<(Key, TextureId)>,
+    /// Pictures that are still to be decoded.
+    pictures: Vec<Picture>,
+    /// Materials whose opacity is in the picture's alpha, if it has one.
+    opacities: Vec<MaterialId>,
+    /// Materials with a `bump` that may be a picture of normals, and how much it counts.
+    bumps: Vec<(MaterialId, TextureId, f32, String)>,
+}
+
+/// What makes a texture different from others.
+#[derive(PartialEq)]
+struct Key {
+    /// The picture's canonical path, or the one that it should have.
+    path: PathBuf,
+    clamp: bool,
+    transfer: Transfer,
+    transform: Affine2,
+}
+
+/// A picture that is still to be decoded, and the textures that show it.
+struct Picture {
+    path: PathBuf,
+    /// The folder of the MTL file, and what that calls it.
+    folder: PathBuf,
+    name: String,
+    shown_by: Vec<TextureId>,
+}
+
+impl<'a> Textures<'a> {
+    /// None yet.
+    pub fn new(guard: &'a Guard) -> Self {
+        let (made, pictures, opacities, bumps) = Default::default();
+        Self { guard, made, pictures, opacities, bumps }
+    }
+
+    /// The texture of a statement, whose file is beside the MTL file in `folder`.
+    pub fn get(
+        &mut self,
+        map: &Map,
+        transfer: Transfer,
+        folder: &Path,
+        scene: &mut Scene,
+    ) -> TextureId {
+        // Files are many, and open ones few: this one is opened again when it is decoded.
+        let found = find(self.guard, folder, &map.file);
+        let path = found.map_or_else(|_| folder.join(&map.file), |file| file.identity);
+        let key = Key { path, clamp: map.clamp, transfer, transform: transform(map) };
+        if let Some(&(_, id)) = self.made.iter().find(|(made, _)| *made == key) {
+            return id;
+        }
+        let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
+        let id = scene.add_texture(Texture {
+            transfer,
+            wrap: [wrap; 2],
+            mipmap: true,
+            transform: key.transform,
+            ..Texture::new(Arc::new(picture::placeholder(&map.file)))
+        });
+        match self.pictures.iter_mut().find(|picture| picture.path == key.path) {
+            Some(picture) => picture.shown_by.push(id),
+            None => {
+                let (path, folder) = (key.path.clone(), folder.to_owned());
+                let (name, shown_by) = (map.file.clone(), vec![id]);
+                self.pictures.push(Picture { path, folder, name, shown_by });
+            }
+        }
+        self.made.push((key, id));
+        id
+    }
+
+    /// Notes that a material's opacity is in its picture's alpha, where that has one.
+    pub fn prefer_alpha(&mut self, material: MaterialId) {
+        self.opacities.push(material);
+    }
+
+    /// Notes that a `bump` may be a picture of normals.
+    pub fn may_be_normals(
+        &mut self,
+        material: MaterialId,
+        texture: TextureId,
+        scale: f32,
+        name: &str,
+    ) {
+        self.bumps.push((material, texture, scale, name.to_owned()));
+    }
+
+    /// Decodes the pictures, side by side, if they are `wanted`, and settles what depends on them.
+    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
+        let decode = |picture: Picture| {
+            let file = find(self.guard, &picture.folder, &picture.name);
+            let image = file.and_then(|file| picture::read(file, self.guard, wanted));
+            (image.map_err(|e| e.at(&picture.folder.join(&picture.name))), picture)
+        };
+        let decoded: Vec<_> = self.pictures.into_par_iter().map(decode).collect();
+        for (image, picture) in decoded {
+            let image = Arc::new(image.unwrap_or_else(|error| {
+                tally.placeholder(format!("{error}; a magenta checker takes its place"));
+                picture::placeholder(&picture.name)
+            }));
+            let shown_by = picture.shown_by.iter();
+            shown_by.for_each(|id| scene.textures[id.0 as usize].image = image.clone());
+        }
+        for material in self.opacities {
+            let Scene { materials, textures, .. } = scene;
+            let coverage = &mut materials[material.0 as usize].coverage;
+            if let Some(Channel { texture, channel }) =
+                coverage.as_mut().and_then(|c| c.map.as_mut())
+            {
+                let image = &textures[texture.0 as usize].image;
+                if image.is_read() && !image.is_full(3) {
+                    *channel = 3;
+                }
+            }
+        }
+        for (material, texture, scale, name) in self.bumps {
+            let image = &scene.textures[texture.0 as usize].image;
+            if !image.is_read() {
+                continue;
+            }
+            if are_normals(image) {
+                let map = NormalMap { texture, scale };
+                scene.materials[material.0 as usize].normal_map = Some(map);
+            } else {
+                let reason = "{} textures of heights (`bump`) are not read";
+                tally.unsupported(reason, 1, || format!("`{name}`"));
+            }
+        }
+    }
+}
+
+/// From our texture coordinates, whose v runs down, to those on the picture: MTL scales those whose v
+/// runs up, and then shifts them.
+fn transform(map: &Map) -> Affine2 {
+    let ([su, sv], [ou, ov]) = (map.scale, map.offset);
+    Affine2::from_scale_angle_translation(Vec2::new(su, sv), 0.0, Vec2::new(ou, 1.0 - sv - ov))
+}
+
+/// Whether a picture is one of normals: nearly everywhere a vector of length 1 that points out of
+/// the surface, and not a grey.
+fn are_normals(image: &Image) -> bool {
+    let count = image.texels.len();
+    let is_normal = |i: &usize| {
+        let n = image.texels.linear(*i, Transfer::None).truncate() * 2.0 - 1.0;
+        (n.length() - 1.0).abs() < 0.2
+            && n.z > 0.3
+            && n.z > n.x.max(n.y) - 0.2
+            && n.x.min(n.y) < n.z - 0.02
+    };
+    let normals = (0..count).filter(is_normal).count();
+    normals as f64 >= MOSTLY * count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn greys_are_heights_and_blues_are_normals() {
+        let picture = |texel: [u8; 3]| {
+            let [r, g, b] = texel;
+            Image::bytes("", [1, 1], vec![[r, g, b, 255]])
+        };
+        let blues = [[128, 128, 255], [180, 128, 240], [128, 60, 230]];
+        assert!(blues.iter().all(|&texel| are_normals(&picture(texel))));
+        assert!((0..=255).all(|grey| !are_normals(&picture([grey; 3]))));
+    }
+
+    #[test]
+    fn coordinates_are_scaled_and_then_shifted_with_v_up() {
+        let map = Map::parse("-s 2 3 -o .25 .5 a.png").unwrap();
+        // u 1, v 1 becomes 2.25, 3.5: with v down, 0 becomes −2.5.
+        assert_eq!(transform(&map).transform_point2(Vec2::new(1.0, 0.0)), Vec2::new(2.25, -2.5));
+    }
+}
