@@ -217,7 +217,7 @@ impl Importer<'_> {
                 }
                 return Ok(());
             }
-            Shape::Mesh(mesh) => mesh,
+            Shape::Mesh(mesh) => *mesh,
         };
         let part = Part { mesh: Arc::new(mesh), morphs: [].into(), influences: None };
         let made = Made { part, material, stored: None };

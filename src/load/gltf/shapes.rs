@@ -22,7 +22,7 @@ pub enum Shape {
     /// The infinite plane that faces Y.
     Plane,
     /// What has to be a mesh.
-    Mesh(Mesh),
+    Mesh(Box<Mesh>),
 }
 
 /// The shape that a node shows, and the material that it names.
@@ -63,24 +63,27 @@ fn read(source: &Value) -> Result<Shape> {
         "plane" => match [number("sizeX", 0.0)?, number("sizeZ", 0.0)?] {
             // Without a size it has no end.
             [0.0, 0.0] => Shape::Plane,
-            [x, z] => Shape::Mesh(sheet(x, z)),
+            [x, z] => Shape::Mesh(sheet(x, z).into()),
         },
         "box" => {
             let size = source.get(kind).and_then(|s| s.get("size")).and_then(Value::as_array);
             let side = |i: usize| size.map_or(Some(1.0), |size| size.get(i)?.as_f64());
             let sides = [side(0), side(1), side(2)].map(|side| side.filter(|x| x.is_finite()));
             match sides {
-                [Some(x), Some(y), Some(z)] => Shape::Mesh(cuboid(DVec3::new(x, y, z))),
+                [Some(x), Some(y), Some(z)] => Shape::Mesh(cuboid(DVec3::new(x, y, z)).into()),
                 _ => return Err(Error::input("`box.size` must be three numbers")),
             }
         }
         "cylinder" | "capsule" => {
             let (bottom, top) = (number("radiusBottom", 0.25)?, number("radiusTop", 0.25)?);
             let half = number("height", 0.5)? / 2.0;
-            Shape::Mesh(turned(&match kind {
-                "cylinder" => cylinder(half, bottom, top),
-                _ => capsule(half, bottom, top),
-            }))
+            Shape::Mesh(
+                turned(&match kind {
+                    "cylinder" => cylinder(half, bottom, top),
+                    _ => capsule(half, bottom, top),
+                })
+                .into(),
+            )
         }
         _ => {
             return Err(Error::input(format!("a shape of type `{kind}` is not known"))
@@ -215,7 +218,7 @@ mod tests {
 
     fn mesh(source: Value) -> Mesh {
         match read(&source).unwrap() {
-            Shape::Mesh(mesh) => mesh,
+            Shape::Mesh(mesh) => *mesh,
             other => panic!("{other:?}"),
         }
     }

@@ -109,7 +109,7 @@ pub struct Textures<'a> {
     wanted: bool,
     /// Those that are in the scene, with what makes them different.
     /// By their numbers in the file, how they are read, and what was made of that.
-    made: HashMap<usize, Vec<((Slot, Transfer, u8), TextureId)>>,
+    made: HashMap<usize, Vec<(Reading, TextureId)>>,
     /// Pictures that are still to be decoded.
     pictures: Vec<Picture<'a>>,
     numbers: HashMap<Key<'a>, usize>,
@@ -122,6 +122,10 @@ enum Key<'a> {
     File(PathBuf),
     View(usize),
 }
+
+/// How a texture is read: by which coordinates, how its colours are encoded, and which set of the
+/// scene places it.
+type Reading = (Slot, Transfer, u8);
 
 /// A picture that is still to be decoded, and the textures that show it.
 struct Picture<'a> {
