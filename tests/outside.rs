@@ -84,7 +84,7 @@ const ENDINGS: [&str; 5] = ["bin", "png", "mtl", "obj", "gltf"];
 
 /// Files of each kind with one name, which load if they are read.
 fn write_secrets(folder: &Folder, name: &str) {
-    folder.write(&format!("{name}.bin"), [0; 36]);
+    folder.write(&format!("{name}.bin"), Model::triangle().bin());
     folder.write(&format!("{name}.png"), png(&[[1, 2, 3, 255]]));
     folder.write(&format!("{name}.mtl"), "newmtl secret\nKd 0.125 0.25 0.5\n");
     folder.write(&format!("{name}.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

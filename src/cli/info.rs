@@ -53,6 +53,8 @@ struct Motion {
     seconds: f64,
     spheres: usize,
     instances: usize,
+    /// Meshes that change their shape.
+    meshes: usize,
     lights: usize,
     cameras: usize,
 }
@@ -65,6 +67,7 @@ impl Motion {
             seconds: animation.seconds(),
             spheres: 0,
             instances: 0,
+            meshes: 0,
             lights: 0,
             cameras: 0,
         };
@@ -72,6 +75,7 @@ impl Motion {
             *match mover {
                 Mover::Sphere { .. } => &mut motion.spheres,
                 Mover::Instance { .. } => &mut motion.instances,
+                Mover::Mesh { .. } => &mut motion.meshes,
                 Mover::Light { .. } => &mut motion.lights,
                 Mover::Camera { .. } => &mut motion.cameras,
             } += 1;
@@ -85,6 +89,7 @@ impl fmt::Display for Motion {
         let moving: Vec<String> = [
             (self.spheres, "sphere"),
             (self.instances, "instance"),
+            (self.meshes, "shape"),
             (self.lights, "light"),
             (self.cameras, "camera"),
         ]

@@ -87,9 +87,7 @@ impl Scene {
                 })?;
             }
         }
-        for (i, mesh) in self.meshes.iter().enumerate() {
-            check_mesh(i, mesh)?;
-        }
+        (0..self.meshes.len()).try_for_each(|i| self.check_mesh(i))?;
         let moved = self.animation.as_ref().map(|a| a.moved_instances(self.instances.len()));
         for i in 0..self.instances.len() {
             // What moves may be flat at one time; it then is not there.
@@ -124,6 +122,11 @@ impl Scene {
             format!("{}: only meshes can have a mask", what())
         })
         .map_err(|e| e.help("blend its alpha instead"))
+    }
+
+    /// Checks mesh `i`.
+    pub(in crate::scene) fn check_mesh(&self, i: usize) -> Result<()> {
+        check_mesh(i, &self.meshes[i])
     }
 
     /// Checks instance `i`.

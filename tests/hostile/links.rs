@@ -121,7 +121,8 @@ pub fn cases() -> Vec<Case> {
                 model.json["meshes"][0]["primitives"] = primitives.into();
                 text(&model)
             },
-            Warning("`--limit pixels="),
+            // It is decoded once.
+            Loads,
         ),
         case(
             "picture of one pixel",

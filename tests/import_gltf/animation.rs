@@ -142,15 +142,6 @@ fn what_is_flat_at_one_time_is_not_there_then() {
 }
 
 #[test]
-fn a_skin_and_morph_targets_are_still_warnings() {
-    let mut model = animated("weights", "SCALAR", &[0., 1.], &[0., 1.], "LINEAR");
-    model.primitive()["targets"] = json!([{"POSITION": 0}]);
-    let scene = model.load().unwrap();
-    assert_warns(&scene, "morph");
-    assert_eq!(scene.animation, None);
-}
-
-#[test]
 fn a_channel_of_an_extension_without_a_node_is_passed_over() {
     let mut model = animated("translation", "VEC3", &[0., 1.], &[0., 0., 0., 2., 0., 0.], "LINEAR");
     let pointer = json!({"sampler": 0, "target": {"path": "pointer", "extensions": {}}});

@@ -92,15 +92,3 @@ fn camera_that_cannot_see_is_left_out_with_a_warning() {
     assert_eq!(scene.cameras[0].name, "framing");
     assert_warns(&scene, "cameras[0]");
 }
-
-#[test]
-fn skins_and_morphs_are_warnings() {
-    let mut model = Model::triangle();
-    model.json["skins"] = json!([{"joints": [0]}]);
-    model.json["nodes"][0]["skin"] = 0.into();
-    model.primitive()["targets"] = json!([{"POSITION": 0}]);
-    let scene = model.load().unwrap();
-    for word in ["skinned", "morph"] {
-        assert_warns(&scene, word);
-    }
-}

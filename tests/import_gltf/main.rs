@@ -7,12 +7,14 @@ mod common;
 mod animation;
 mod damaged_data;
 mod damaged_files;
+mod deform;
 mod geometry;
 mod lights;
 mod materials;
 mod nodes;
 mod optics;
 mod report;
+mod shapes;
 mod textures;
 mod validation;
 

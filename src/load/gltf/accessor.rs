@@ -150,6 +150,7 @@ impl<'a> Accessors<'a> {
             1 => Type::Scalar,
             2 => Type::Vec2,
             3 => Type::Vec3,
+            16 => Type::Mat4,
             _ => Type::Vec4,
         };
         if found == right {

@@ -27,6 +27,8 @@ pub const FPS: f64 = 24.0;
 pub struct Clip {
     /// What moves, by the number of the node in the file.
     moves: HashMap<usize, Moves>,
+    /// The weights of morph targets, by the number of the node in the file.
+    weights: HashMap<usize, Vec<Curve<f64>>>,
     /// The time of the last key.
     seconds: f64,
     /// The nodes of the scene that is shown and move.
@@ -54,8 +56,13 @@ impl Clip {
         name: Option<&str>,
         tally: &mut Tally,
     ) -> Result<Self> {
-        let mut clip =
-            Self { moves: HashMap::new(), seconds: 0.0, nodes: Vec::new(), movers: Vec::new() };
+        let mut clip = Self {
+            moves: HashMap::new(),
+            weights: HashMap::new(),
+            seconds: 0.0,
+            nodes: Vec::new(),
+            movers: Vec::new(),
+        };
         let index = match name {
             Some(name) => named(root, name)?,
             None => 0,
@@ -91,14 +98,20 @@ impl Clip {
             return Err(Error::input("it moves something unknown"));
         };
         let node = get(&root.nodes, channel.target.node.value(), "node", place)?;
-        if node.matrix.is_some() {
+        let morphs = property == Property::MorphTargetWeights;
+        if node.matrix.is_some() && !morphs {
             return Err(Error::input("it moves a node with a matrix, which cannot be"));
         }
         let node = channel.target.node.value();
         let reader = Reader { accessors, sampler, place };
         let (is_there, last) = match property {
-            // Morph targets keep their shape, which is said where they are.
-            Property::MorphTargetWeights => return Ok(()),
+            Property::MorphTargetWeights => {
+                let mesh = node_mesh(root, node)?;
+                let targets = mesh.primitives.first().and_then(|p| p.targets.as_ref());
+                let curves = reader.weights(targets.map_or(0, Vec::len))?;
+                let last = curves.first().and_then(|c| c.times.last()).copied().unwrap_or(0.0);
+                (self.weights.insert(node, curves).is_some(), last)
+            }
             Property::Translation => {
                 let curve = reader.curve(vector)?;
                 put(&mut self.moves.entry(node).or_default().translation, curve)
@@ -117,6 +130,16 @@ impl Clip {
         }
         self.seconds = self.seconds.max(last);
         Ok(())
+    }
+
+    /// How much of each morph target a node's mesh has over time, where that changes.
+    pub fn weights(&self, index: usize) -> Option<&[Curve<f64>]> {
+        self.weights.get(&index).map(Vec::as_slice)
+    }
+
+    /// After how long it begins again.
+    pub fn repeats(&self) -> Option<f64> {
+        (self.seconds > 0.0).then_some(self.seconds)
     }
 
     /// The node of the animation for a node of the file, if that moves. `place` is where its parent
@@ -141,7 +164,7 @@ impl Clip {
                 moves.rotation.clone().unwrap_or(Curve::constant(still)),
             ),
             scale: moves.scale.clone().unwrap_or(Curve::constant(scale)),
-            repeats: (self.seconds > 0.0).then_some(self.seconds),
+            repeats: self.repeats(),
         };
         self.nodes.push(Node { parent, place, motion: Motion::Keys(keys) });
         Some(NodeId(self.nodes.len() as u32 - 1))
@@ -157,6 +180,13 @@ impl Clip {
         let (nodes, movers) = (self.nodes, self.movers);
         Some(Animation { frames: frames as u32, fps: FPS, nodes, movers })
     }
+}
+
+/// The mesh of a node of the file.
+fn node_mesh(root: &json::Root, node: usize) -> Result<&json::Mesh> {
+    let mesh = root.nodes.get(node).and_then(|node| node.mesh);
+    let mesh = mesh.and_then(|mesh| root.meshes.get(mesh.value()));
+    mesh.ok_or_else(|| Error::input("it morphs a node without a mesh"))
 }
 
 /// Puts a curve in its place; says whether there was one, and when it ends.
@@ -185,6 +215,48 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
+    fn times(&self) -> Result<Vec<f64>> {
+        let place = format!("{}.samplers.input", self.place);
+        let times = self.accessors.floats::<1>(self.sampler.input.value(), &place)?;
+        Ok(times.into_iter().map(|[t]| f64::from(t)).collect())
+    }
+
+    /// The curves of so many weights, which the file has side by side for each time; a spline's
+    /// slopes stand before and after them (appendix C of the standard).
+    fn weights(&self, count: usize) -> Result<Vec<Curve<f64>>> {
+        let times = self.times()?;
+        let place = format!("{}.samplers.output", self.place);
+        let values = self.accessors.floats::<1>(self.sampler.output.value(), &place)?;
+        let Checked::Valid(kind) = self.sampler.interpolation else {
+            return Err(Error::input("the interpolation is of no known kind"));
+        };
+        let rows = if kind == Kind::CubicSpline { 3 } else { 1 };
+        if count == 0 || values.len() != times.len() * count * rows {
+            let (found, times) = (values.len(), times.len());
+            return Err(Error::input(format!(
+                "{found} numbers for {count} morph targets at {times} times"
+            )));
+        }
+        let value = |time: usize, row: usize, i: usize| {
+            f64::from(values[(time * rows + row) * count + i][0])
+        };
+        let curve = |i: usize| {
+            let every = || 0..times.len();
+            let (middle, interpolation) = match kind {
+                Kind::Linear => (0, Interpolation::Linear),
+                Kind::Step => (0, Interpolation::Step),
+                Kind::CubicSpline => {
+                    let slopes = every().map(|t| [value(t, 0, i), value(t, 2, i)]);
+                    (1, Interpolation::Cubic(slopes.collect()))
+                }
+            };
+            let values = every().map(|t| value(t, middle, i)).collect();
+            let curve = Curve { times: times.clone(), values, interpolation };
+            curve.check().map(|()| curve)
+        };
+        (0..count).map(curve).collect()
+    }
+
     /// The curve of a sampler; `value` makes a value of its numbers, or a slope where the flag is
     /// not set.
     fn curve<T: Value, const N: usize>(
@@ -192,8 +264,7 @@ impl Reader<'_> {
         value: impl Fn([f32; N], bool) -> T,
     ) -> Result<Curve<T>> {
         let by = |what: &str| format!("{}.samplers.{what}", self.place);
-        let times = self.accessors.floats::<1>(self.sampler.input.value(), &by("input"))?;
-        let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();
+        let times = self.times()?;
         let read = self.accessors.floats::<N>(self.sampler.output.value(), &by("output"))?;
         let Checked::Valid(kind) = self.sampler.interpolation else {
             return Err(Error::input("the interpolation is of no known kind"));

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use gltf::json;
 
+use super::meshopt::Packed;
 use crate::error::{Error, Place, Result};
 use crate::load::guard::{Guard, Opened};
 use crate::load::uri::Uri;
@@ -18,6 +19,8 @@ pub struct Buffers<'a> {
     folder: PathBuf,
     bin: Option<&'a [u8]>,
     loaded: Vec<OnceCell<Arc<Vec<u8>>>>,
+    /// The bytes of views that are packed.
+    unpacked: Vec<OnceCell<Vec<u8>>>,
     loaded_bytes: Cell<u64>,
     /// Buffers that name the same file share its bytes.
     files: RefCell<HashMap<PathBuf, Arc<Vec<u8>>>>,
@@ -39,6 +42,7 @@ impl<'a> Buffers<'a> {
             guard,
             folder: path.parent().unwrap_or(Path::new("")).to_owned(),
             bin,
+            unpacked: root.buffer_views.iter().map(|_| OnceCell::new()).collect(),
             loaded: root.buffers.iter().map(|_| OnceCell::new()).collect(),
             loaded_bytes: Cell::new(bin.map_or(0, |b| b.len() as u64)),
             files: RefCell::default(),
@@ -54,6 +58,11 @@ impl<'a> Buffers<'a> {
     pub fn view(&self, index: usize, by: &str) -> Result<&[u8]> {
         let at = || format!("bufferViews[{index}]");
         let view = get(&self.root.buffer_views, index, "bufferView", by)?;
+        let others = view.extensions.as_ref().map(|extensions| &extensions.others);
+        if let Some(packed) = others.and_then(|others| others.get("EXT_meshopt_compression")) {
+            let at = format!("{}.extensions.EXT_meshopt_compression", at());
+            return self.unpacked(index, packed, &at);
+        }
         let buffer_index = view.buffer.value();
         let bytes = self.buffer(buffer_index, &format!("{}.buffer", at()))?;
         let offset = view.byte_offset.map_or(0, |o| o.0);
@@ -67,6 +76,28 @@ impl<'a> Buffers<'a> {
             .place(Place::Json(at()))
             .help("the file or its buffer is damaged or cut short; export it again")
         })
+    }
+
+    /// The bytes of a view that is packed.
+    fn unpacked(&self, index: usize, packed: &json::Value, at: &str) -> Result<&[u8]> {
+        let place = |e: Error| e.place(Place::Json(at.to_owned()));
+        let missing = || place(Error::input("the view is not there"));
+        let cell = self.unpacked.get(index).ok_or_else(missing)?;
+        if let Some(bytes) = cell.get() {
+            return Ok(bytes);
+        }
+        let packed = Packed::read(packed).map_err(place)?;
+        let bytes = self.buffer(packed.buffer, &format!("{at}.buffer"))?;
+        let Packed { offset, length, .. } = packed;
+        let bytes = range(bytes, offset, length).ok_or_else(|| {
+            let (buffer, found) = (packed.buffer, bytes.len());
+            place(Error::input(format!(
+                "it takes {length} bytes from byte {offset} of buffers[{buffer}], which has {found}"
+            )))
+        })?;
+        let made = packed.unpack(bytes).map_err(place)?;
+        self.count(made.len());
+        Ok(cell.get_or_init(|| made))
     }
 
     fn buffer(&self, index: usize, by: &str) -> Result<&[u8]> {

@@ -3,10 +3,11 @@
 
 use crate::scene::Mesh;
 
-/// Drops the vertices that no triangle uses, when they are more than half of all.
-pub fn compact(mesh: &mut Mesh) {
+/// Drops the vertices that no triangle uses, when they are more than half of all; gives the numbers
+/// of those that are left then.
+pub fn compact(mesh: &mut Mesh) -> Option<Vec<usize>> {
     if uses_half(mesh) {
-        return;
+        return None;
     }
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.positions.len()];
@@ -27,6 +28,7 @@ pub fn compact(mesh: &mut Mesh) {
     keep(&mut mesh.colors, &kept);
     keep(&mut mesh.alphas, &kept);
     keep(&mut mesh.tangents, &kept);
+    Some(kept)
 }
 
 /// Whether triangles use half of the vertices or more.
@@ -45,7 +47,8 @@ fn uses_half(mesh: &Mesh) -> bool {
     missing == 0
 }
 
-fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {
+/// Keeps some of the values of a list that may be empty.
+pub fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {
     if !values.is_empty() {
         *values = kept.iter().filter_map(|&i| values.get(i)).copied().collect();
     }

@@ -6,7 +6,10 @@ use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
 
 /// The extensions that are read, or that change nothing which is.
-const READ: [&str; 13] = [
+const READ: [&str; 16] = [
+    "EXT_meshopt_compression",
+    "KHR_implicit_shapes",
+    "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
@@ -42,7 +45,7 @@ pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
 /// What a user can do about an extension.
 fn remedy(name: &str) -> &'static str {
     match name {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+        "KHR_draco_mesh_compression" | "KHR_meshopt_compression" => {
             "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"
         }
         "KHR_texture_basisu" => {
@@ -50,9 +53,6 @@ fn remedy(name: &str) -> &'static str {
         }
         "EXT_texture_avif" => {
             "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its pictures into PNG"
-        }
-        "EXT_mesh_gpu_instancing" => {
-            "export it without GPU instancing, so that every instance is a node"
         }
         "KHR_techniques_webgl" | "KHR_technique_webgl" => "export it with glTF's own materials",
         _ => {

@@ -1,6 +1,8 @@
 //! The tree of nodes, walked without recursion and each node once: files from strangers have
 //! loops, and trees that are none.
 
+use std::collections::HashSet;
+
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json;
 use gltf::json::Node;
@@ -25,6 +27,8 @@ pub struct Placed<'a> {
     pub mover: Option<NodeId>,
     /// From its space to that of `mover`, or to the world's.
     pub rest: DAffine3,
+    /// Whether the scene shows it; others are here for the sake of skins.
+    pub is_shown: bool,
 }
 
 impl Placed<'_> {
@@ -54,10 +58,20 @@ pub fn walk<'a>(
     roots.sort_by_key(|&(i, _)| parents.get(i).is_some_and(Option::is_some));
     let mut placed = Vec::new();
     let mut seen = vec![false; root.nodes.len()];
-    let world =
-        Above { world: DAffine3::IDENTITY, mover: None, rest: DAffine3::IDENTITY, depth: 0 };
-    let mut open: Vec<(usize, String, Above)> =
-        roots.into_iter().rev().map(|(i, by)| (i, by, world)).collect();
+    let world = Above {
+        world: DAffine3::IDENTITY,
+        mover: None,
+        rest: DAffine3::IDENTITY,
+        is_shown: true,
+        depth: 0,
+    };
+    // Joints are posed whether the scene shows them or not.
+    let is_shown: HashSet<usize> = roots.iter().map(|(i, _)| *i).collect();
+    let orphans = (0..parents.len()).filter(|i| parents[*i].is_none() && !is_shown.contains(i));
+    let hidden = orphans.filter(|_| !root.skins.is_empty());
+    let hidden = hidden.map(|i| (i, String::new(), Above { is_shown: false, ..world }));
+    let mut open: Vec<(usize, String, Above)> = hidden.collect();
+    open.extend(roots.iter().rev().map(|(i, by)| (*i, by.clone(), world)));
     while let Some((index, by, above)) = open.pop() {
         let node = get(&root.nodes, index, "node", &by)?;
         let depth = above.depth + 1;
@@ -66,6 +80,7 @@ pub fn walk<'a>(
             .map_err(|e| e.place(Place::Json(format!("nodes[{index}]"))))?;
         match seen.get_mut(index) {
             Some(seen) if !*seen => *seen = true,
+            _ if !above.is_shown => continue,
             _ => {
                 tally.add("{} nodes stand twice in the tree and are drawn once", 1, || by);
                 continue;
@@ -82,7 +97,8 @@ pub fn walk<'a>(
             Some(_) => (own, DAffine3::IDENTITY),
             None => (above.mover, above.rest * local),
         };
-        let here = Above { world, mover, rest, depth };
+        let is_shown = above.is_shown;
+        let here = Above { world, mover, rest, is_shown, depth };
         let children = node.children.iter().flatten().enumerate();
         let children = children
             .map(|(i, child)| (child.value(), format!("nodes[{index}].children[{i}]"), here));
@@ -92,7 +108,7 @@ pub fn walk<'a>(
             // So that nodes come out in the file's order.
             new.reverse();
         }
-        placed.push(Placed { node, index, world, mover, rest });
+        placed.push(Placed { node, index, world, mover, rest, is_shown });
     }
     Ok(placed)
 }
@@ -105,6 +121,7 @@ struct Above {
     rest: DAffine3,
     /// How many nodes are above them.
     depth: u64,
+    is_shown: bool,
 }
 
 /// The parent of each node; an error where a node is its own ancestor.

@@ -1,17 +1,32 @@
 //! From a primitive to a mesh.
 
+use std::sync::Arc;
+
 use gltf::json;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 
 use super::accessor::Accessors;
-use super::compact::compact;
+use super::compact::{compact, keep};
+use super::deform;
 use super::material::Asks;
 use super::topology;
 use crate::error::{Error, Place, Result};
 use crate::load::repair::repair;
 use crate::load::tally::Tally;
+use crate::scene::animation::{Influences, Morph};
 use crate::scene::{DropReason, Mesh};
+
+/// A primitive, read.
+#[derive(Clone)]
+pub struct Part {
+    /// The mesh as it was modelled.
+    pub mesh: Arc<Mesh>,
+    /// What it can be morphed to.
+    pub morphs: Arc<[Morph]>,
+    /// How it hangs on joints, if it does.
+    pub influences: Option<Arc<Influences>>,
+}
 
 /// Reads a primitive, with what its material asks for; nothing where there is no triangle in it.
 pub fn read(
@@ -20,7 +35,7 @@ pub fn read(
     asks: &Asks,
     tally: &mut Tally,
     at: &str,
-) -> Result<Option<Mesh>> {
+) -> Result<Option<Part>> {
     let mode = mode(primitive, at)?;
     let reader = Reader { primitive, accessors, at };
     let place = || at.to_owned();
@@ -42,7 +57,7 @@ pub fn read(
     let mut mesh =
         Mesh { triangles: topology::triangles(mode, &vertices), positions, ..Mesh::default() };
     let incomplete = topology::is_incomplete(mode, vertices.len());
-    tally.read(mesh.triangles.len() as u64 + u64::from(incomplete));
+    tally.read(u64::from(incomplete));
     tally.drop(DropReason::Incomplete, u64::from(incomplete), place);
     mesh.normals = reader.normals(mesh.positions.len(), tally)?;
     (mesh.colors, mesh.alphas) = reader.colors(asks.alpha, mesh.positions.len(), tally)?;
@@ -53,9 +68,25 @@ pub fn read(
     if asks.tangents && !mesh.normals.is_empty() {
         mesh.tangents = reader.tangents(mesh.positions.len(), tally)?;
     }
+    let count = mesh.positions.len();
+    let before = mesh.triangles.len() as u64;
+    let mut morphs = deform::morphs(primitive, accessors, count, tally, at)?;
+    let mut influences = deform::influences(primitive, accessors, count, tally, at)?;
     repair(&mut mesh, tally, at);
-    compact(&mut mesh);
-    Ok((!mesh.triangles.is_empty()).then_some(mesh))
+    // Those that are left are counted when the mesh is stored, which it may be more than once.
+    tally.read(before - mesh.triangles.len() as u64);
+    if let Some(kept) = compact(&mut mesh) {
+        for morph in &mut morphs {
+            keep(&mut morph.positions, &kept);
+            keep(&mut morph.normals, &kept);
+        }
+        if let Some(influences) = &mut influences {
+            influences.keep(&kept);
+        }
+    }
+    let influences = influences.map(Arc::new);
+    let part = Part { mesh: Arc::new(mesh), morphs: morphs.into(), influences };
+    Ok((!part.mesh.triangles.is_empty()).then_some(part))
 }
 
 fn mode(primitive: &Primitive, at: &str) -> Result<Mode> {

@@ -108,7 +108,8 @@ pub struct Textures<'a> {
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
     /// Those that are in the scene, with what makes them different.
-    made: Vec<((Slot, Transfer, u8), TextureId)>,
+    /// By their numbers in the file, how they are read, and what was made of that.
+    made: HashMap<usize, Vec<(Reading, TextureId)>>,
     /// Pictures that are still to be decoded.
     pictures: Vec<Picture<'a>>,
     numbers: HashMap<Key<'a>, usize>,
@@ -121,6 +122,10 @@ enum Key<'a> {
     File(PathBuf),
     View(usize),
 }
+
+/// How a texture is read: by which coordinates, how its colours are encoded, and which set of the
+/// scene places it.
+type Reading = (Slot, Transfer, u8);
 
 /// A picture that is still to be decoded, and the textures that show it.
 struct Picture<'a> {
@@ -162,7 +167,8 @@ impl<'a> Textures<'a> {
         tally: &mut Tally,
     ) -> Result<TextureId> {
         let key = (slot, transfer, set);
-        if let Some(&(_, id)) = self.made.iter().find(|(made, _)| *made == key) {
+        let mut made = self.made.get(&slot.index).into_iter().flatten();
+        if let Some(&(_, id)) = made.find(|(made, _)| *made == key) {
             return Ok(id);
         }
         let Slot { index, transform, .. } = slot;
@@ -203,7 +209,7 @@ impl<'a> Textures<'a> {
         if let Some(picture) = picture {
             self.pictures[picture].shown_by.push(id);
         }
-        self.made.push((key, id));
+        self.made.entry(index).or_default().push((key, id));
         Ok(id)
     }
 

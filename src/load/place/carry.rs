@@ -26,6 +26,7 @@ impl Part {
         }));
         let mut moves = Moves {
             instances: vec![false; self.instances.len()],
+            spheres: vec![false; self.spheres.len()],
             lights: vec![false; self.lights.len()],
             cameras: vec![false; self.cameras.len()],
         };
@@ -33,10 +34,34 @@ impl Part {
         for mover in movers {
             let mut mover = mover.clone();
             match &mut mover {
-                Mover::Sphere { .. } => continue,
+                Mover::Sphere { sphere, node, .. } => {
+                    moves.spheres[*sphere] = true;
+                    (*sphere, *node) = (*sphere + first.sphere, node.as_ref().map(shifted));
+                }
                 Mover::Instance { instance, node, .. } => {
                     moves.instances[*instance] = true;
                     (*instance, *node) = (*instance + first.instance, shifted(node));
+                }
+                Mover::Mesh { mesh, deformation } => {
+                    *mesh += self.first_mesh;
+                    // Placed a second time it has the same shape.
+                    let same = |m: &Mover| matches!(m, Mover::Mesh { mesh: m, .. } if m == mesh);
+                    if animation.movers.iter().any(same) {
+                        continue;
+                    }
+                    let Some(skin) = &mut deformation.skin else {
+                        animation.movers.push(mover);
+                        continue;
+                    };
+                    for joint in skin.joints.iter_mut().chain([&mut skin.space]) {
+                        match &mut joint.node {
+                            Some(node) => *node = shifted(node),
+                            None => {
+                                joint.place = placement.transform * joint.place;
+                                joint.node = placement.node;
+                            }
+                        }
+                    }
                 }
                 Mover::Light { light, node, .. } => {
                     moves.lights[*light] = true;
@@ -75,6 +100,11 @@ impl Part {
             let instance = first.instance + i;
             animation.movers.push(Mover::Instance { instance, node, transform });
         }
+        for (i, sphere) in self.spheres.iter().enumerate().filter(|(i, _)| !moves.spheres[*i]) {
+            let (center, radius) = (transform.transform_point3(sphere.center), None);
+            let (sphere, node) = (first.sphere + i, Some(node));
+            animation.movers.push(Mover::Sphere { sphere, node, center, radius });
+        }
         let lights = self.lights.iter().enumerate().filter(|(i, _)| !moves.lights[*i]);
         for (i, light) in lights.filter(|_| placement.lights) {
             animation.movers.push(Mover::Light {
@@ -98,6 +128,7 @@ impl Part {
 /// Which of a model's objects move by its own animation.
 struct Moves {
     instances: Vec<bool>,
+    spheres: Vec<bool>,
     lights: Vec<bool>,
     cameras: Vec<bool>,
 }

@@ -1,21 +1,26 @@
 //! Placing a model's scene within another one.
 
 mod carry;
+mod shapes;
 
 use glam::DAffine3;
 
 use crate::geometry::Bounds;
 use crate::scene::animation::{Animation, NodeId};
-use crate::scene::{Camera, Instance, Light, LightKind, MaterialId, MeshId, Scene};
+use crate::scene::{Camera, Instance, Light, LightKind, MaterialId, MeshId, Plane, Scene, Sphere};
 
 /// A model whose meshes, materials and textures are in a scene, where it can be placed any number
 /// of times without being stored again.
 #[derive(Debug)]
 pub struct Part {
     instances: Vec<Instance>,
+    spheres: Vec<Sphere>,
+    planes: Vec<Plane>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
     animation: Option<Animation>,
+    /// The index in the scene of its first mesh.
+    first_mesh: usize,
     /// Around all of it, its lights and cameras too, before it is placed.
     bounds: Bounds,
 }
@@ -38,8 +43,7 @@ pub struct Placement {
 impl Part {
     /// Adds what a model is made of to a scene; nothing of it is seen before it is placed.
     ///
-    /// The model's film and warnings are dropped, and so are spheres and planes, which no model
-    /// file has.
+    /// The model's film and warnings are dropped.
     pub fn add(scene: &mut Scene, mut model: Scene) -> Self {
         if scene.animation.is_none() {
             // What is flat as the file places it would be there at another time only.
@@ -60,8 +64,13 @@ impl Part {
             instance.mesh = MeshId(instance.mesh.0 + first_mesh);
             instance.material = MaterialId(instance.material.0 + first_material);
         }
+        let (mut spheres, mut planes) = (model.spheres, model.planes);
+        spheres.iter_mut().for_each(|s| s.material.0 += first_material);
+        planes.iter_mut().for_each(|p| p.material.0 += first_material);
         let (lights, cameras) = (model.lights, model.cameras);
-        Self { instances, lights, cameras, animation: model.animation, bounds }
+        let first_mesh = first_mesh as usize;
+        let animation = model.animation;
+        Self { instances, spheres, planes, lights, cameras, animation, first_mesh, bounds }
     }
 
     /// How many things are added to a scene each time that the model is placed.
@@ -79,7 +88,12 @@ impl Part {
     /// scene has one.
     pub fn place(&self, scene: &mut Scene, placement: &Placement) {
         let transform = &placement.transform;
-        let first = Firsts { instance: scene.instances.len(), light: scene.lights.len() };
+        let first = Firsts {
+            instance: scene.instances.len(),
+            sphere: scene.spheres.len(),
+            light: scene.lights.len(),
+        };
+        self.place_shapes(scene, placement);
         scene.instances.extend(self.instances.iter().map(|instance| Instance {
             transform: *transform * instance.transform,
             material: placement.material.unwrap_or(instance.material),
@@ -117,6 +131,7 @@ impl Part {
 /// The indices in the scene of a placed model's first objects.
 struct Firsts {
     instance: usize,
+    sphere: usize,
     light: usize,
 }
 

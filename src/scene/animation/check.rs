@@ -3,7 +3,8 @@
 use glam::DAffine3;
 
 use super::{
-    Animation, Curve, MAX_FPS, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Toward, naming,
+    Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation,
+    Toward, naming,
 };
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -81,6 +82,26 @@ fn check_node(index: usize, node: &Node) -> Result<()> {
     }
 }
 
+fn check_deformation(
+    deformation: &Deformation,
+    node: impl Fn(&Option<NodeId>) -> Result<()>,
+) -> Result<()> {
+    let require = |holds: bool, what: &str| match holds {
+        true => Ok(()),
+        false => Err(Error::input(what)),
+    };
+    let Deformation { base, morphs, weights, repeats, skin } = deformation;
+    require(weights.len() == morphs.len(), "there must be a weight for each morph")?;
+    weights.iter().try_for_each(Curve::check)?;
+    require(repeats.is_none_or(|p| p > 0.0), "it repeats after no time")?;
+    let Some(skin) = skin else { return Ok(()) };
+    node(&skin.space.node)?;
+    skin.joints.iter().try_for_each(|joint| node(&joint.node))?;
+    let numbers = base.positions.len() * skin.influences.per_vertex;
+    let fits = [skin.influences.joints.len(), skin.influences.weights.len()] == [numbers; 2];
+    require(fits, "the joints are not as many for each vertex")
+}
+
 fn check_mover(mover: &Mover, nodes: usize, scene: &Scene) -> Result<()> {
     let there = |what: &str, index: usize, count: usize| {
         if index < count {
@@ -98,6 +119,11 @@ fn check_mover(mover: &Mover, nodes: usize, scene: &Scene) -> Result<()> {
         Mover::Instance { instance, node: of, .. } => {
             there("instance", *instance, scene.instances.len())?;
             node(&Some(*of))
+        }
+        Mover::Mesh { mesh, deformation } => {
+            there("mesh", *mesh, scene.meshes.len())?;
+            check_deformation(deformation, node)
+                .map_err(|e| naming(&format!("the deformation of mesh {mesh}"), &e))
         }
         Mover::Light { light, node: of, direction, intensity, .. } => {
             there("light", *light, scene.lights.len())?;

@@ -2,6 +2,7 @@
 
 mod check;
 mod curve;
+mod deform;
 mod node;
 mod poses;
 
@@ -12,6 +13,7 @@ use crate::geometry::Bounds;
 use crate::scene::{Camera, Light, Scene};
 
 pub use curve::{Curve, Interpolation, Value};
+pub use deform::{Deformation, Influences, Joint, Morph, Skin};
 pub use node::{Anchor, Keys, Motion, Node, NodeId, Orbit, Rotation};
 pub use poses::Poses;
 
@@ -55,6 +57,13 @@ pub enum Mover {
         node: NodeId,
         /// From the mesh's space to that one.
         transform: DAffine3,
+    },
+    /// The shape of a mesh, wherever it stands.
+    Mesh {
+        /// Its index.
+        mesh: usize,
+        /// What gives it its shape.
+        deformation: Box<Deformation>,
     },
     /// A light.
     Light {
@@ -122,7 +131,10 @@ impl Animation {
 
     /// Whether anything moves that rays can meet, rather than lights and cameras alone.
     pub fn moves_geometry(&self) -> bool {
-        self.movers.iter().any(|m| matches!(m, Mover::Sphere { .. } | Mover::Instance { .. }))
+        self.movers.iter().any(|m| match m {
+            Mover::Sphere { .. } | Mover::Instance { .. } | Mover::Mesh { .. } => true,
+            Mover::Light { .. } | Mover::Camera { .. } => false,
+        })
     }
 
     /// Whether it moves each of so many instances.
@@ -168,11 +180,13 @@ impl Scene {
     pub fn bounds_over_time(&self) -> Bounds {
         /// At how many times an animation is looked at.
         const MOMENTS: u32 = 24;
-        let boxes = self.mesh_bounds();
-        let Some(animation) = &self.animation else { return self.bounds_with(&boxes) };
+        let Some(animation) = &self.animation else { return self.bounds() };
         let moment = |i: u32| animation.seconds() * f64::from(i) / f64::from(MOMENTS);
         let mut poses = Poses::new(self);
-        let mut bounds = |i| Some(poses.pose(moment(i)).ok()?.bounds_with(&boxes));
+        let mut bounds = |i| {
+            poses.pose(moment(i)).ok()?;
+            Some(poses.bounds())
+        };
         (0..=MOMENTS).filter_map(&mut bounds).fold(Bounds::EMPTY, Bounds::union)
     }
 }

@@ -1,7 +1,10 @@
 //! A scene as it is at one time after another.
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
+use super::deform::Pose;
 use super::{Aim, Mover, Toward, naming, node};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
@@ -16,8 +19,10 @@ pub struct Poses<'a> {
     posed: Scene,
     /// Whether instances are left out of it, since they are flat at that time.
     lacks_flat: bool,
-    /// The boxes of the meshes, once they were asked for.
-    mesh_bounds: Option<Vec<Bounds>>,
+    /// The boxes of the meshes, once they were asked for, and none for those that have a new shape.
+    mesh_bounds: Vec<Option<Bounds>>,
+    /// For each mover of a mesh, the pose that the mesh has.
+    shapes: Vec<Option<Pose>>,
 }
 
 impl<'a> Poses<'a> {
@@ -38,7 +43,8 @@ impl<'a> Poses<'a> {
             warnings: scene.warnings.clone(),
             report: scene.report.clone(),
         };
-        Self { scene, posed, lacks_flat: false, mesh_bounds: None }
+        let mesh_bounds = vec![None; scene.meshes.len()];
+        Self { scene, posed, lacks_flat: false, mesh_bounds, shapes: Vec::new() }
     }
 
     /// The scene as it is at a time in seconds; see [`Scene::at`].
@@ -55,8 +61,21 @@ impl<'a> Poses<'a> {
             scene.instances.clone_from(&self.scene.instances);
         }
         let worlds = node::worlds(&animation.nodes, time);
-        for mover in &animation.movers {
-            self.lacks_flat |= pose(mover, time, &worlds, scene)?;
+        self.shapes.resize(animation.movers.len(), None);
+        for (mover, shape) in animation.movers.iter().zip(&mut self.shapes) {
+            let Mover::Mesh { mesh, deformation } = mover else {
+                self.lacks_flat |= pose(mover, time, &worlds, scene)?;
+                continue;
+            };
+            // A mesh that keeps its shape stays the same one, of which nothing is built again.
+            let new = Some(deformation.pose(time, &worlds));
+            if *shape != new {
+                *shape = new;
+                self.mesh_bounds[*mesh] = None;
+                if let Some(pose) = shape {
+                    scene.meshes[*mesh] = Arc::new(deformation.shape(pose));
+                }
+            }
         }
         if self.lacks_flat {
             scene.instances.retain(|instance| !instance.is_flat());
@@ -70,13 +89,14 @@ impl<'a> Poses<'a> {
     /// # Errors
     /// The first thing that is not valid.
     pub fn check(&mut self) -> Result<()> {
-        let (posed, original) = (&self.posed, self.scene);
+        let posed = &self.posed;
         for mover in self.scene.animation.iter().flat_map(|animation| &animation.movers) {
             match *mover {
                 Mover::Sphere { sphere, .. } => posed.check_sphere(sphere)?,
                 Mover::Instance { instance, .. } if !self.lacks_flat => {
                     posed.check_instance(instance, false)?;
                 }
+                Mover::Mesh { mesh, .. } => posed.check_mesh(mesh)?,
                 Mover::Instance { .. } | Mover::Light { .. } | Mover::Camera { .. } => {}
             }
         }
@@ -84,9 +104,16 @@ impl<'a> Poses<'a> {
             // They have other indices now.
             (0..posed.instances.len()).try_for_each(|i| posed.check_instance(i, false))?;
         }
-        let boxes = self.mesh_bounds.get_or_insert_with(|| original.mesh_bounds());
-        check_extent(&posed.bounds_with(boxes))?;
-        posed.check_lights_and_cameras()
+        posed.check_lights_and_cameras()?;
+        check_extent(&self.bounds())
+    }
+
+    /// The box around the scene as it is now.
+    pub fn bounds(&mut self) -> Bounds {
+        let meshes = self.posed.meshes.iter().zip(&mut self.mesh_bounds);
+        let boxes: Vec<Bounds> =
+            meshes.map(|(mesh, known)| *known.get_or_insert_with(|| mesh.bounds())).collect();
+        self.posed.bounds_with(&boxes)
     }
 
     /// The scene as it is now.
@@ -118,6 +145,7 @@ fn pose(mover: &Mover, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> Res
             instance.transform = world(&Some(*node)) * *transform;
             return Ok(instance.is_flat());
         }
+        Mover::Mesh { .. } => {}
         Mover::Light { light, node, rest, direction: way, intensity } => {
             let mut rest = rest.clone();
             if let (

@@ -115,16 +115,13 @@ fn rows(root: &Value, of: &Value, at: &str, count: u64, element: Element, faults
     let end = before_last.saturating_add(element.bytes()).saturating_add(offset);
     if end > length {
         faults.add(Fault::Layout, || {
-            (
-                at.to_string(),
-                format!("{count} elements up to byte {end}, and its view has {length}"),
-            )
+            (at.to_owned(), format!("{count} elements up to byte {end}, and its view has {length}"))
         });
     }
     if stride < element.bytes() {
         let size = element.bytes();
         faults
-            .add(Fault::Layout, || (at.to_string(), format!("{size} bytes, every {stride} bytes")));
+            .add(Fault::Layout, || (at.to_owned(), format!("{size} bytes, every {stride} bytes")));
     }
     let place = offset.saturating_add(whole(view, "byteOffset").unwrap_or(0));
     if !place.is_multiple_of(element.size) || !offset.is_multiple_of(element.size) {

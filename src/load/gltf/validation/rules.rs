@@ -179,7 +179,7 @@ impl Check<'_, '_> {
         let mut met = HashSet::new();
         for mapping in list(variants, "mappings") {
             let new = list(mapping, "variants").iter().all(|v| met.insert(v.to_string()));
-            self.rule(new, || at.to_string(), "one variant has two materials");
+            self.rule(new, || at.to_owned(), "one variant has two materials");
         }
     }
 
@@ -260,7 +260,7 @@ impl Check<'_, '_> {
             return;
         }
         let Some(spot) = light.get("spot") else {
-            return self.rule(false, || at.to_string(), "has no `spot`");
+            return self.rule(false, || at.to_owned(), "has no `spot`");
         };
         let angle = |name: &str, default| spot.get(name).map_or(Some(default), Value::as_f64);
         let inner = angle("innerConeAngle", 0.0);

@@ -1,0 +1,280 @@
+//! Meshes that change their shape: morph targets, and skins on joints.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::{Curve, NodeId};
+use crate::scene::{GRAIN, Mesh};
+
+/// How a mesh gets its shape: first morphed, then bent by its joints, as glTF 2.0 has it (parts
+/// 3.7.2.2 and 3.7.3.3).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Deformation {
+    /// The mesh as it was modelled.
+    pub base: Arc<Mesh>,
+    /// What it can be morphed to.
+    pub morphs: Arc<[Morph]>,
+    /// How much of each morph there is at a time: one curve for each.
+    pub weights: Vec<Curve<f64>>,
+    /// After how many seconds the weights begin again, above 0; none for never.
+    pub repeats: Option<f64>,
+    /// What bends it.
+    pub skin: Option<Skin>,
+}
+
+/// What a morph adds to vertices, at full weight. Each list is empty, or as long as the mesh's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Morph {
+    /// Displacements of the positions.
+    pub positions: Vec<[f32; 3]>,
+    /// What is added to the normals.
+    pub normals: Vec<[f32; 3]>,
+}
+
+/// Joints, and how the vertices of a mesh hang on them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Skin {
+    /// The joints.
+    pub joints: Vec<Joint>,
+    /// How the vertices hang on them; meshes of the same primitive share it.
+    pub influences: Arc<Influences>,
+    /// The space of the bent mesh's instances, as a joint without a bind matrix: the mesh is bent in
+    /// the world, and brought from there into this.
+    pub space: Joint,
+}
+
+/// A place that vertices hang on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// The node that it moves with; none for the world.
+    pub node: Option<NodeId>,
+    /// Where it stands in that space.
+    pub place: DAffine3,
+    /// From the mesh's space to the joint's, when it was modelled.
+    pub bind: DAffine3,
+}
+
+/// For each vertex, the joints that it hangs on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Influences {
+    /// How many joints a vertex has.
+    pub per_vertex: usize,
+    /// Their numbers, vertex by vertex.
+    pub joints: Vec<u16>,
+    /// As many weights, of any sum but 0; where that is 0 the vertex hangs on its first joint.
+    pub weights: Vec<f32>,
+}
+
+/// All that a shape depends on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Pose {
+    weights: Vec<f64>,
+    /// From the base's space to the bent mesh's, for each joint.
+    joints: Vec<DAffine3>,
+}
+
+impl Joint {
+    /// From the space that is bound to it to the world.
+    fn at(&self, worlds: &[DAffine3]) -> DAffine3 {
+        self.standing(worlds) * self.bind
+    }
+
+    fn standing(&self, worlds: &[DAffine3]) -> DAffine3 {
+        match self.node {
+            Some(NodeId(node)) => worlds[node as usize] * self.place,
+            None => self.place,
+        }
+    }
+}
+
+impl Deformation {
+    /// The mesh at a time in seconds, given where the nodes are then.
+    ///
+    /// # Panics
+    /// When a joint's node is not there.
+    pub fn mesh(&self, time: f64, worlds: &[DAffine3]) -> Mesh {
+        self.shape(&self.pose(time, worlds))
+    }
+
+    pub(super) fn pose(&self, time: f64, worlds: &[DAffine3]) -> Pose {
+        let time = self.repeats.map_or(time, |period| time.rem_euclid(period));
+        let weights = self.weights.iter().map(|curve| curve.at(time)).collect();
+        let joints = self.skin.as_ref().map_or(Vec::new(), |skin| {
+            // Where that space is flat nothing of the mesh is seen.
+            let space = skin.space.standing(worlds).inverse();
+            skin.joints.iter().map(|joint| space * joint.at(worlds)).collect()
+        });
+        Pose { weights, joints }
+    }
+
+    pub(super) fn shape(&self, pose: &Pose) -> Mesh {
+        let mut mesh = Mesh::clone(&self.base);
+        let morphs: Vec<(&Morph, f64)> = self
+            .morphs
+            .iter()
+            .zip(pose.weights.iter().copied())
+            .filter(|(_, weight)| *weight != 0.0)
+            .collect();
+        morph(&mut mesh.positions, morphs.iter().map(|(m, weight)| (&*m.positions, *weight)));
+        morph(&mut mesh.normals, morphs.iter().map(|(m, weight)| (&*m.normals, *weight)));
+        if let Some(skin) = &self.skin {
+            skin.influences.bend(&mut mesh, &pose.joints);
+        }
+        mesh
+    }
+}
+
+/// Adds weighted displacements, in f64.
+fn morph<'m>(values: &mut [[f32; 3]], morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>) {
+    let morphs: Vec<_> = morphs.filter(|(by, _)| by.len() == values.len()).collect();
+    if morphs.is_empty() {
+        return;
+    }
+    values.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(i, value)| {
+        let sum = morphs.iter().fold(DVec3::from(value.map(f64::from)), |sum, (by, weight)| {
+            sum + DVec3::from(by[i].map(f64::from)) * *weight
+        });
+        *value = sum.as_vec3().to_array();
+    });
+}
+
+impl Influences {
+    /// How many times a joint is named, with any weight, beyond the first `count`.
+    pub(crate) fn beyond(&self, count: usize) -> u64 {
+        let named = self.joints.iter().zip(&self.weights);
+        named.filter(|(joint, w)| **w != 0.0 && usize::from(**joint) >= count).count() as u64
+    }
+
+    /// Keeps the influences of some vertices.
+    pub(crate) fn keep(&mut self, kept: &[usize]) {
+        let of = |vertex: usize| vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
+        self.joints = kept.iter().flat_map(|&v| self.joints[of(v)].iter().copied()).collect();
+        self.weights = kept.iter().flat_map(|&v| self.weights[of(v)].iter().copied()).collect();
+    }
+
+    /// Linear blend skinning, in f64: each vertex by the weighted mean of its joints' transforms, and
+    /// its normal by that mean's cofactors, which is right for any scale.
+    fn bend(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
+        let positions = mesh.positions.par_iter_mut().with_min_len(GRAIN).enumerate();
+        let transforms: Vec<DMat3> = positions
+            .map(|(i, position)| {
+                let transform = self.mean(i, joints);
+                let there = transform.transform_point3(DVec3::from(position.map(f64::from)));
+                *position = there.as_vec3().to_array();
+                transform.matrix3
+            })
+            .collect();
+        let normals = mesh.normals.par_iter_mut().with_min_len(GRAIN).zip(transforms);
+        normals.for_each(|(normal, m)| {
+            let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
+            let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+            let turned = cofactors * DVec3::from(normal.map(f64::from)) * m.determinant().signum();
+            if let Some(turned) = turned.try_normalize() {
+                *normal = turned.as_vec3().to_array();
+            }
+        });
+    }
+
+    fn mean(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
+        let range = vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
+        let (ids, weights) = (&self.joints[range.clone()], &self.weights[range]);
+        let joint = |id: u16| joints.get(usize::from(id)).copied().unwrap_or_default();
+        let total: f64 = weights.iter().map(|w| f64::from(*w)).sum();
+        if total <= 0.0 {
+            return ids.first().map_or(DAffine3::IDENTITY, |id| joint(*id));
+        }
+        let mut mean = DAffine3::ZERO;
+        for (&id, &weight) in ids.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
+            let (joint, share) = (joint(id), f64::from(weight) / total);
+            mean.matrix3 += joint.matrix3 * share;
+            mean.translation += joint.translation * share;
+        }
+        mean
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three vertices along x, with normals along y.
+    fn base() -> Arc<Mesh> {
+        Arc::new(Mesh {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]],
+            normals: vec![[0.0, 1.0, 0.0]; 3],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        })
+    }
+
+    fn joint(place: DAffine3) -> Joint {
+        Joint { node: None, place, bind: DAffine3::IDENTITY }
+    }
+
+    fn bent(joints: Vec<Joint>, space: DAffine3, ids: [u16; 6], weights: [f32; 6]) -> Mesh {
+        let influences =
+            Influences { per_vertex: 2, joints: ids.to_vec(), weights: weights.to_vec() };
+        let skin = Skin { joints, influences: Arc::new(influences), space: joint(space) };
+        let (morphs, weights) = ([].into(), vec![]);
+        Deformation { base: base(), morphs, weights, repeats: None, skin: Some(skin) }
+            .mesh(0.0, &[])
+    }
+
+    fn morphed(weight: f64) -> Mesh {
+        let morph =
+            Morph { positions: vec![[0.0, 0.0, 4.0]; 3], normals: vec![[2.0, 0.0, 0.0]; 3] };
+        let weights = vec![Curve::constant(weight)];
+        let morphs = [morph].into();
+        Deformation { base: base(), morphs, weights, repeats: None, skin: None }.mesh(0.0, &[])
+    }
+
+    #[test]
+    fn morphs_add_their_share_to_positions_and_normals() {
+        let mesh = morphed(0.5);
+        assert_eq!(mesh.positions[1], [1.0, 0.0, 2.0]);
+        assert_eq!(mesh.normals[1], [1.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn morphs_of_no_weight_change_nothing() {
+        assert_eq!(morphed(0.0), *base());
+    }
+
+    #[test]
+    fn vertices_go_by_the_mean_of_their_joints() {
+        let up = DAffine3::from_translation(DVec3::Y * 2.0);
+        let joints = vec![joint(DAffine3::IDENTITY), joint(up)];
+        let weights = [1.0, 0.0, 0.5, 0.5, 0.0, 1.0];
+        let mesh = bent(joints, DAffine3::IDENTITY, [0, 1, 0, 1, 0, 1], weights);
+        assert_eq!(mesh.positions, [[0., 0., 0.], [1., 1., 0.], [2., 2., 0.]]);
+    }
+
+    #[test]
+    fn weights_count_by_their_share_of_the_sum() {
+        let up = DAffine3::from_translation(DVec3::Y * 4.0);
+        let joints = vec![joint(DAffine3::IDENTITY), joint(up)];
+        let weights = [1.0, 3.0, 3.0, 1.0, 0.0, 0.0];
+        let mesh = bent(joints, DAffine3::IDENTITY, [0, 1, 0, 1, 1, 0], weights);
+        let heights: Vec<f32> = mesh.positions.iter().map(|p| p[1]).collect();
+        assert_eq!(heights, [3.0, 1.0, 4.0]);
+    }
+
+    #[test]
+    fn normals_stay_upright_on_what_is_stretched() {
+        let stretched = DAffine3::from_scale(DVec3::new(3.0, 0.5, 1.0));
+        let turned = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2);
+        let joints = vec![joint(turned * stretched); 2];
+        let mesh = bent(joints, DAffine3::IDENTITY, [0; 6], [1.0; 6]);
+        let [x, y, _] = mesh.normals[0];
+        assert!((x + 1.0).abs() < 1e-6 && y.abs() < 1e-6, "{x} {y}");
+    }
+
+    #[test]
+    fn the_space_of_the_instances_is_taken_out_again() {
+        let space = DAffine3::from_translation(DVec3::X * 7.0);
+        let joints = vec![joint(space); 2];
+        assert_eq!(bent(joints, space, [0; 6], [1.0; 6]).positions, base().positions);
+    }
+}
