@@ -1,6 +1,7 @@
 //! The textures of an OBJ file's materials. What they show is decoded when all are known, each
 //! picture once.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -22,40 +23,32 @@ const MOSTLY: f64 = 0.9;
 /// The textures of a file.
 pub struct Textures<'a> {
     guard: &'a Guard,
-    /// Those in the scene; no two are alike but for the picture's own.
-    made: Vec<(Key, TextureId)>,
     /// Pictures that are still to be decoded.
     pictures: Vec<Picture>,
+    /// Their numbers, by their canonical paths, or those that they should have.
+    numbers: HashMap<PathBuf, usize>,
     /// Materials whose opacity is in the picture's alpha, if it has one.
     opacities: Vec<MaterialId>,
     /// Materials with a `bump` that may be a picture of normals, and how much it counts.
     bumps: Vec<(MaterialId, TextureId, f32, String)>,
 }
 
-/// What makes a texture different from others.
-#[derive(PartialEq)]
-struct Key {
-    /// The picture's canonical path, or the one that it should have.
-    path: PathBuf,
-    clamp: bool,
-    transfer: Transfer,
-    transform: Affine2,
-}
+/// How a texture shows its picture: whether clamped, by which curve, and where.
+type Key = (bool, Transfer, Affine2);
 
-/// A picture that is still to be decoded, and the textures that show it.
+/// A picture that is still to be decoded, and the textures that show it, each in another way.
 struct Picture {
-    path: PathBuf,
     /// The folder of the MTL file, and what that calls it.
     folder: PathBuf,
     name: String,
-    shown_by: Vec<TextureId>,
+    shown_by: Vec<(Key, TextureId)>,
 }
 
 impl<'a> Textures<'a> {
     /// None yet.
     pub fn new(guard: &'a Guard) -> Self {
-        let (made, pictures, opacities, bumps) = Default::default();
-        Self { guard, made, pictures, opacities, bumps }
+        let (pictures, numbers, opacities, bumps) = Default::default();
+        Self { guard, pictures, numbers, opacities, bumps }
     }
 
     /// The texture of a statement, whose file is beside the MTL file in `folder`.
@@ -69,8 +62,15 @@ impl<'a> Textures<'a> {
         // Files are many, and open ones few: this one is opened again when it is decoded.
         let found = find(self.guard, folder, &map.file);
         let path = found.map_or_else(|_| folder.join(&map.file), |file| file.identity);
-        let key = Key { path, clamp: map.clamp, transfer, transform: transform(map) };
-        if let Some(&(_, id)) = self.made.iter().find(|(made, _)| *made == key) {
+        let pictures = &mut self.pictures;
+        let number = *self.numbers.entry(path).or_insert_with(|| {
+            let (folder, name) = (folder.to_owned(), map.file.clone());
+            pictures.push(Picture { folder, name, shown_by: Vec::new() });
+            pictures.len() - 1
+        });
+        let shown_by = &mut pictures[number].shown_by;
+        let key = (map.clamp, transfer, transform(map));
+        if let Some(&(_, id)) = shown_by.iter().find(|(made, _)| *made == key) {
             return id;
         }
         let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
@@ -78,18 +78,10 @@ impl<'a> Textures<'a> {
             transfer,
             wrap: [wrap; 2],
             mipmap: true,
-            transform: key.transform,
+            transform: key.2,
             ..Texture::new(Arc::new(picture::placeholder(&map.file)))
         });
-        match self.pictures.iter_mut().find(|picture| picture.path == key.path) {
-            Some(picture) => picture.shown_by.push(id),
-            None => {
-                let (path, folder) = (key.path.clone(), folder.to_owned());
-                let (name, shown_by) = (map.file.clone(), vec![id]);
-                self.pictures.push(Picture { path, folder, name, shown_by });
-            }
-        }
-        self.made.push((key, id));
+        shown_by.push((key, id));
         id
     }
 
@@ -123,7 +115,7 @@ impl<'a> Textures<'a> {
                 picture::placeholder(&picture.name)
             }));
             let shown_by = picture.shown_by.iter();
-            shown_by.for_each(|id| scene.textures[id.0 as usize].image = image.clone());
+            shown_by.for_each(|(_, id)| scene.textures[id.0 as usize].image = image.clone());
         }
         for material in self.opacities {
             let Scene { materials, textures, .. } = scene;
