@@ -34,7 +34,7 @@ fn refined(x: f64) -> f64 {
     y * (1.5 - (0.5 * x) * (y * y))
 }
 
-/// As [`unit`] for vectors that stand side by side, axis by axis; those that are not `here` may
+/// As [`unit()`] for vectors that stand side by side, axis by axis; those that are not `here` may
 /// become anything.
 #[inline(always)]
 pub fn unit_of_all<const N: usize>(v: &[[f64; N]; 3], here: &[bool; N]) -> [[f64; N]; 3] {
