@@ -66,10 +66,10 @@ impl fmt::Display for Place {
 }
 
 /// What went wrong, in which file, where in it, and what would be right.
-#[derive(Debug, thiserror::Error)]
+#[derive(Clone, Debug, thiserror::Error)]
 pub struct Error(Box<Details>);
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Details {
     kind: ErrorKind,
     path: Option<PathBuf>,

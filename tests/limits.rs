@@ -109,6 +109,16 @@ fn bytes_of_a_file_named_twice_count_once() {
 }
 
 #[test]
+fn json_by_what_it_takes() {
+    let model = Model::triangle();
+    let text = model.to_json(Some(&data_uri(model.bin()))).to_string();
+    // Strings do not count: the data URI has a comma.
+    let count = |c| text.matches(c).count() as u64 - if c == ',' { 1 } else { 0 };
+    let bytes = 640 * count('{') + 128 * count('[') + 32 * count(',');
+    Needs::new(Limit::Json, bytes, "model.gltf", text).check();
+}
+
+#[test]
 fn nodes() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"mesh": 0}, {}, {}, {}, {}]);
@@ -161,6 +171,26 @@ fn triangles_of_a_gltf() {
     let mut model = Model::parabola(5);
     model.primitive()["mode"] = 5.into();
     Needs::of(Limit::Triangles, 3, &model).check();
+}
+
+#[test]
+fn vertices_of_morphed_copies() {
+    let mut model = Model::triangle();
+    let up = model.floats("VEC3", &[0., 0., 1., 0., 0., 1., 0., 0., 1.]);
+    model.primitive()["targets"] = json!([{"POSITION": up}]);
+    model.json["nodes"] = vec![json!({"mesh": 0, "weights": [0.5]}); 4].into();
+    model.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    Needs::of(Limit::Deformed, 4 * 3, &model).check();
+}
+
+#[test]
+fn instances_of_one_node() {
+    let mut model = Model::triangle();
+    let moves = model.floats("VEC3", &[0., 0., 1., 0., 0., 2., 0., 0., 3.]);
+    model.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    model.json["nodes"][0]["extensions"] =
+        json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": moves}}});
+    Needs::of(Limit::Instances, 3, &model).check();
 }
 
 #[test]

@@ -63,8 +63,8 @@ pub struct Trust {
     /// Let files name others that are anywhere, not only beside and below SCENE
     #[arg(long)]
     pub allow_outside: bool,
-    /// Another limit on what SCENE may ask for: bytes, nodes, depth, instances, vertices, triangles,
-    /// elements, keys, pictures or pixels; may be given several times
+    /// Another limit on what SCENE may ask for: bytes, json, nodes, depth, instances, vertices, triangles,
+    /// deformed, elements, keys, pictures or pixels; may be given several times
     #[arg(long, value_name = "NAME=NUMBER")]
     pub limit: Vec<NamedLimit>,
 }

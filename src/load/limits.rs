@@ -10,6 +10,9 @@ use crate::error::{Error, Result};
 pub enum Limit {
     /// Bytes of all files that are read.
     Bytes,
+    /// Bytes of memory that the JSON of a glTF file is estimated to take: 640 for each object, 128
+    /// for each list, 32 for each value.
+    Json,
     /// Nodes of glTF files.
     Nodes,
     /// Nodes of a glTF file that stand one below the other.
@@ -21,6 +24,8 @@ pub enum Limit {
     Vertices,
     /// Stored triangles.
     Triangles,
+    /// Vertices of the copies that nodes have of the meshes that they skin or morph.
+    Deformed,
     /// Elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
     /// without a buffer view, and those that several accessors read from the same bytes.
     Elements,
@@ -29,19 +34,22 @@ pub enum Limit {
     /// Decoded pictures.
     Pictures,
     /// Pixels of all pictures beyond 16 for each byte of their files, so that what counts are
-    /// pictures that are much larger than their files. A pixel of floats counts four times.
+    /// pictures that are much larger than their files. A pixel of 16-bit numbers counts twice, one
+    /// of floats four times.
     Pixels,
 }
 
 impl Limit {
     /// All limits, in the order in which they are listed.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Bytes,
+        Self::Json,
         Self::Nodes,
         Self::Depth,
         Self::Instances,
         Self::Vertices,
         Self::Triangles,
+        Self::Deformed,
         Self::Elements,
         Self::Keys,
         Self::Pictures,
@@ -52,11 +60,13 @@ impl Limit {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Bytes => "bytes",
+            Self::Json => "json",
             Self::Nodes => "nodes",
             Self::Depth => "depth",
             Self::Instances => "instances",
             Self::Vertices => "vertices",
             Self::Triangles => "triangles",
+            Self::Deformed => "deformed",
             Self::Elements => "elements",
             Self::Keys => "keys",
             Self::Pictures => "pictures",
@@ -69,9 +79,11 @@ impl Limit {
     pub const fn default(self) -> u64 {
         match self {
             Self::Bytes => 1 << 30,
+            Self::Json => 1 << 29,
             Self::Nodes | Self::Instances => 1 << 20,
             Self::Depth => 1 << 12,
             Self::Vertices | Self::Triangles => 1 << 27,
+            Self::Deformed => 1 << 22,
             Self::Elements => 1 << 25,
             Self::Keys => 1 << 22,
             Self::Pictures => 1 << 14,
@@ -83,11 +95,13 @@ impl Limit {
     const fn counted(self) -> &'static str {
         match self {
             Self::Bytes => "bytes to read",
+            Self::Json => "bytes that the JSON is estimated to take",
             Self::Nodes => "nodes",
             Self::Depth => "nodes one below the other",
             Self::Instances => "instances",
             Self::Vertices => "vertices",
             Self::Triangles => "triangles",
+            Self::Deformed => "vertices of copies that are skinned or morphed",
             Self::Elements => "elements of accessors beyond the bytes of the buffers",
             Self::Keys => "keys of an animation",
             Self::Pictures => "pictures",
@@ -191,7 +205,7 @@ mod tests {
     #[test]
     fn what_is_no_limit_is_told_from_what_is_no_number() {
         let error = |text: &str| text.parse::<NamedLimit>().unwrap_err().to_string();
-        assert!(error("pixel=3").contains("they are bytes, nodes"));
+        assert!(error("pixel=3").contains("they are bytes, json"));
         assert!(error("pixels=-3").contains("no whole number"));
         assert!(error("pixels").contains("NAME=NUMBER"));
     }

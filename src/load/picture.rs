@@ -1,8 +1,11 @@
 //! Decoding pictures for textures.
 
+use std::borrow::Cow;
 use std::io::Cursor;
+use std::path::PathBuf;
 
-use image::{DynamicImage, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageReader};
+use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::load::guard::{Guard, Opened};
@@ -14,56 +17,127 @@ const MAX_SIDE: u32 = 1 << 15;
 /// So many pixels for each byte of a file do not count.
 const PIXELS_PER_BYTE: u64 = 16;
 
-/// Reads and decodes the picture in a file, if it is `wanted`; otherwise the file only has to be
-/// there.
-///
-/// # Errors
-/// When the file cannot be read or decoded.
-pub fn read(file: Opened, guard: &Guard, wanted: bool) -> Result<Image> {
-    let path = file.path.clone();
-    let name = path.display().to_string();
-    if !wanted {
-        return Ok(Image::unread(name));
-    }
-    let bytes = file.read(guard)?;
-    decode(&bytes, &name, guard, wanted).map_err(|e| e.at(&path))
+/// Where the bytes of a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR or OpenEXR) are.
+pub enum Source<'a> {
+    /// Here, and by this name.
+    Bytes(Cow<'a, [u8]>, String),
+    /// In a file.
+    File(Opened),
 }
 
-/// Decodes a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR or OpenEXR), if it is `wanted`; `name`
-/// says where it came from.
+/// A picture that is about to be decoded, or only named.
+enum Ready<'a> {
+    Unread(String),
+    Encoded { bytes: Cow<'a, [u8]>, name: String, path: Option<PathBuf>, pixels: u64 },
+}
+
+/// So many pictures wait, encoded, until they are decoded side by side.
+const TOGETHER: usize = 16;
+
+/// Decodes pictures, if they are `wanted`; otherwise they are only named, and files only have to be
+/// there. `open` says where each is, and opens its file, few at a time.
 ///
-/// # Errors
-/// When it is none of these, is damaged, is larger than 32768 pixels on a side, or is one more,
-/// or larger, than the limits allow.
-pub fn decode(bytes: &[u8], name: &str, guard: &Guard, wanted: bool) -> Result<Image> {
-    if !wanted {
-        return Ok(Image::unread(name));
+/// What they take of the limits they take in their order, so that which of them are one too many
+/// does not depend on threads.
+///
+/// Each is an error where it cannot be opened or read, is of none of these formats, is damaged, is
+/// larger than 32768 pixels on a side, or is one more, or larger, than the limits allow.
+pub fn decode_all<'a, T: Sync>(
+    pictures: &[T],
+    guard: &Guard,
+    open: impl Fn(&T) -> Result<Source<'a>>,
+    wanted: impl Fn(&T) -> bool,
+) -> Vec<Result<Image>> {
+    let mut images = Vec::with_capacity(pictures.len());
+    for some in pictures.chunks(TOGETHER) {
+        let ready = |picture| open(picture).and_then(|from| ready(from, guard, wanted(picture)));
+        let ready: Vec<_> = some.iter().map(ready).collect();
+        images.par_extend(ready.into_par_iter().map(|ready| ready.and_then(Ready::decode)));
     }
-    guard.take(Limit::Pictures, 1)?;
-    let fail = |e: image::ImageError| Error::input(format!("the picture cannot be decoded: {e}"));
-    let reader = || {
-        let mut reader = ImageReader::new(Cursor::new(bytes))
-            .with_guessed_format()
-            .map_err(|e| Error::input(format!("the picture cannot be read: {e}")))?;
-        if reader.format().is_none() && name.to_lowercase().ends_with(".tga") {
-            // A TGA file has no signature to guess by.
-            reader.set_format(image::ImageFormat::Tga);
+    images
+}
+
+/// Reads the bytes of a picture, and takes of the limits what it will take.
+fn ready<'a>(source: Source<'a>, guard: &Guard, wanted: bool) -> Result<Ready<'a>> {
+    let (bytes, name, path) = match source {
+        Source::Bytes(_, name) if !wanted => return Ok(Ready::Unread(name)),
+        Source::Bytes(bytes, name) => (bytes, name, None),
+        Source::File(file) => {
+            let path = file.path.clone();
+            let name = path.display().to_string();
+            if !wanted {
+                return Ok(Ready::Unread(name));
+            }
+            (file.read(guard)?.into(), name, Some(path))
         }
-        Ok(reader)
     };
-    let (width, height) = reader()?.into_dimensions().map_err(fail)?;
-    let pixels = u64::from(width) * u64::from(height);
+    match weigh(&bytes, &name, guard) {
+        Ok(pixels) => Ok(Ready::Encoded { bytes, name, path, pixels }),
+        Err(error) => Err(match path {
+            Some(path) => error.at(&path),
+            None => error,
+        }),
+    }
+}
+
+fn reader<'a>(bytes: &'a [u8], name: &str) -> Result<ImageReader<Cursor<&'a [u8]>>> {
+    let mut reader = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|e| Error::input(format!("the picture cannot be read: {e}")))?;
+    if reader.format().is_none() && name.to_lowercase().ends_with(".tga") {
+        // A TGA file has no signature to guess by.
+        reader.set_format(image::ImageFormat::Tga);
+    }
+    Ok(reader)
+}
+
+fn fail(error: image::ImageError) -> Error {
+    Error::input(format!("the picture cannot be decoded: {error}"))
+}
+
+/// How many pixels of 8-bit numbers a picture takes as much memory as, which are taken of the limits.
+fn weigh(bytes: &[u8], name: &str, guard: &Guard) -> Result<u64> {
+    guard.take(Limit::Pictures, 1)?;
+    let decoder = reader(bytes, name)?.into_decoder().map_err(fail)?;
+    let (width, height) = decoder.dimensions();
+    let pixels = u64::from(width) * u64::from(height) * weight(decoder.color_type());
     guard.take(Limit::Pixels, pixels.saturating_sub(PIXELS_PER_BYTE * bytes.len() as u64))?;
-    let mut reader = reader()?;
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    // Four 16-bit channels, twice, and room for what decoders need besides.
-    limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
-    reader.limits(limits);
-    let picture = reader.decode().map_err(fail)?;
-    let size = [picture.width(), picture.height()];
-    Ok(Image::new(name, size, texels(picture)))
+    Ok(pixels)
+}
+
+impl Ready<'_> {
+    fn decode(self) -> Result<Image> {
+        let (bytes, name, path, pixels) = match self {
+            Self::Unread(name) => return Ok(Image::unread(name)),
+            Self::Encoded { bytes, name, path, pixels } => (bytes, name, path, pixels),
+        };
+        let decode = || {
+            let mut reader = reader(&bytes, &name)?;
+            let mut limits = image::Limits::default();
+            limits.max_image_width = Some(MAX_SIDE);
+            limits.max_image_height = Some(MAX_SIDE);
+            // Four channels, more than twice, and room for what decoders need besides.
+            limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
+            reader.limits(limits);
+            reader.decode().map_err(fail)
+        };
+        let picture = decode().map_err(|e| match &path {
+            Some(path) => e.at(path),
+            None => e,
+        })?;
+        let size = [picture.width(), picture.height()];
+        Ok(Image::new(name, size, texels(picture)))
+    }
+}
+
+/// How many pixels of 8-bit numbers a pixel takes as much memory as.
+fn weight(color: ColorType) -> u64 {
+    use ColorType as C;
+    match color {
+        C::Rgb32F | C::Rgba32F => 4,
+        C::L16 | C::La16 | C::Rgb16 | C::Rgba16 => 2,
+        _ => 1,
+    }
 }
 
 /// The pixels as finely as the file has them.
@@ -112,7 +186,21 @@ mod tests {
 
     fn decoded(picture: DynamicImage, format: ImageFormat) -> Texels {
         let guard = Guard::new(Path::new("a"), false, Limits::default()).unwrap();
-        decode(&encoded(picture, format), "a", &guard, true).unwrap().texels
+        let bytes = encoded(picture, format);
+        let open = |_: &()| Ok(Source::Bytes(bytes.as_slice().into(), "a".to_owned()));
+        decode_all(&[()], &guard, open, |_| true).remove(0).unwrap().texels
+    }
+
+    #[test]
+    fn the_first_pictures_are_those_that_the_limits_allow() {
+        let limits = Limits::default().with(Limit::Pictures, 20);
+        let guard = Guard::new(Path::new("a"), false, limits).unwrap();
+        let red = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(1, 1, Rgb([255, 0, 0])));
+        let bytes = encoded(red, ImageFormat::Png);
+        let open = |_: &usize| Ok(Source::Bytes(bytes.as_slice().into(), "a".to_owned()));
+        let numbers: Vec<usize> = (0..50).collect();
+        let made = decode_all(&numbers, &guard, open, |_| true);
+        assert!(numbers.iter().zip(&made).all(|(&i, made)| made.is_ok() == (i < 20)));
     }
 
     #[test]

@@ -66,7 +66,12 @@ impl Tally {
         self.count(Kind::Note, &sentence.into(), 1, String::new);
     }
 
-    /// As [`Tally::say`], of a picture in whose place a placeholder stands.
+    /// As [`Tally::add`], of pictures or materials in whose place a placeholder stands.
+    pub fn placeholders(&mut self, reason: &str, count: u64, place: impl FnOnce() -> String) {
+        self.count(Kind::Placeholder, reason, count, place);
+    }
+
+    /// As [`Tally::say`], of a picture or materials in whose place a placeholder stands.
     pub fn placeholder(&mut self, sentence: impl Into<String>) {
         self.count(Kind::Placeholder, &sentence.into(), 1, String::new);
     }

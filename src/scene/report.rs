@@ -19,7 +19,7 @@ pub struct Report {
     /// Features that a file uses and that are not supported; one sentence each, also among the
     /// scene's warnings.
     pub unsupported: Vec<String>,
-    /// Pictures in whose place a placeholder stands; one sentence each, also among the scene's
+    /// Pictures and materials in whose place a placeholder stands; one sentence each, also among the scene's
     /// warnings.
     pub placeholders: Vec<String>,
 }

@@ -43,6 +43,21 @@ fn strict_lets_a_sound_file_be_validated() {
 }
 
 #[test]
+fn strict_refuses_a_file_whose_materials_are_missing() {
+    let folder = Folder::new();
+    for line in ["mtllib gone.mtl", "usemtl gone"] {
+        folder.write("a.obj", format!("{line}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+        let done = folder.run("info a.obj --strict");
+        assert_eq!(done.status, Some(2), "{line}");
+        assert!(
+            done.stderr.contains("placeholder: ") && done.stderr.contains("gone"),
+            "{}",
+            done.stderr
+        );
+    }
+}
+
+#[test]
 fn without_strict_a_loss_is_a_warning() {
     let done = lossy().run("info a.glb");
     assert_eq!(done.status, Some(0));

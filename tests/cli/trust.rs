@@ -56,7 +56,7 @@ fn a_limit_is_as_it_is_given_last() {
 fn a_limit_that_is_none_is_named() {
     let folder = scene();
     for (limit, part) in [
-        ("pixel=1", "they are bytes, nodes"),
+        ("pixel=1", "they are bytes, json"),
         ("pixels=many", "no whole number"),
         ("5", "NAME=NUMBER"),
     ] {

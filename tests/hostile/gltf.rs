@@ -21,7 +21,7 @@ fn nodes(name: &str, nodes: Vec<Value>, expect: Expect) -> Case {
 }
 
 /// The triangle after a change.
-fn changed(name: &str, expect: Expect, change: impl FnOnce(&mut Model)) -> Case {
+pub fn changed(name: &str, expect: Expect, change: impl FnOnce(&mut Model)) -> Case {
     let mut model = Model::triangle();
     change(&mut model);
     case(name, text(&model), expect)
@@ -80,7 +80,11 @@ pub fn cases() -> Vec<Case> {
             chain(4097, json!({"mesh": 0})),
             Error("`--limit depth=4097`"),
         ),
-        nodes("chain of a million nodes", chain(1_000_000, json!({"mesh": 0})), Error("depth")),
+        nodes(
+            "chain of a million nodes",
+            chain(1_000_000, json!({"mesh": 0})),
+            Error("`--limit json="),
+        ),
         nodes(
             "of 2^30 paths",
             (0..30)
@@ -99,10 +103,11 @@ pub fn cases() -> Vec<Case> {
             },
             Warning("stand twice"),
         ),
+        nodes("of more than 2^20 nodes", vec![json!({}); (1 << 20) + 1], Error("`--limit json=")),
         nodes(
-            "of more than 2^20 nodes",
-            vec![json!({}); (1 << 20) + 1],
-            Error("`--limit nodes=1048577`"),
+            "chain of 300000 nodes",
+            chain(300_000, json!({"mesh": 0})),
+            Error("`--limit depth="),
         ),
         nodes(
             "transforms that overflow together",

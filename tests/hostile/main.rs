@@ -8,6 +8,7 @@
 #[path = "../import_common/mod.rs"]
 mod common;
 
+mod deform;
 mod encode;
 mod glb;
 mod gltf;
@@ -86,6 +87,7 @@ fn cases() -> Vec<Case> {
     let all = [
         gltf::cases(),
         gltf_edits::cases(),
+        deform::cases(),
         links::cases(),
         glb::cases(),
         obj::cases(),

@@ -88,7 +88,7 @@ pub fn cases() -> Vec<Case> {
     case(
         "of 100000 lines that are not understood",
         ["newmtl a\n".to_owned(), "Kd x\n".repeat(100_000)].concat().into_bytes(),
-        Warning("100000 lines"),
+        Warning("100000 lines are ignored"),
     );
     case(
         "of 100000 maps of which the last counts",

@@ -1,22 +1,22 @@
 //! EXT_mesh_gpu_instancing: one node whose mesh stands in many places.
 
 use glam::{DAffine3, DQuat, DVec3};
-use gltf::json::{Node, Value};
+use gltf::json::Value;
 
 use super::accessor::Accessors;
+use super::nodes::Placed;
 use crate::error::{Error, Place, Result};
+use crate::load::guard::Guard;
+use crate::load::limits::Limit;
 use crate::load::tally::Tally;
-
-/// The most instances of one node.
-const MAX_INSTANCES: u64 = 1 << 20;
 
 /// Where a node's mesh stands, in the node's space; nothing where that is once, at its origin.
 ///
 /// # Errors
 /// When the extension's accessors cannot be read, or are not equally long.
 pub fn places(
-    node: &Node,
-    index: usize,
+    Placed { node, index, .. }: &Placed,
+    guard: &Guard,
     accessors: &Accessors,
     tally: &mut Tally,
 ) -> Result<Option<Vec<DAffine3>>> {
@@ -32,11 +32,7 @@ pub fn places(
             .and_then(|i| usize::try_from(i).ok())
             .ok_or_else(|| Error::input(format!("{value} is no accessor")).place(place(name)))?;
         let found = accessors.count(accessor);
-        if found > MAX_INSTANCES {
-            return Err(Error::input(format!("{found} instances are too many"))
-                .place(place(name))
-                .help(format!("at most {MAX_INSTANCES}")));
-        }
+        guard.check(Limit::Instances, found).map_err(|e| e.place(place(name)))?;
         if *count.get_or_insert(found) != found {
             return Err(Error::input(format!("{found} values, where others have another number"))
                 .place(place(name)));

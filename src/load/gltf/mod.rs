@@ -69,12 +69,11 @@ fn import(
     wanted: bool,
 ) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
+    guard.check(Limit::Json, document::memory(json))?;
     let (root, value) = document::parse(json)?;
     let mut tally = Tally::default();
     match value {
-        Value::Null => {
-            tally.say("the JSON is larger than 8 MB and is not held against the standard")
-        }
+        Value::Null => tally.say("the JSON is too large to be held against the standard"),
         _ => validation::validate(&value, bin.map(<[u8]>::len), &mut tally),
     }
     extensions::check(&root, &mut tally)?;
@@ -145,8 +144,7 @@ impl Importer<'_> {
         let Some(mesh) = placed.node.mesh else { return Ok(()) };
         let by = format!("nodes[{}].mesh", placed.index);
         let parts = self.mesh(mesh.value(), &by)?;
-        let places =
-            instancing::places(placed.node, placed.index, &self.accessors, &mut self.tally)?;
+        let places = instancing::places(placed, self.guard, &self.accessors, &mut self.tally)?;
         let places = places.unwrap_or_else(|| vec![DAffine3::IDENTITY]);
         if places.is_empty() {
             return Ok(());
@@ -248,6 +246,9 @@ impl Importer<'_> {
         if skin.is_none() && !is_morphed {
             return Ok((self.store(made, mesh), false));
         }
+        let count = base.positions.len() as u64;
+        let at = |e: Error| e.place(Place::Json(format!("nodes[{}]", placed.index)));
+        self.guard.take(Limit::Deformed, count).map_err(at)?;
         let mut deformation = Deformation {
             base: base.clone(),
             morphs: morphs.clone(),

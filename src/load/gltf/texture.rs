@@ -9,7 +9,6 @@ use glam::{Affine2, Mat2, Vec2};
 use gltf::json;
 use gltf::json::texture::{Info, MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
-use rayon::prelude::*;
 
 use super::buffers::{Buffers, Target, cannot_have, get, resolve};
 use crate::error::{Error, Place, Result};
@@ -135,6 +134,7 @@ struct Picture<'a> {
 }
 
 /// Where a picture's bytes are.
+#[derive(Clone)]
 enum Source<'a> {
     Bytes(Cow<'a, [u8]>),
     /// Of a file, by the URI: it is opened when it is read, so that few are open at a time.
@@ -244,20 +244,19 @@ impl<'a> Textures<'a> {
     pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
         let Self { guard, buffers, wanted, pictures, .. } = self;
         let folder = buffers.folder();
-        let decode = |picture: Picture| {
-            let Picture { source, at, shown_by } = picture;
-            let image = source.and_then(|source| match source {
-                Source::Bytes(bytes) => picture::decode(&bytes, &at, guard, wanted),
-                Source::File(uri) => match resolve(uri, folder, guard) {
-                    Ok(Target::Data(bytes)) => picture::decode(&bytes, &at, guard, wanted),
-                    Ok(Target::File(file)) => picture::read(file, guard, wanted),
-                    Err(error) => Err(cannot_have("picture", uri, &error)),
-                },
-            });
-            (image.map_err(|e| e.place(Place::Json(at.clone()))), at, shown_by)
+        let open = |picture: &Picture<'a>| match picture.source.clone()? {
+            Source::Bytes(bytes) => Ok(picture::Source::Bytes(bytes, picture.at.clone())),
+            Source::File(uri) => match resolve(uri, folder, guard) {
+                Ok(Target::Data(bytes)) => {
+                    Ok(picture::Source::Bytes(bytes.into(), picture.at.clone()))
+                }
+                Ok(Target::File(file)) => Ok(picture::Source::File(file)),
+                Err(error) => Err(cannot_have("picture", uri, &error)),
+            },
         };
-        let decoded: Vec<_> = pictures.into_par_iter().map(decode).collect();
-        for (image, at, shown_by) in decoded {
+        let images = picture::decode_all(&pictures, guard, open, |_| wanted);
+        for (image, Picture { at, shown_by, .. }) in images.into_iter().zip(pictures) {
+            let image = image.map_err(|e| e.place(Place::Json(at.clone())));
             let image = Arc::new(image.unwrap_or_else(|error| {
                 tally.placeholder(format!("{error}; a magenta checker takes its place"));
                 picture::placeholder(&at)

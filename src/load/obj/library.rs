@@ -52,8 +52,9 @@ impl<'a> Library<'a> {
                         ));
                         library.add(own, tally);
                     }
-                    (Err(error), Err(_)) => tally
-                        .say(format!("the materials `{name}` are missing and drawn grey: {error}")),
+                    (Err(error), Err(_)) => tally.placeholder(format!(
+                        "the materials `{name}` are missing and drawn grey: {error}"
+                    )),
                 }
             }
         }
@@ -71,7 +72,7 @@ impl<'a> Library<'a> {
         let bytes = match file.read(self.guard) {
             Ok(bytes) => bytes,
             Err(error) => {
-                tally.say(format!("the materials are missing and drawn grey: {error}"));
+                tally.placeholder(format!("the materials are missing and drawn grey: {error}"));
                 return;
             }
         };
@@ -106,7 +107,7 @@ impl<'a> Library<'a> {
             None => {
                 if !name.is_empty() {
                     let reason = "{} materials are in no MTL file and drawn grey";
-                    tally.add(reason, 1, || format!("`{name}`"));
+                    tally.placeholders(reason, 1, || format!("`{name}`"));
                 }
                 Material { name: name.to_owned(), ..Material::default() }
             }

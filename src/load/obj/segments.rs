@@ -34,15 +34,15 @@ impl Segments {
         }
     }
 
-    /// A text to which lines can be added.
-    pub fn write(&mut self) -> &mut String {
-        if !matches!(self.0.last(), Some(Segment::Written(_))) {
-            self.0.push(Segment::Written(String::new()));
+    /// Adds the lines that `write` adds to a text.
+    pub fn write<T>(&mut self, write: impl FnOnce(&mut String) -> T) -> T {
+        if let Some(Segment::Written(text)) = self.0.last_mut() {
+            return write(text);
         }
-        match self.0.last_mut() {
-            Some(Segment::Written(text)) => text,
-            _ => unreachable!("a written piece stands last"),
-        }
+        let mut text = String::new();
+        let done = write(&mut text);
+        self.0.push(Segment::Written(text));
+        done
     }
 
     /// Adds the pieces of another one.
@@ -70,8 +70,8 @@ mod tests {
         let mut segments = Segments::default();
         segments.keep(0..2, false);
         segments.keep(2..4, true);
-        segments.write().push_str("x\n");
-        segments.write().push_str("y\n");
+        segments.write(|text| text.push_str("x\n"));
+        segments.write(|text| text.push_str("y\n"));
         segments.keep(8..9, false);
         let texts: Vec<_> = segments.into_iter().map(|s| s.text(original).to_owned()).collect();
         assert_eq!(texts, ["a\nb\n", "x\ny\n", "d"]);

@@ -164,8 +164,8 @@ impl<'a> Sorter<'a> {
                 let kind = vertices::KINDS.iter().position(|kind| kind == keyword).unwrap_or(0);
                 self.so_far.of[kind] += 1;
                 let colored = self.total.colored;
-                let out = self.made.vertices.write();
-                if !vertices::write(kind, rest, colored, out)? {
+                let write = |out: &mut String| vertices::write(kind, rest, colored, out);
+                if !self.made.vertices.write(write)? {
                     let reason =
                         "{} lines of vertex data have a number that is broken or not finite";
                     self.tally.add(reason, 1, at);
@@ -207,8 +207,8 @@ impl<'a> Sorter<'a> {
                       none that is there";
         self.tally.add(reason, u64::from(named != has), at);
         let part = self.part(has);
-        let out = self.segments(Target::Part(part)).write();
-        super::corners::write(&corners, has, out);
+        let write = |out: &mut String| super::corners::write(&corners, has, out);
+        self.segments(Target::Part(part)).write(write);
         Ok(())
     }
 }

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{Affine2, Vec2};
-use rayon::prelude::*;
 
 use super::files::find;
 use super::map::Map;
@@ -103,13 +102,12 @@ impl<'a> Textures<'a> {
 
     /// Decodes the pictures, side by side, if they are `wanted`, and settles what depends on them.
     pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
-        let decode = |picture: Picture| {
-            let file = find(self.guard, &picture.folder, &picture.name);
-            let image = file.and_then(|file| picture::read(file, self.guard, wanted));
-            (image.map_err(|e| e.at(&picture.folder.join(&picture.name))), picture)
+        let open = |picture: &Picture| {
+            find(self.guard, &picture.folder, &picture.name).map(picture::Source::File)
         };
-        let decoded: Vec<_> = self.pictures.into_par_iter().map(decode).collect();
-        for (image, picture) in decoded {
+        let images = picture::decode_all(&self.pictures, self.guard, open, |_| wanted);
+        for (image, picture) in images.into_iter().zip(&self.pictures) {
+            let image = image.map_err(|e| e.at(&picture.folder.join(&picture.name)));
             let image = Arc::new(image.unwrap_or_else(|error| {
                 tally.placeholder(format!("{error}; a magenta checker takes its place"));
                 picture::placeholder(&picture.name)

@@ -4,8 +4,6 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::source::{Source, Span};
 use super::spanned::At;
 use super::tables::MapFilter;
@@ -75,11 +73,9 @@ impl Pictures {
     /// # Errors
     /// When one of them cannot be read; of several the one that is named first.
     pub fn decode(self, source: &Source<'_>, guard: &Guard, scene: &mut Scene) -> Result<()> {
-        let read = |file: &File| {
-            let opened = guard.open(source.folder(), &[&file.name])?;
-            picture::read(opened, guard, file.wanted)
-        };
-        let images: Vec<_> = self.files.par_iter().map(read).collect();
+        let open =
+            |file: &File| guard.open(source.folder(), &[&file.name]).map(picture::Source::File);
+        let images = picture::decode_all(&self.files, guard, open, |file| file.wanted);
         for (file, image) in self.files.iter().zip(images) {
             let fail = |e| source.cannot_have(&file.span, "picture", &file.name, &e);
             let image = Arc::new(image.map_err(fail)?);

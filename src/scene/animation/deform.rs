@@ -154,8 +154,8 @@ impl Influences {
         self.weights = kept.iter().flat_map(|&v| self.weights[of(v)].iter().copied()).collect();
     }
 
-    /// Linear blend skinning, in f64: each vertex by the weighted mean of its joints' transforms, and
-    /// its normal by that mean's cofactors, which is right for any scale.
+    /// Linear blend skinning, in f64: each vertex and its tangent by the weighted mean of its joints'
+    /// transforms, and its normal by that mean's cofactors, which is right for any scale.
     fn bend(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
         let positions = mesh.positions.par_iter_mut().with_min_len(GRAIN).enumerate();
         let transforms: Vec<DMat3> = positions
@@ -166,6 +166,14 @@ impl Influences {
                 transform.matrix3
             })
             .collect();
+        let tangents = mesh.tangents.par_iter_mut().with_min_len(GRAIN).zip(&transforms);
+        tangents.for_each(|([x, y, z, hand], m)| {
+            let turned = *m * DVec3::new(f64::from(*x), f64::from(*y), f64::from(*z));
+            if let Some(turned) = turned.try_normalize() {
+                [*x, *y, *z] = turned.as_vec3().to_array();
+                *hand *= m.determinant().signum() as f32;
+            }
+        });
         let normals = mesh.normals.par_iter_mut().with_min_len(GRAIN).zip(transforms);
         normals.for_each(|(normal, m)| {
             let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
@@ -228,6 +236,25 @@ mod tests {
         let weights = vec![Curve::constant(weight)];
         let morphs = [morph].into();
         Deformation { base: base(), morphs, weights, repeats: None, skin: None }.mesh(0.0, &[])
+    }
+
+    #[test]
+    fn tangents_turn_with_their_joints_and_change_hands_in_a_mirror() {
+        let bent = |by: DMat3| {
+            let base = Mesh { tangents: vec![[1.0, 0.0, 0.0, 1.0]; 3], ..Mesh::clone(&base()) };
+            let influences =
+                Influences { per_vertex: 1, joints: vec![0; 3], weights: vec![1.0; 3] };
+            let joints = vec![joint(DAffine3::from_mat3(by))];
+            let skin =
+                Skin { joints, influences: Arc::new(influences), space: joint(DAffine3::IDENTITY) };
+            let (base, morphs) = (Arc::new(base), [].into());
+            let deformation =
+                Deformation { base, morphs, weights: vec![], repeats: None, skin: Some(skin) };
+            deformation.mesh(0.0, &[]).tangents[1]
+        };
+        let quarter = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
+        assert_eq!(bent(quarter), [0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(bent(DMat3::from_diagonal(DVec3::new(-2.0, 1.0, 1.0))), [-1.0, 0.0, 0.0, -1.0]);
     }
 
     #[test]
