@@ -15,6 +15,7 @@ use super::buffers::get;
 use crate::error::{Error, Result};
 use crate::load::guard::Guard;
 use crate::load::limits::Limit;
+use crate::load::suggest;
 use crate::load::tally::Tally;
 use crate::scene::animation::{
     Animation, Curve, Interpolation, Keys, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Value,
@@ -199,11 +200,10 @@ fn put<T: Value>(to: &mut Option<Curve<T>>, curve: Curve<T>) -> (bool, f64) {
 fn named(root: &json::Root, name: &str) -> Result<usize> {
     let of = |animation: &json::Animation| animation.name.as_deref() == Some(name);
     root.animations.iter().position(of).ok_or_else(|| {
-        let names: Vec<String> =
-            root.animations.iter().flat_map(|a| &a.name).map(|n| format!("`{n}`")).collect();
+        let names: Vec<&str> = root.animations.iter().filter_map(|a| a.name.as_deref()).collect();
         Error::input(format!("there is no animation `{name}`")).help(match &names[..] {
             [] => "no animation of the file has a name; without one the first is played".to_owned(),
-            names => format!("the file has {}", names.join(", ")),
+            names => suggest::choice(name, names, "animations"),
         })
     })
 }
