@@ -57,9 +57,13 @@ pub enum Command {
     Diff(Diff),
 }
 
-/// How far the files of a scene are trusted; shared by the commands that load one.
+/// How the files of a scene are loaded; shared by the commands that load one.
 #[derive(Args, Clone)]
-pub struct Trust {
+pub struct Loading {
+    /// Show this variant of the materials of a glTF file, in a scene file of each model that has
+    /// one of this name and names none itself; `envers info` lists them
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
     /// Let files name others that are anywhere, not only beside and below SCENE
     #[arg(long)]
     pub allow_outside: bool,
@@ -69,12 +73,13 @@ pub struct Trust {
     pub limit: Vec<NamedLimit>,
 }
 
-impl Trust {
+impl Loading {
     /// The options of a load.
     pub fn options(&self, size: Option<[u32; 2]>, skips: Skips) -> Options {
         let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
-        Options { size, skips, allow_outside: self.allow_outside, limits }
+        let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
+        Options { size, skips, variant, allow_outside, limits }
     }
 }
 
@@ -106,7 +111,7 @@ pub struct Tracing {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     #[command(flatten)]
-    pub trust: Trust,
+    pub loading: Loading,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -251,7 +256,7 @@ pub struct Info {
     /// A scene file (.toml) or a model (.gltf, .glb, .obj)
     pub scene: PathBuf,
     #[command(flatten)]
-    pub trust: Trust,
+    pub loading: Loading,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -301,7 +306,8 @@ impl Tracing {
         files::check_input(&self.scene)?;
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene = crate::load::load_with(&self.scene, &self.trust.options(self.size, skips))?;
+        let mut scene =
+            crate::load::load_with(&self.scene, &self.loading.options(self.size, skips))?;
         if self.strict {
             loss::check_strictly(&scene, &self.scene)?;
         }

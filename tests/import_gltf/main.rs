@@ -19,6 +19,7 @@ mod report;
 mod shapes;
 mod textures;
 mod validation;
+mod variants;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};
 use envers::scene::{Material, Scene};

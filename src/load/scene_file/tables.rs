@@ -268,6 +268,8 @@ pub struct ModelTable {
     pub lights: Option<bool>,
     /// Which of the animations in a glTF file it plays, by name; without one, the first.
     pub animation: Option<At<String>>,
+    /// Which variant of its materials a glTF file shows, by name; without one, the default.
+    pub variant: Option<At<String>>,
 }
 
 /// A light.
