@@ -15,6 +15,7 @@ mod place;
 mod repair;
 mod scene_file;
 mod settle;
+mod stand_in;
 mod studio;
 mod suggest;
 mod tally;

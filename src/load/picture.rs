@@ -180,14 +180,6 @@ fn pixels<T: Copy>(values: Vec<T>) -> Vec<[T; 4]> {
     values.as_chunks().0.to_vec()
 }
 
-/// What stands in for a picture that cannot be had: a checker of magenta and black that nobody
-/// takes for the real thing.
-pub fn placeholder(name: &str) -> Image {
-    let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
-    let texels = vec![magenta, black, black, magenta];
-    Image::bytes(format!("{name} (missing)"), [2, 2], texels)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
