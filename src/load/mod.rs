@@ -101,7 +101,7 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
 /// that name, or the first. Its pictures are read where they are `wanted`.
 fn model(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> Result<Scene> {
     match extension(&file.path).as_str() {
-        "gltf" | "glb" => gltf::load(file, guard, animation, wanted),
+        "gltf" | "glb" | "vrm" => gltf::load(file, guard, animation, wanted),
         "obj" if animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),
