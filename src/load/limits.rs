@@ -27,7 +27,8 @@ pub enum Limit {
     /// Vertices of the copies that nodes have of the meshes that they skin or morph.
     Deformed,
     /// Elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
-    /// without a buffer view, and those that several accessors read from the same bytes.
+    /// without a buffer view, and those that several accessors read from the same bytes. A triangle
+    /// that Draco has packed counts as four.
     Elements,
     /// Keys of glTF files' animations, those of all channels together.
     Keys,

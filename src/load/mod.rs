@@ -7,6 +7,7 @@
 mod framing;
 mod gltf;
 mod guard;
+mod ktx;
 mod limits;
 mod obj;
 mod picture;

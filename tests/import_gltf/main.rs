@@ -5,9 +5,11 @@
 mod common;
 
 mod animation;
+mod basis;
 mod damaged_data;
 mod damaged_files;
 mod deform;
+mod draco;
 mod geometry;
 mod lights;
 mod materials;

@@ -11,6 +11,7 @@ mod compact;
 mod container;
 mod deform;
 mod document;
+mod draco;
 mod extensions;
 mod instancing;
 mod lights;

@@ -266,15 +266,14 @@ impl<'a> Textures<'a> {
     }
 }
 
-/// The picture of a texture; that of EXT_texture_webp where there is one.
+/// The picture of a texture; that of an extension where there is one.
 fn source(texture: &json::Texture) -> Option<usize> {
-    let webp = || {
-        let extension = texture.extensions.as_ref()?.others.get("EXT_texture_webp")?;
-        usize::try_from(extension.get("source")?.as_u64()?).ok()
-    };
+    let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
+    let of = |name: &str| usize::try_from(others?.get(name)?.get("source")?.as_u64()?).ok();
     // The crate writes a missing source as the greatest index.
     let own = texture.source.value();
-    webp().or((own != u32::MAX as usize).then_some(own))
+    let packed = of("KHR_texture_basisu").or_else(|| of("EXT_texture_webp"));
+    packed.or((own != u32::MAX as usize).then_some(own))
 }
 
 fn wrap(mode: Checked<WrappingMode>) -> Wrap {

@@ -115,7 +115,7 @@ pub struct MaterialTable {
     /// Share of the light that is scattered to all sides.
     #[schemars(extend("default" = 0.8))]
     pub diffuse: Option<At<Color>>,
-    /// Picture file (PNG, JPEG, WebP, TGA or BMP, in sRGB; HDR or EXR, linear) multiplied with
+    /// Picture file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied with
     /// `diffuse`.
     pub diffuse_map: Option<At<String>>,
     /// Share of the light in the highlight.
