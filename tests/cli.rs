@@ -26,6 +26,8 @@ mod strict;
 mod tone;
 #[path = "cli/trust.rs"]
 mod trust;
+#[path = "cli/variants.rs"]
+mod variants;
 #[path = "cli/warnings.rs"]
 mod warnings;
 #[path = "cli/work.rs"]

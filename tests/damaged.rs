@@ -14,8 +14,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use common::Random;
+use draco_core::GeometryAttributeType as Kind;
 use envers::error::ErrorKind;
 use image::ImageFormat;
+use import_common::packed::{ktx, packed};
 use import_common::{Folder, data_uri, whole};
 use serde_json::Value;
 
@@ -92,11 +94,27 @@ fn valid_files() -> Folder {
     let inside = model.to_json(Some(&data_uri(model.bin()))).to_string();
     folder.write("inside.gltf", inside);
     folder.write("model.bin", model.bin());
+    folder.write("packed.glb", packed_file());
     folder.write("model.obj", OBJ);
     folder.write("model.mtl", MTL);
     folder.write("scene.toml", SCENE);
     folder.write("picture.png", picture(ImageFormat::Png));
     folder
+}
+
+/// A sheet of a few waves, packed by Draco.
+fn packed_file() -> Vec<u8> {
+    const SIDE: u32 = 8;
+    let points = (0..SIDE * SIDE).map(|i| [(i % SIDE) as f32, (i / SIDE) as f32]);
+    let positions: Vec<f32> = points.clone().flat_map(|[x, y]| [x, y, (x * y).sin()]).collect();
+    let uvs: Vec<f32> = points.flatten().map(|x| x / SIDE as f32).collect();
+    let corners = (0..SIDE * SIDE).filter(|i| i % SIDE + 1 < SIDE && i / SIDE + 1 < SIDE);
+    let halves = corners.flat_map(|i| [[i, i + 1, i + SIDE], [i + 1, i + SIDE + 1, i + SIDE]]);
+    let attributes = [
+        ("POSITION", Kind::Position, 3, &positions[..]),
+        ("TEXCOORD_0", Kind::TexCoord, 2, &uvs[..]),
+    ];
+    packed(&attributes, &halves.collect::<Vec<_>>()).glb()
 }
 
 /// A folder with a model that shows one picture.
@@ -360,6 +378,7 @@ damaged! {
     damaged_gltf: "model.gltf",
     damaged_gltf_with_its_data_inside: "inside.gltf",
     damaged_buffer: "model.bin",
+    damaged_packed_mesh: "packed.glb",
     damaged_obj: "model.obj",
     damaged_mtl: "model.mtl",
     damaged_scene: "scene.toml",
@@ -383,6 +402,7 @@ damaged_pictures! {
     damaged_bmp: "picture.bmp" is picture(ImageFormat::Bmp),
     damaged_hdr: "picture.hdr" is hdr(),
     damaged_exr: "picture.exr" is exr(),
+    damaged_ktx: "picture.ktx2" is ktx([8, 8], [200, 100, 50, 255]),
 }
 
 /// The small model files of the corpus, each beside what it names.
@@ -416,7 +436,8 @@ fn damaged_corpus() {
 #[test]
 fn the_files_are_valid_before() {
     let folder = valid_files();
-    for file in ["model.glb", "model.gltf", "inside.gltf", "model.obj", "scene.toml"] {
+    for file in ["model.glb", "model.gltf", "inside.gltf", "packed.glb", "model.obj", "scene.toml"]
+    {
         let scene = envers::load::load(&folder.path(file)).unwrap_or_else(|e| panic!("{e}"));
         assert!(scene.triangle_count() > 0, "{file}");
     }

@@ -109,6 +109,27 @@ fn bytes_of_a_file_named_twice_count_once() {
 }
 
 #[test]
+fn bytes_of_packed_views() {
+    let mut model = Model::triangle();
+    // Three times (0, 0, 1): no differences from the element at the end.
+    let mut stream = vec![0xa0];
+    stream.extend([0; 12 + 32 - 4]);
+    stream.extend(1f32.to_le_bytes());
+    let packed = model.view(&stream);
+    let view = model.last_view();
+    view["extensions"] = json!({"EXT_meshopt_compression": {
+        "buffer": 0, "byteOffset": view["byteOffset"], "byteLength": stream.len(),
+        "byteStride": 12, "count": 3, "mode": "ATTRIBUTES"}});
+    (view["byteLength"], view["byteStride"]) = (36.into(), 12.into());
+    let normals = model
+        .accessor(json!({"bufferView": packed, "componentType": 5126, "type": "VEC3", "count": 3}));
+    model.primitive()["attributes"]["NORMAL"] = normals.into();
+    model.json["extensionsUsed"] = json!(["EXT_meshopt_compression"]);
+    let glb = model.glb();
+    Needs::new(Limit::Bytes, glb.len() as u64 + 36, "model.glb", glb).check();
+}
+
+#[test]
 fn json_by_what_it_takes() {
     let model = Model::triangle();
     let text = model.to_json(Some(&data_uri(model.bin()))).to_string();
@@ -228,6 +249,19 @@ fn keys_of_all_channels() {
         "channels": [channel("translation"), channel("scale")],
         "samplers": [{"input": times, "output": values}]}]);
     Needs::of(Limit::Keys, 4, &model).check();
+}
+
+#[test]
+fn keys_of_each_morph_target() {
+    let mut model = Model::triangle();
+    let up = model.floats("VEC3", &[0., 0., 1., 0., 0., 1., 0., 0., 1.]);
+    let times = model.floats("SCALAR", &[0.0, 1.0]);
+    let weights = model.floats("SCALAR", &[0.5; 6]);
+    model.primitive()["targets"] = vec![json!({"POSITION": up}); 3].into();
+    model.json["animations"] = json!([{
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
+        "samplers": [{"input": times, "output": weights}]}]);
+    Needs::of(Limit::Keys, 3 * 2, &model).check();
 }
 
 #[test]

@@ -10,14 +10,12 @@ use crate::cli::values::{
     BackendName, BvhName, PrecisionName, SampleRange, ToneName, ViewName, finite, goal,
     not_negative, sample_range, seconds, share, size,
 };
-use crate::cli::{files, loss};
-use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::load::{Limits, NamedLimit, Options};
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
+use crate::scene::Skips;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
-use crate::scene::{Scene, Skips};
 
 /// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
 #[derive(Parser)]
@@ -57,9 +55,13 @@ pub enum Command {
     Diff(Diff),
 }
 
-/// How far the files of a scene are trusted; shared by the commands that load one.
+/// How the files of a scene are loaded; shared by the commands that load one.
 #[derive(Args, Clone)]
-pub struct Trust {
+pub struct Loading {
+    /// Show this variant of the materials of a glTF file, in a scene file of each model that has
+    /// one of this name and names none itself; `envers info` lists them
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
     /// Let files name others that are anywhere, not only beside and below SCENE
     #[arg(long)]
     pub allow_outside: bool,
@@ -69,12 +71,13 @@ pub struct Trust {
     pub limit: Vec<NamedLimit>,
 }
 
-impl Trust {
+impl Loading {
     /// The options of a load.
     pub fn options(&self, size: Option<[u32; 2]>, skips: Skips) -> Options {
         let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
-        Options { size, skips, allow_outside: self.allow_outside, limits }
+        let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
+        Options { size, skips, variant, allow_outside, limits }
     }
 }
 
@@ -106,7 +109,7 @@ pub struct Tracing {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     #[command(flatten)]
-    pub trust: Trust,
+    pub loading: Loading,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -251,7 +254,7 @@ pub struct Info {
     /// A scene file (.toml) or a model (.gltf, .glb, .obj)
     pub scene: PathBuf,
     #[command(flatten)]
-    pub trust: Trust,
+    pub loading: Loading,
     /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
     /// by a placeholder
     #[arg(long)]
@@ -280,74 +283,6 @@ pub struct Diff {
     /// Write a picture of the differences: black where equal, white where the largest
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
-}
-
-impl Tracing {
-    /// Loads the scene as it is at one moment, as [`Tracing::load_animated`].
-    ///
-    /// # Errors
-    /// As there.
-    pub fn load(&self) -> Result<(Scene, usize)> {
-        let (scene, camera) = self.load_animated(Skips::default())?;
-        Ok((scene.at(0.0)?, camera))
-    }
-
-    /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
-    /// for a moment the scene is that. What nothing shows is left out as `skips` says.
-    ///
-    /// # Errors
-    /// When the scene cannot be loaded, or the flags do not fit it.
-    pub fn load_animated(&self, skips: Skips) -> Result<(Scene, usize)> {
-        files::check_input(&self.scene)?;
-        // Loading and writing keep to them, too. Fails only where the pool is there already.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene = crate::load::load_with(&self.scene, &self.trust.options(self.size, skips))?;
-        if self.strict {
-            loss::check_strictly(&scene, &self.scene)?;
-        }
-        if let Some(spp) = self.spp {
-            (scene.film.spp, scene.film.adaptive) = (spp, None);
-        }
-        if let Some(depth) = self.max_depth {
-            scene.film.max_depth = depth;
-        }
-        let camera = match &self.camera {
-            None => 0,
-            Some(wanted) => find_camera(&scene, wanted)?,
-        };
-        if let Some(time) = self.time {
-            if scene.animation.is_none() {
-                let error = Error::input("the scene has no animation, and so no --time");
-                return Err(error.at(&self.scene).help("leave --time out"));
-            }
-            scene = scene.at(time).map_err(|e| e.at(&self.scene))?;
-        }
-        Ok((scene, camera))
-    }
-
-    /// The number of threads; 0 means all.
-    pub fn threads(&self) -> usize {
-        self.threads.map_or(0, usize::from)
-    }
-}
-
-fn find_camera(scene: &Scene, wanted: &str) -> Result<usize> {
-    if let Some(index) = scene.cameras.iter().position(|c| c.name == wanted) {
-        return Ok(index);
-    }
-    match wanted.parse::<usize>() {
-        Ok(index) if index < scene.cameras.len() => Ok(index),
-        _ => {
-            let names: Vec<String> =
-                (0..).zip(&scene.cameras).map(|(i, c)| shown(i, &c.name)).collect();
-            Err(Error::input(format!("there is no camera `{wanted}`"))
-                .help(format!("the scene has {}", names.join(", "))))
-        }
-    }
-}
-
-fn shown(index: usize, name: &str) -> String {
-    if name.is_empty() { index.to_string() } else { format!("{index} `{name}`") }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::cli::args::{Tracing, Trust};
+use crate::cli::args::{Loading, Tracing};
 use crate::cli::values::{BackendName, PrecisionName, SampleRange, sample_range, size, wait};
 use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
@@ -67,7 +67,7 @@ pub struct Bench {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
     #[command(flatten)]
-    pub trust: Trust,
+    pub loading: Loading,
     /// Print no progress and no warnings
     #[arg(short, long)]
     pub quiet: bool,
@@ -125,7 +125,7 @@ fn tracing(arguments: &Bench) -> Tracing {
         time: None,
         precision: PrecisionName::Fast,
         threads: arguments.threads,
-        trust: arguments.trust.clone(),
+        loading: arguments.loading.clone(),
         strict: false,
         quiet: arguments.quiet,
     }

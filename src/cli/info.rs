@@ -108,7 +108,7 @@ pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
     let scene =
-        load::load_with(&arguments.scene, &arguments.trust.options(None, Skips::default()))?;
+        load::load_with(&arguments.scene, &arguments.loading.options(None, Skips::default()))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);
@@ -191,6 +191,10 @@ impl fmt::Display for Summary {
         writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
         writeln!(f, "lights     {}", or_none(&self.lights))?;
         writeln!(f, "cameras    {}", or_none(&self.cameras))?;
+        let variants: Vec<String> = self.report.variants.iter().map(|v| format!("`{v}`")).collect();
+        if !variants.is_empty() {
+            writeln!(f, "variants   {}", variants.join(", "))?;
+        }
         if let Some(motion) = &self.animation {
             writeln!(f, "animation  {motion}")?;
         }

@@ -1,6 +1,6 @@
-//! What a scene's files lost on the way to the picture: in JSON, and as an error.
+//! What became of a scene's files on the way to the picture: in JSON, and what was lost as an error.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use serde::Serialize;
@@ -14,6 +14,7 @@ pub struct Loaded {
     faces: Faces,
     unsupported: Vec<String>,
     placeholders: Vec<String>,
+    pub variants: BTreeSet<String>,
 }
 
 /// Of the faces of all meshes, each read once: `read` = `handed_over` + the sum of `dropped`.
@@ -26,13 +27,10 @@ struct Faces {
 
 impl From<&Report> for Loaded {
     fn from(report: &Report) -> Self {
-        let Report { read, handed_over, ref dropped, ref unsupported, ref placeholders } = *report;
-        let dropped = dropped.iter().map(|(why, &count)| (why.name(), count)).collect();
-        Self {
-            faces: Faces { read, handed_over, dropped },
-            unsupported: unsupported.clone(),
-            placeholders: placeholders.clone(),
-        }
+        let Report { read, handed_over, dropped, unsupported, placeholders, variants } =
+            report.clone();
+        let dropped = dropped.into_iter().map(|(why, count)| (why.name(), count)).collect();
+        Self { faces: Faces { read, handed_over, dropped }, unsupported, placeholders, variants }
     }
 }
 

@@ -7,6 +7,7 @@ mod files;
 mod frames;
 mod info;
 mod json;
+mod load;
 mod loss;
 mod output;
 mod range;

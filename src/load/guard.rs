@@ -110,6 +110,11 @@ impl Guard {
         }
     }
 
+    /// The most that there may be of something.
+    pub fn most(&self, limit: Limit) -> u64 {
+        self.limits.get(limit)
+    }
+
     /// Checks that there is no more of something than its limit.
     ///
     /// # Errors

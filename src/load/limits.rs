@@ -8,7 +8,8 @@ use crate::error::{Error, Result};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Limit {
-    /// Bytes of all files that are read.
+    /// Bytes of all files that are read, and those of views that are packed in them
+    /// (EXT_meshopt_compression).
     Bytes,
     /// Bytes of memory that the JSON of a glTF file is estimated to take: 640 for each object, 128
     /// for each list, 32 for each value.
@@ -27,9 +28,11 @@ pub enum Limit {
     /// Vertices of the copies that nodes have of the meshes that they skin or morph.
     Deformed,
     /// Elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
-    /// without a buffer view, and those that several accessors read from the same bytes.
+    /// without a buffer view, and those that several accessors read from the same bytes. A triangle
+    /// that Draco has packed counts as four.
     Elements,
-    /// Keys of glTF files' animations, those of all channels together.
+    /// Keys of glTF files' animations, those of all channels together; a channel of weights has
+    /// one for each morph target and time.
     Keys,
     /// Decoded pictures.
     Pictures,

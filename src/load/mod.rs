@@ -7,6 +7,7 @@
 mod framing;
 mod gltf;
 mod guard;
+mod ktx;
 mod limits;
 mod obj;
 mod picture;
@@ -14,7 +15,9 @@ mod place;
 mod repair;
 mod scene_file;
 mod settle;
+mod stand_in;
 mod studio;
+mod suggest;
 mod tally;
 mod tangents;
 mod uri;
@@ -22,7 +25,7 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{Scene, Skips, Work, closed};
+use crate::scene::{Report, Scene, Skips, Work, closed};
 
 use guard::{Guard, Opened};
 pub use limits::{Limit, Limits, NamedLimit};
@@ -33,7 +36,7 @@ pub use studio::add_ground;
 pub const BARE_MODEL_SPP: u32 = 16;
 
 /// How to load a scene, where it is not the usual way.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// The size of the picture in pixels, in place of the file's; a camera that frames the scene is
     /// placed for it.
@@ -41,6 +44,9 @@ pub struct Options {
     /// Unless these are without [`Work::Pictures`], pictures are only named that no material in use
     /// shows.
     pub skips: Skips,
+    /// Which variant of its materials a glTF file shows (KHR_materials_variants), in place of the
+    /// default ones; in a scene file, each model that has one of this name and names none itself.
+    pub variant: Option<String>,
     /// Whether files may name others that are neither beside nor below the one that is loaded.
     pub allow_outside: bool,
     /// How much a load may make of what it reads.
@@ -72,16 +78,21 @@ pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
 ///
 /// # Errors
 /// As [`load`]; and when a file names another one outside, or more than a limit allows, unless
-/// the options say otherwise.
+/// the options say otherwise; when no file has the variant that they name.
 pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     let guard = Guard::new(path, options.allow_outside, options.limits)?;
     let file = guard.open_named(path)?;
-    let all = !options.skips.has(Work::Pictures);
     let from_file = extension(path) == "toml";
     let mut scene = match from_file {
-        true => scene_file::load(file, &guard, all)?,
-        false => model(file, &guard, None, true)?,
+        true => scene_file::load(file, &guard, options)?,
+        false => {
+            let variant = options.variant.as_deref();
+            model(file, &guard, &Choice { animation: None, variant, pictures: true })?
+        }
     };
+    if let Some(variant) = &options.variant {
+        check_variant(variant, &scene.report).map_err(|e| e.at(path))?;
+    }
     if let Some(size) = options.size {
         scene.film.size = size;
     }
@@ -97,15 +108,31 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Loads a model file as it is: with its own cameras and lights, or none, and with its animation of
-/// that name, or the first. Its pictures are read where they are `wanted`.
-fn model(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> Result<Scene> {
+impl Options {
+    /// Whether pictures are read that nothing shows.
+    fn reads_all_pictures(&self) -> bool {
+        !self.skips.has(Work::Pictures)
+    }
+}
+
+/// What of a model file is to be loaded.
+struct Choice<'a> {
+    /// Its animation of this name; or the first.
+    animation: Option<&'a str>,
+    /// Its variant of this name, where it has that; or its default materials.
+    variant: Option<&'a str>,
+    /// Whether its pictures are read, or only named.
+    pictures: bool,
+}
+
+/// Loads a model file as it is: with its own cameras and lights, or none.
+fn model(file: Opened, guard: &Guard, choice: &Choice) -> Result<Scene> {
     match extension(&file.path).as_str() {
-        "gltf" | "glb" => gltf::load(file, guard, animation, wanted),
-        "obj" if animation.is_some() => Err(Error::input("an OBJ file has no animations")
+        "gltf" | "glb" => gltf::load(file, guard, choice),
+        "obj" if choice.animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),
-        "obj" => obj::load(file, guard, wanted),
+        "obj" => obj::load(file, guard, choice.pictures),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),
@@ -113,6 +140,19 @@ fn model(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> 
         .at(&file.path)
         .help("a scene file ends in .toml, a model in .gltf, .glb or .obj")),
     }
+}
+
+/// Checks that files have a variant of this name.
+fn check_variant(name: &str, of: &Report) -> Result<()> {
+    if of.variants.contains(name) {
+        return Ok(());
+    }
+    let names: Vec<&str> = of.variants.iter().map(String::as_str).collect();
+    let help = match &names[..] {
+        [] => "no model has variants of its materials: leave it out".to_owned(),
+        names => suggest::choice(name, names, "variants"),
+    };
+    Err(Error::input(format!("there is no variant `{name}`")).help(help))
 }
 
 /// The extension in lower case, or nothing.

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::load::guard::{Guard, Opened};
+use crate::load::ktx;
 use crate::load::limits::Limit;
 use crate::scene::{Image, Texels};
 
@@ -17,7 +18,7 @@ const MAX_SIDE: u32 = 1 << 15;
 /// So many pixels for each byte of a file do not count.
 const PIXELS_PER_BYTE: u64 = 16;
 
-/// Where the bytes of a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR or OpenEXR) are.
+/// Where the bytes of a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR, OpenEXR or KTX 2) are.
 pub enum Source<'a> {
     /// Here, and by this name.
     Bytes(Cow<'a, [u8]>, String),
@@ -98,9 +99,17 @@ fn fail(error: image::ImageError) -> Error {
 /// How many pixels of 8-bit numbers a picture takes as much memory as, which are taken of the limits.
 fn weigh(bytes: &[u8], name: &str, guard: &Guard) -> Result<u64> {
     guard.take(Limit::Pictures, 1)?;
-    let decoder = reader(bytes, name)?.into_decoder().map_err(fail)?;
-    let (width, height) = decoder.dimensions();
-    let pixels = u64::from(width) * u64::from(height) * weight(decoder.color_type());
+    let ([width, height], weight) = if ktx::is_ktx(bytes) {
+        let ktx::Header { size, is_float } = ktx::header(bytes)?;
+        if size.into_iter().any(|side| side > MAX_SIDE) {
+            return Err(Error::input(format!("the picture is larger than {MAX_SIDE} on a side")));
+        }
+        (size, if is_float { 4 } else { 1 })
+    } else {
+        let decoder = reader(bytes, name)?.into_decoder().map_err(fail)?;
+        (decoder.dimensions().into(), weight(decoder.color_type()))
+    };
+    let pixels = u64::from(width) * u64::from(height) * weight;
     guard.take(Limit::Pixels, pixels.saturating_sub(PIXELS_PER_BYTE * bytes.len() as u64))?;
     Ok(pixels)
 }
@@ -112,6 +121,9 @@ impl Ready<'_> {
             Self::Encoded { bytes, name, path, pixels } => (bytes, name, path, pixels),
         };
         let decode = || {
+            if ktx::is_ktx(&bytes) {
+                return Ok((ktx::header(&bytes)?.size, ktx::decode(&bytes)?));
+            }
             let mut reader = reader(&bytes, &name)?;
             let mut limits = image::Limits::default();
             limits.max_image_width = Some(MAX_SIDE);
@@ -119,14 +131,14 @@ impl Ready<'_> {
             // Four channels, more than twice, and room for what decoders need besides.
             limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
             reader.limits(limits);
-            reader.decode().map_err(fail)
+            let picture = reader.decode().map_err(fail)?;
+            Ok(([picture.width(), picture.height()], texels(picture)))
         };
-        let picture = decode().map_err(|e| match &path {
+        let (size, texels) = decode().map_err(|e: Error| match &path {
             Some(path) => e.at(path),
             None => e,
         })?;
-        let size = [picture.width(), picture.height()];
-        Ok(Image::new(name, size, texels(picture)))
+        Ok(Image::new(name, size, light(texels)))
     }
 }
 
@@ -145,11 +157,7 @@ fn texels(picture: DynamicImage) -> Texels {
     use DynamicImage as D;
     match picture {
         D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
-            let mut texels = pixels(picture.into_rgba32f().into_raw());
-            // What is no light is none.
-            let is_light = |x: &f32| x.is_finite() && *x >= 0.0;
-            texels.as_flattened_mut().iter_mut().filter(|x| !is_light(x)).for_each(|x| *x = 0.0);
-            Texels::Floats(texels)
+            Texels::Floats(pixels(picture.into_rgba32f().into_raw()))
         }
         D::ImageLuma16(_) | D::ImageLumaA16(_) | D::ImageRgb16(_) | D::ImageRgba16(_) => {
             Texels::Words(pixels(picture.into_rgba16().into_raw()))
@@ -158,17 +166,18 @@ fn texels(picture: DynamicImage) -> Texels {
     }
 }
 
+/// The same, where floats that are no light, negative or not finite, are 0.
+fn light(mut texels: Texels) -> Texels {
+    if let Texels::Floats(texels) = &mut texels {
+        let is_light = |x: &f32| x.is_finite() && *x >= 0.0;
+        texels.as_flattened_mut().iter_mut().filter(|x| !is_light(x)).for_each(|x| *x = 0.0);
+    }
+    texels
+}
+
 /// Four values a pixel.
 fn pixels<T: Copy>(values: Vec<T>) -> Vec<[T; 4]> {
     values.as_chunks().0.to_vec()
-}
-
-/// What stands in for a picture that cannot be had: a checker of magenta and black that nobody
-/// takes for the real thing.
-pub fn placeholder(name: &str) -> Image {
-    let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
-    let texels = vec![magenta, black, black, magenta];
-    Image::bytes(format!("{name} (missing)"), [2, 2], texels)
 }
 
 #[cfg(test)]
@@ -238,6 +247,6 @@ mod tests {
     fn floats_that_are_no_light_become_none() {
         let odd = Rgba([f32::NAN, -1.0, f32::INFINITY, 1.0]);
         let odd = DynamicImage::ImageRgba32F(ImageBuffer::from_pixel(1, 1, odd));
-        assert_eq!(texels(odd), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
+        assert_eq!(light(texels(odd)), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
     }
 }

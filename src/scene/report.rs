@@ -1,6 +1,6 @@
 //! What became of a scene's files when they were loaded.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// What importers read, handed over, dropped and could not do as the files ask.
@@ -22,6 +22,8 @@ pub struct Report {
     /// Pictures and materials in whose place a placeholder stands; one sentence each, also among the scene's
     /// warnings.
     pub placeholders: Vec<String>,
+    /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
+    pub variants: BTreeSet<String>,
 }
 
 /// Why a face is not in the scene.
@@ -98,6 +100,7 @@ impl Report {
         }
         self.unsupported.extend(other.unsupported);
         self.placeholders.extend(other.placeholders);
+        self.variants.extend(other.variants);
     }
 }
 

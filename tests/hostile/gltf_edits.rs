@@ -63,7 +63,7 @@ const EDITS: &[Edit] = &[
     ("/extensions/KHR_lights_punctual/lights/0/type", "\"moon\"", Expect::Any),
     ("/extensions/KHR_lights_punctual/lights/0/spot/outerConeAngle", "0", Expect::Any),
     ("/extensions/KHR_lights_punctual/lights/0/spot/innerConeAngle", "9", Expect::Any),
-    ("/extensionsRequired", "[\"KHR_draco_mesh_compression\"]", Error("KHR_draco")),
+    ("/extensionsRequired", "[\"EXT_texture_avif\"]", Error("EXT_texture_avif")),
     ("/extensionsRequired", "[\"\\u001b[2J\"]", Error("requires")),
     ("/extensionsRequired", "[\"../../x\"]", Error("requires")),
     ("/meshes/0/primitives", "[]", Expect::Any),

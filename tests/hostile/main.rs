@@ -16,6 +16,7 @@ mod gltf_edits;
 mod links;
 mod mtl;
 mod obj;
+mod packed;
 mod pictures;
 mod scene;
 
@@ -94,6 +95,7 @@ fn cases() -> Vec<Case> {
         mtl::cases(),
         scene::cases(),
         pictures::cases(),
+        packed::cases(),
     ];
     all.into_iter().flatten().collect()
 }

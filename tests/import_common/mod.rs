@@ -1,6 +1,7 @@
 //! What several tests of the importers need.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub mod packed;
 pub mod whole;
 
 use std::path::{Path, PathBuf};

@@ -269,5 +269,5 @@ fn a_scene_file_without_animation_plays_none_and_says_so() {
 fn an_animation_that_the_model_has_not_is_refused_with_those_that_it_has() {
     let error = scene_file(FRAMES, Some("walk")).map(|_| ()).unwrap_err();
     assert_eq!(error.message(), "there is no animation `walk`");
-    assert_eq!(error.advice(), Some("the file has `rise`"));
+    assert_eq!(error.advice(), Some("the animations are `rise`"));
 }

@@ -5,9 +5,11 @@
 mod common;
 
 mod animation;
+mod basis;
 mod damaged_data;
 mod damaged_files;
 mod deform;
+mod draco;
 mod geometry;
 mod lights;
 mod materials;
@@ -17,6 +19,7 @@ mod report;
 mod shapes;
 mod textures;
 mod validation;
+mod variants;
 
 use common::{Folder, Model, assert_warns, data_uri, json_place, png};
 use envers::scene::{Material, Scene};

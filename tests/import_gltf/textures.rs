@@ -185,3 +185,21 @@ fn texture_coordinates_are_kept_for_other_materials() {
     model.primitive().as_object_mut().unwrap().remove("material");
     assert_eq!(model.load().unwrap().meshes[0].uvs.len(), 3);
 }
+
+#[test]
+fn missing_pictures_that_are_no_colours_change_nothing() {
+    let mut model = textured(json!({"uri": "none.png"}));
+    let texture = json!({"index": 0});
+    model.material(json!({
+        "pbrMetallicRoughness": {"metallicRoughnessTexture": texture},
+        "normalTexture": texture,
+    }));
+    let scene = model.load().unwrap();
+    assert_warns(&scene, "none.png");
+    assert_eq!(scene.report.placeholders.len(), 1);
+    let material = material(&scene);
+    assert_eq!(material.normal_map, None);
+    let roughness = material.metallic.as_ref().unwrap().roughness.unwrap().texture;
+    let image = &scene.textures[roughness.0 as usize].image;
+    assert_eq!(image.texels, Texels::Bytes(vec![[255; 4]]));
+}

@@ -2,6 +2,8 @@
 //! these check every offset and every index.
 
 use std::cell::Cell;
+use std::collections::HashMap;
+use std::rc::Rc;
 
 use gltf::json;
 use gltf::json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
@@ -19,8 +21,25 @@ pub struct Accessors<'a> {
     guard: &'a Guard,
     buffers: &'a Buffers<'a>,
     /// How many elements were read so far.
-    read: Cell<u64>,
+    read: Rc<Cell<u64>>,
+    /// What some accessors give instead of what they find in the buffers.
+    supplied: HashMap<usize, Supplied>,
 }
+
+/// Elements that were unpacked: `count` of them, side by side, each of `width` numbers.
+pub struct Supplied {
+    /// What the numbers are.
+    pub kind: ComponentType,
+    /// How many an element has.
+    pub width: usize,
+    /// How many elements there are.
+    pub count: usize,
+    /// The elements.
+    pub bytes: Vec<u8>,
+}
+
+/// So many elements a triangle that is unpacked counts as: unpacking takes memory for each.
+const ELEMENTS_PER_FACE: u64 = 4;
 
 /// A number within a buffer: what it is and how it reads.
 #[derive(Clone, Copy)]
@@ -32,16 +51,61 @@ struct Number {
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
     pub fn new(root: &'a json::Root, guard: &'a Guard, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, guard, buffers, read: Cell::new(0) }
+        Self { root, guard, buffers, read: Rc::default(), supplied: HashMap::new() }
+    }
+
+    /// The same, but that some accessors give what is `supplied`.
+    pub fn with(&self, supplied: HashMap<usize, Supplied>) -> Self {
+        let Self { root, guard, buffers, .. } = *self;
+        Self { root, guard, buffers, read: self.read.clone(), supplied }
+    }
+
+    /// The buffers that they read.
+    pub fn buffers(&self) -> &'a Buffers<'a> {
+        self.buffers
+    }
+
+    /// How many triangles may be unpacked.
+    pub fn faces_left(&self) -> u64 {
+        let most = self.guard.most(Limit::Elements).saturating_add(self.buffers.loaded_bytes());
+        let left = most.saturating_sub(self.read.get()) / ELEMENTS_PER_FACE;
+        left.min(self.guard.most(Limit::Triangles))
+    }
+
+    /// Counts what was unpacked: triangles, and elements of accessors.
+    ///
+    /// # Errors
+    /// When there are more than the limit allows.
+    pub fn count_unpacked(&self, faces: usize, elements: usize) -> Result<()> {
+        self.take(ELEMENTS_PER_FACE * faces as u64 + elements as u64)
+    }
+
+    fn take(&self, elements: u64) -> Result<()> {
+        let total = self.read.get().saturating_add(elements);
+        let beyond = total.saturating_sub(self.buffers.loaded_bytes());
+        self.guard.check(Limit::Elements, beyond)?;
+        self.read.set(total);
+        Ok(())
     }
 
     /// How many elements an accessor has, 0 if there is no such accessor.
     pub fn count(&self, index: usize) -> u64 {
-        self.root.accessors.get(index).map_or(0, |a| a.count.0)
+        match self.supplied.get(&index) {
+            Some(supplied) => supplied.count as u64,
+            None => self.root.accessors.get(index).map_or(0, |a| a.count.0),
+        }
+    }
+
+    /// Whether an accessor's elements are in a buffer.
+    pub fn has_view(&self, index: usize) -> bool {
+        self.root.accessors.get(index).is_some_and(|a| a.buffer_view.is_some())
     }
 
     /// How many numbers an element has, 0 if there is no such accessor.
     pub fn width(&self, index: usize) -> usize {
+        if let Some(supplied) = self.supplied.get(&index) {
+            return supplied.width;
+        }
         match self.root.accessors.get(index).map(|a| a.type_) {
             Some(Checked::Valid(t)) => t.multiplicity(),
             _ => 0,
@@ -96,16 +160,26 @@ impl<'a> Accessors<'a> {
     ) -> Result<Vec<[T; N]>> {
         let accessor = get(&self.root.accessors, index, "accessor", by)?;
         let at = format!("accessors[{index}]");
-        let number = Number { kind: component(accessor, index)?, normalized: accessor.normalized };
         self.check_type::<N>(accessor, &at, by)?;
-        let mut elements = Vec::new();
+        let supplied = self.supplied.get(&index);
+        let kind = supplied.map_or_else(|| component(accessor, index), |own| Ok(own.kind))?;
+        let number = Number { kind, normalized: accessor.normalized };
         let decode_element = |bytes: &[u8]| {
             let mut element = [T::default(); N];
-            for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(number.kind.size())) {
+            for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(kind.size())) {
                 *value = decode(number, bytes);
             }
             element
         };
+        if let Some(own) = supplied {
+            if own.width != N {
+                let found = own.width;
+                return Err(Error::input(format!("{found} numbers for each vertex, and not {N}"))
+                    .place(Place::Json(by.to_owned())));
+            }
+            return Ok(own.bytes.chunks_exact(N * kind.size()).map(decode_element).collect());
+        }
+        let mut elements = Vec::new();
         let bytes = match accessor.buffer_view {
             Some(view) => self.buffers.view(view.value(), &format!("{at}.bufferView"))?,
             None => &[],
@@ -161,12 +235,7 @@ impl<'a> Accessors<'a> {
     }
 
     fn check_count(&self, accessor: &Accessor, at: &str) -> Result<usize> {
-        let total = self.read.get().saturating_add(accessor.count.0);
-        let beyond = total.saturating_sub(self.buffers.loaded_bytes());
-        self.guard
-            .check(Limit::Elements, beyond)
-            .map_err(|e| e.place(Place::Json(format!("{at}.count"))))?;
-        self.read.set(total);
+        self.take(accessor.count.0).map_err(|e| e.place(Place::Json(format!("{at}.count"))))?;
         Ok(accessor.count.0 as usize)
     }
 

@@ -15,6 +15,7 @@ use super::buffers::get;
 use crate::error::{Error, Result};
 use crate::load::guard::Guard;
 use crate::load::limits::Limit;
+use crate::load::suggest;
 use crate::load::tally::Tally;
 use crate::scene::animation::{
     Animation, Curve, Interpolation, Keys, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Value,
@@ -73,9 +74,8 @@ impl Clip {
             let place = format!("animations[{index}]");
             let sampler = get(&animation.samplers, channel.sampler.value(), "sampler", &at);
             let read = sampler.and_then(|sampler| {
-                // A small file can name the same ones any number of times.
-                guard.take(Limit::Keys, accessors.count(sampler.input.value()))?;
-                clip.channel(root, accessors, channel, sampler, &place)
+                let reader = Reader { accessors, guard, sampler, place: &place };
+                clip.channel(root, channel, &reader)
             });
             if let Err(error) = read {
                 let reason = "{} animation channels are left out: they are damaged";
@@ -86,24 +86,16 @@ impl Clip {
         Ok(clip)
     }
 
-    fn channel(
-        &mut self,
-        root: &json::Root,
-        accessors: &Accessors,
-        channel: &Channel,
-        sampler: &Sampler,
-        place: &str,
-    ) -> Result<()> {
+    fn channel(&mut self, root: &json::Root, channel: &Channel, reader: &Reader) -> Result<()> {
         let Checked::Valid(property) = channel.target.path else {
             return Err(Error::input("it moves something unknown"));
         };
-        let node = get(&root.nodes, channel.target.node.value(), "node", place)?;
+        let node = get(&root.nodes, channel.target.node.value(), "node", reader.place)?;
         let morphs = property == Property::MorphTargetWeights;
         if node.matrix.is_some() && !morphs {
             return Err(Error::input("it moves a node with a matrix, which cannot be"));
         }
         let node = channel.target.node.value();
-        let reader = Reader { accessors, sampler, place };
         let (is_there, last) = match property {
             Property::MorphTargetWeights => {
                 let mesh = node_mesh(root, node)?;
@@ -199,23 +191,27 @@ fn put<T: Value>(to: &mut Option<Curve<T>>, curve: Curve<T>) -> (bool, f64) {
 fn named(root: &json::Root, name: &str) -> Result<usize> {
     let of = |animation: &json::Animation| animation.name.as_deref() == Some(name);
     root.animations.iter().position(of).ok_or_else(|| {
-        let names: Vec<String> =
-            root.animations.iter().flat_map(|a| &a.name).map(|n| format!("`{n}`")).collect();
+        let names: Vec<&str> = root.animations.iter().filter_map(|a| a.name.as_deref()).collect();
         Error::input(format!("there is no animation `{name}`")).help(match &names[..] {
             [] => "no animation of the file has a name; without one the first is played".to_owned(),
-            names => format!("the file has {}", names.join(", ")),
+            names => suggest::choice(name, names, "animations"),
         })
     })
 }
 
 struct Reader<'a> {
     accessors: &'a Accessors<'a>,
+    guard: &'a Guard,
     sampler: &'a Sampler,
     place: &'a str,
 }
 
 impl Reader<'_> {
-    fn times(&self) -> Result<Vec<f64>> {
+    /// The times of so many curves.
+    fn times(&self, curves: u64) -> Result<Vec<f64>> {
+        // A small file can name the same ones any number of times.
+        let keys = self.accessors.count(self.sampler.input.value()).saturating_mul(curves);
+        self.guard.take(Limit::Keys, keys)?;
         let place = format!("{}.samplers.input", self.place);
         let times = self.accessors.floats::<1>(self.sampler.input.value(), &place)?;
         Ok(times.into_iter().map(|[t]| f64::from(t)).collect())
@@ -224,7 +220,7 @@ impl Reader<'_> {
     /// The curves of so many weights, which the file has side by side for each time; a spline's
     /// slopes stand before and after them (appendix C of the standard).
     fn weights(&self, count: usize) -> Result<Vec<Curve<f64>>> {
-        let times = self.times()?;
+        let times = self.times(count.max(1) as u64)?;
         let place = format!("{}.samplers.output", self.place);
         let values = self.accessors.floats::<1>(self.sampler.output.value(), &place)?;
         let Checked::Valid(kind) = self.sampler.interpolation else {
@@ -264,7 +260,7 @@ impl Reader<'_> {
         value: impl Fn([f32; N], bool) -> T,
     ) -> Result<Curve<T>> {
         let by = |what: &str| format!("{}.samplers.{what}", self.place);
-        let times = self.times()?;
+        let times = self.times(1)?;
         let read = self.accessors.floats::<N>(self.sampler.output.value(), &by("output"))?;
         let Checked::Valid(kind) = self.sampler.interpolation else {
             return Err(Error::input("the interpolation is of no known kind"));

@@ -10,6 +10,7 @@ use gltf::json;
 use super::meshopt::Packed;
 use crate::error::{Error, Place, Result};
 use crate::load::guard::{Guard, Opened};
+use crate::load::limits::Limit;
 use crate::load::uri::Uri;
 
 /// The buffers of a file.
@@ -95,6 +96,7 @@ impl<'a> Buffers<'a> {
                 "it takes {length} bytes from byte {offset} of buffers[{buffer}], which has {found}"
             )))
         })?;
+        self.guard.take(Limit::Bytes, packed.size()).map_err(place)?;
         let made = packed.unpack(bytes).map_err(place)?;
         self.count(made.len());
         Ok(cell.get_or_init(|| made))

@@ -6,8 +6,9 @@ use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
 
 /// The extensions that are read, or that change nothing which is.
-const READ: [&str; 16] = [
+const READ: [&str; 18] = [
     "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
     "KHR_implicit_shapes",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -21,6 +22,7 @@ const READ: [&str; 16] = [
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_xmp_json_ld",
 ];
@@ -45,11 +47,8 @@ pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
 /// What a user can do about an extension.
 fn remedy(name: &str) -> &'static str {
     match name {
-        "KHR_draco_mesh_compression" | "KHR_meshopt_compression" => {
+        "KHR_meshopt_compression" => {
             "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"
-        }
-        "KHR_texture_basisu" => {
-            "`npx @gltf-transform/cli ktxdecompress IN.glb OUT.glb` turns its pictures into PNG"
         }
         "EXT_texture_avif" => {
             "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its pictures into PNG"

@@ -11,6 +11,7 @@ mod compact;
 mod container;
 mod deform;
 mod document;
+mod draco;
 mod extensions;
 mod instancing;
 mod lights;
@@ -24,6 +25,7 @@ mod shapes;
 mod texture;
 mod topology;
 mod validation;
+mod variants;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -42,32 +44,27 @@ use self::nodes::Placed;
 use self::primitive::Part;
 use self::shapes::Shape;
 use self::texture::Textures;
+use self::variants::Variants;
 use crate::error::{Error, Place, Result};
+use crate::load::Choice;
 use crate::load::guard::{Guard, Opened};
 use crate::load::limits::Limit;
 use crate::load::tally::Tally;
 use crate::scene::animation::{Curve, Deformation, Joint, Mover, Skin};
 use crate::scene::{Instance, MaterialId, MeshId, Plane, Scene, Sphere};
 
-/// Loads a `.gltf` or `.glb` file, with the animation of that name or the first; its pictures are
-/// read where they are `wanted`.
+/// Loads a `.gltf` or `.glb` file.
 ///
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
 /// the place in the JSON. When there is no such animation.
-pub fn load(file: Opened, guard: &Guard, animation: Option<&str>, wanted: bool) -> Result<Scene> {
+pub fn load(file: Opened, guard: &Guard, choice: &Choice) -> Result<Scene> {
     let path = file.path.clone();
     let bytes = file.read(guard)?;
-    import(&path, &bytes, guard, animation, wanted).map_err(|e| e.at(&path))
+    import(&path, &bytes, guard, choice).map_err(|e| e.at(&path))
 }
 
-fn import(
-    path: &Path,
-    bytes: &[u8],
-    guard: &Guard,
-    animation: Option<&str>,
-    wanted: bool,
-) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], guard: &Guard, choice: &Choice) -> Result<Scene> {
     let (json, bin) = container::split(bytes)?;
     guard.check(Limit::Json, document::memory(json))?;
     let (root, value) = document::parse(json)?;
@@ -79,7 +76,7 @@ fn import(
     extensions::check(&root, &mut tally)?;
     let buffers = Buffers::new(&root, guard, path, bin);
     let accessors = Accessors::new(&root, guard, &buffers);
-    let mut clip = Clip::read(&root, guard, &accessors, animation, &mut tally)?;
+    let mut clip = Clip::read(&root, guard, &accessors, choice.animation, &mut tally)?;
     let nodes = nodes::walk(&root, guard, &mut clip, &mut tally)?;
     let order: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let by_index: HashMap<usize, Placed> = nodes.into_iter().map(|n| (n.index, n)).collect();
@@ -88,7 +85,8 @@ fn import(
         guard,
         json: &value,
         accessors,
-        materials: Materials::new(&root, Textures::new(&root, guard, &buffers, wanted)),
+        materials: Materials::new(&root, Textures::new(&root, guard, &buffers, choice.pictures)),
+        variants: Variants::read(&root, choice.variant),
         meshes: HashMap::new(),
         nodes: &by_index,
         joints: HashMap::new(),
@@ -118,6 +116,7 @@ struct Importer<'a> {
     json: &'a Value,
     accessors: Accessors<'a>,
     materials: Materials<'a>,
+    variants: Variants<'a>,
     /// What the primitives of a mesh became, so that nodes share it.
     meshes: HashMap<usize, Vec<Made>>,
     nodes: &'a HashMap<usize, Placed<'a>>,
@@ -339,8 +338,7 @@ impl Importer<'_> {
         let mut parts = Vec::new();
         for (i, primitive) in source.primitives.iter().enumerate() {
             let at = format!("meshes[{index}].primitives[{i}]");
-            let material = primitive.material.map(|m| m.value());
-            let place = format!("{at}.material");
+            let (material, place) = self.variants.material(primitive, &at);
             let made = self.materials.get(material, &place, &mut self.scene, &mut self.tally)?;
             let read =
                 primitive::read(primitive, &self.accessors, &made.asks, &mut self.tally, &at)?;
@@ -374,6 +372,7 @@ impl Importer<'_> {
             self.tally.say("there is no triangle in the scene that the file shows");
         }
         self.tally.finish(path, &mut self.scene);
+        self.scene.report.variants = self.variants.names();
         self.scene
     }
 }

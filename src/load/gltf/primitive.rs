@@ -9,6 +9,7 @@ use gltf::json::validation::Checked;
 use super::accessor::Accessors;
 use super::compact::{compact, keep};
 use super::deform;
+use super::draco::{self, Unpacked};
 use super::material::Asks;
 use super::topology;
 use crate::error::{Error, Place, Result};
@@ -37,6 +38,29 @@ pub fn read(
     at: &str,
 ) -> Result<Option<Part>> {
     let mode = mode(primitive, at)?;
+    match draco::of(primitive).map(|packed| draco::unpack(primitive, packed, accessors, at)) {
+        Some(Ok(Unpacked { corners, attributes })) => {
+            // Strips are unpacked as triangles, too.
+            let (mode, accessors) = (Mode::Triangles, accessors.with(attributes));
+            return assemble(primitive, mode, &accessors, Some(corners), asks, tally, at);
+        }
+        Some(Err(error)) if !has_positions(primitive, accessors) => return Err(error),
+        Some(Err(error)) => tally.say(format!("{error}; what is not packed is read instead")),
+        None => {}
+    }
+    assemble(primitive, mode, accessors, None, asks, tally, at)
+}
+
+/// Makes a mesh of what the accessors give; of these corners where they are known already.
+fn assemble(
+    primitive: &Primitive,
+    mode: Mode,
+    accessors: &Accessors,
+    corners: Option<Vec<u32>>,
+    asks: &Asks,
+    tally: &mut Tally,
+    at: &str,
+) -> Result<Option<Part>> {
     let reader = Reader { primitive, accessors, at };
     let place = || at.to_owned();
     if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
@@ -50,9 +74,10 @@ pub fn read(
     };
     let positions: Vec<[f32; 3]> =
         accessors.floats(positions, &reader.place(&Semantic::Positions))?;
-    let vertices = match primitive.indices {
-        Some(indices) => accessors.indices(indices.value(), &format!("{at}.indices"))?,
-        None => (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect(),
+    let vertices = match (corners, primitive.indices) {
+        (Some(corners), _) => corners,
+        (None, Some(indices)) => accessors.indices(indices.value(), &format!("{at}.indices"))?,
+        (None, None) => (0..u32::try_from(positions.len()).unwrap_or(u32::MAX)).collect(),
     };
     let mut mesh =
         Mesh { triangles: topology::triangles(mode, &vertices), positions, ..Mesh::default() };
@@ -96,6 +121,12 @@ fn mode(primitive: &Primitive, at: &str) -> Result<Mode> {
             .place(Place::Json(format!("{at}.mode")))
             .help("0 to 6; 4 is triangles")),
     }
+}
+
+/// Whether a primitive has positions that are not packed.
+fn has_positions(primitive: &Primitive, accessors: &Accessors) -> bool {
+    let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
+    positions.is_some_and(|index| accessors.has_view(index.value()))
 }
 
 struct Reader<'a> {

@@ -14,6 +14,7 @@ use super::buffers::{Buffers, Target, cannot_have, get, resolve};
 use crate::error::{Error, Place, Result};
 use crate::load::guard::Guard;
 use crate::load::picture;
+use crate::load::stand_in;
 use crate::load::tally::Tally;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
@@ -183,11 +184,8 @@ impl<'a> Textures<'a> {
             None => None,
         };
         let picture = match source(texture) {
-            Some(source) => Some(self.picture(source, &format!("textures[{index}].source"))?),
-            None => {
-                tally.placeholder(format!("textures[{index}] has no picture that can be read"));
-                None
-            }
+            Some(source) => self.picture(source, &format!("textures[{index}].source"))?,
+            None => self.missing(format!("textures[{index}]")),
         };
         let transform = match transform.is_finite() {
             true => transform,
@@ -196,7 +194,7 @@ impl<'a> Textures<'a> {
                 Affine2::IDENTITY
             }
         };
-        let image = picture::placeholder(&format!("textures[{index}]"));
+        let image = stand_in::white(&format!("textures[{index}]"));
         let id = scene.add_texture(Texture {
             transfer,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
@@ -206,9 +204,7 @@ impl<'a> Textures<'a> {
             transform,
             ..Texture::new(Arc::new(image))
         });
-        if let Some(picture) = picture {
-            self.pictures[picture].shown_by.push(id);
-        }
+        self.pictures[picture].shown_by.push(id);
         self.made.entry(index).or_default().push((key, id));
         Ok(id)
     }
@@ -239,6 +235,13 @@ impl<'a> Textures<'a> {
         Ok(number)
     }
 
+    /// A picture that is nowhere.
+    fn missing(&mut self, at: String) -> usize {
+        let source = Err(Error::input("there is no picture that can be read"));
+        self.pictures.push(Picture { source, at, shown_by: Vec::new() });
+        self.pictures.len() - 1
+    }
+
     /// Decodes the pictures, side by side, and gives them to the textures of the scene that show
     /// them. One that cannot be had is a warning, and a placeholder takes its place.
     pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
@@ -257,24 +260,19 @@ impl<'a> Textures<'a> {
         let images = picture::decode_all(&pictures, guard, open, |_| wanted);
         for (image, Picture { at, shown_by, .. }) in images.into_iter().zip(pictures) {
             let image = image.map_err(|e| e.place(Place::Json(at.clone())));
-            let image = Arc::new(image.unwrap_or_else(|error| {
-                tally.placeholder(format!("{error}; a magenta checker takes its place"));
-                picture::placeholder(&at)
-            }));
-            shown_by.iter().for_each(|id| scene.textures[id.0 as usize].image = image.clone());
+            stand_in::show(image, &at, shown_by.into_iter(), scene, tally);
         }
     }
 }
 
-/// The picture of a texture; that of EXT_texture_webp where there is one.
+/// The picture of a texture; that of an extension where there is one.
 fn source(texture: &json::Texture) -> Option<usize> {
-    let webp = || {
-        let extension = texture.extensions.as_ref()?.others.get("EXT_texture_webp")?;
-        usize::try_from(extension.get("source")?.as_u64()?).ok()
-    };
+    let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
+    let of = |name: &str| usize::try_from(others?.get(name)?.get("source")?.as_u64()?).ok();
     // The crate writes a missing source as the greatest index.
     let own = texture.source.value();
-    webp().or((own != u32::MAX as usize).then_some(own))
+    let packed = of("KHR_texture_basisu").or_else(|| of("EXT_texture_webp"));
+    packed.or((own != u32::MAX as usize).then_some(own))
 }
 
 fn wrap(mode: Checked<WrappingMode>) -> Wrap {

@@ -1,7 +1,7 @@
 //! The textures of an OBJ file's materials. What they show is decoded when all are known, each
 //! picture once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -11,6 +11,7 @@ use super::files::find;
 use super::map::Map;
 use crate::load::guard::Guard;
 use crate::load::picture;
+use crate::load::stand_in;
 use crate::load::tally::Tally;
 use crate::scene::{
     Channel, Image, MaterialId, NormalMap, Scene, Texture, TextureId, Transfer, Wrap,
@@ -78,7 +79,7 @@ impl<'a> Textures<'a> {
             wrap: [wrap; 2],
             mipmap: true,
             transform: key.2,
-            ..Texture::new(Arc::new(picture::placeholder(&map.file)))
+            ..Texture::new(Arc::new(stand_in::white(&map.file)))
         });
         shown_by.push((key, id));
         id
@@ -106,14 +107,13 @@ impl<'a> Textures<'a> {
             find(self.guard, &picture.folder, &picture.name).map(picture::Source::File)
         };
         let images = picture::decode_all(&self.pictures, self.guard, open, |_| wanted);
+        let mut missing = HashSet::new();
         for (image, picture) in images.into_iter().zip(&self.pictures) {
             let image = image.map_err(|e| e.at(&picture.folder.join(&picture.name)));
-            let image = Arc::new(image.unwrap_or_else(|error| {
-                tally.placeholder(format!("{error}; a magenta checker takes its place"));
-                picture::placeholder(&picture.name)
-            }));
-            let shown_by = picture.shown_by.iter();
-            shown_by.for_each(|(_, id)| scene.textures[id.0 as usize].image = image.clone());
+            let shown_by = picture.shown_by.iter().map(|(_, id)| *id);
+            if !stand_in::show(image, &picture.name, shown_by.clone(), scene, tally) {
+                missing.extend(shown_by);
+            }
         }
         for material in self.opacities {
             let Scene { materials, textures, .. } = scene;
@@ -129,7 +129,7 @@ impl<'a> Textures<'a> {
         }
         for (material, texture, scale, name) in self.bumps {
             let image = &scene.textures[texture.0 as usize].image;
-            if !image.is_read() {
+            if !image.is_read() || missing.contains(&texture) {
                 continue;
             }
             if are_normals(image) {

@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 
 use super::source::{Source, Span};
 use super::spanned::At;
-use super::suggest;
 use super::tables::{Kind, LightTable};
 use crate::error::Result;
+use crate::load::suggest;
 use crate::scene::{Light, LightKind, Shadow, Transfer};
 
 /// The cone of a spot that says nothing of it, in degrees.

@@ -20,30 +20,29 @@ mod schema;
 mod shown;
 mod source;
 mod spanned;
-mod suggest;
 mod tables;
 mod track;
 mod values;
 
 use crate::error::{Error, Place, Result};
+use crate::load::Options;
 use crate::load::guard::{Guard, Opened};
 use crate::scene::Scene;
 
 pub use schema::schema;
 
-/// Loads a scene file, with the models that it names, and `all` pictures or those that something
-/// shows.
+/// Loads a scene file, with the models that it names.
 ///
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(file: Opened, guard: &Guard, all: bool) -> Result<Scene> {
+pub fn load(file: Opened, guard: &Guard, options: &Options) -> Result<Scene> {
     let path = &file.path.clone();
     let bytes = file.read(guard)?;
     let text = utf8(&bytes).map_err(|e| e.at(path))?;
     let source = source::Source::new(path, text);
     let tables = toml::from_str(text).map_err(|e| report::error(&source, e))?;
-    resolve::scene(&source, tables, guard, all)
+    resolve::scene(&source, tables, guard, options)
 }
 
 /// The text of a file, without the byte order mark that some editors put first.

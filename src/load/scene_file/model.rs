@@ -9,16 +9,17 @@ use super::resolve::Resolver;
 use super::spanned::At;
 use super::tables::ModelTable;
 use crate::error::{Error, Result};
-use crate::load;
 use crate::load::guard::Opened;
 use crate::load::limits::Limit;
 use crate::load::place::{Part, Placement};
+use crate::load::{self, Choice};
 use crate::scene::check::MAX_COORDINATE;
 
-/// The model files loaded so far, by their canonical paths and the animations that they play.
+/// The model files loaded so far, by their canonical paths, the animations that they play and the
+/// variants that they show.
 #[derive(Default)]
 pub struct Models {
-    loaded: HashMap<(PathBuf, Option<String>), Part>,
+    loaded: HashMap<(PathBuf, Option<String>, Option<String>), Part>,
     /// What stands in the scene so far.
     placed: u64,
 }
@@ -30,11 +31,21 @@ impl Models {
         let file = open(resolver, &table.file)?;
         let (path, same) = (file.path.clone(), file.identity.clone());
         let animation = table.animation.as_ref().map(|name| name.value.clone());
-        let part = match self.loaded.entry((same, animation.clone())) {
+        let own = table.variant.as_ref().map(|name| &*name.value);
+        let variant = own.or(resolver.variant).map(str::to_owned);
+        let part = match self.loaded.entry((same, animation.clone(), variant.clone())) {
             std::collections::hash_map::Entry::Occupied(known) => known.into_mut(),
             std::collections::hash_map::Entry::Vacant(unknown) => {
-                let wanted = resolver.shown.model(&path);
-                let mut model = load::model(file, resolver.guard, animation.as_deref(), wanted)?;
+                let choice = Choice {
+                    animation: animation.as_deref(),
+                    variant: variant.as_deref(),
+                    pictures: resolver.shown.model(&path),
+                };
+                let mut model = load::model(file, resolver.guard, &choice)?;
+                if let Some(At { span, value }) = &table.variant {
+                    load::check_variant(value, &model.report)
+                        .map_err(|e| resolver.source.place(span, e))?;
+                }
                 // Each names the model already.
                 resolver.scene.warnings.append(&mut model.warnings);
                 resolver.scene.report.add(std::mem::take(&mut model.report));
@@ -135,6 +146,7 @@ mod tests {
             casts_shadow: None,
             lights: None,
             animation: None,
+            variant: None,
         }
     }
 

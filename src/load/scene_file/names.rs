@@ -6,10 +6,10 @@ use glam::DVec3;
 
 use super::source::{Source, Span};
 use super::spanned::At;
-use super::suggest;
 use super::tables::{Kind, SceneTable};
 use super::values::PointOrName;
 use crate::error::Result;
+use crate::load::suggest;
 
 /// What kind of object a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

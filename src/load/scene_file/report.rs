@@ -1,8 +1,8 @@
 //! What serde and the TOML parser refuse, in words that name the place and the way out.
 
 use super::source::{Source, Span};
-use super::suggest;
 use crate::error::Error;
+use crate::load::suggest;
 
 /// Tables that are written under double brackets.
 const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];

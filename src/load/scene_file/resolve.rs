@@ -16,14 +16,15 @@ use super::pictures::Pictures;
 use super::shown::Shown;
 use super::source::{Source, Span};
 use super::spanned::{At, Table};
-use super::suggest;
 use super::tables::{
     CameraTable, FilmTable, LightTable, MapAlpha, MapFilter, MaterialTable, PlaneTable, SceneTable,
     SphereTable,
 };
 use super::values::SampleRange;
 use crate::error::Result;
+use crate::load::Options;
 use crate::load::guard::Guard;
+use crate::load::suggest;
 use crate::scene::animation::Mover;
 use crate::scene::check::{self, MAX_COORDINATE};
 use crate::scene::{
@@ -34,8 +35,13 @@ use crate::scene::{
 /// So many materials that are too bright are named; the others are counted.
 const MAX_NAMED: u64 = 100;
 
-/// The scene that the tables of a file describe, with `all` pictures or those that something shows.
-pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) -> Result<Scene> {
+/// The scene that the tables of a file describe.
+pub fn scene(
+    source: &Source<'_>,
+    tables: SceneTable,
+    guard: &Guard,
+    options: &Options,
+) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -49,7 +55,8 @@ pub fn scene(source: &Source<'_>, tables: SceneTable, guard: &Guard, all: bool) 
         source,
         guard,
         names: &names,
-        shown: Shown::of(source, &tables, all),
+        shown: Shown::of(source, &tables, options.reads_all_pictures()),
+        variant: options.variant.as_deref(),
         rigs: &rigs,
         scene: Scene { film, animation, ..Scene::default() },
         materials: HashMap::new(),
@@ -131,6 +138,8 @@ pub struct Resolver<'a> {
     pub guard: &'a Guard,
     /// Which pictures something shows.
     pub shown: Shown,
+    /// The variant of models that name none.
+    pub variant: Option<&'a str>,
     /// Its objects with names.
     pub names: &'a Names,
     /// How they move.
@@ -299,13 +308,7 @@ impl Resolver<'_> {
             let help = if names.is_empty() {
                 "the file has none: add a [[material]] with this name".to_owned()
             } else {
-                match suggest::closest(name, &names) {
-                    Some(meant) => format!(
-                        "did you mean `{meant}`? The materials are {}",
-                        suggest::list(&names)
-                    ),
-                    None => format!("the materials are {}", suggest::list(&names)),
-                }
+                suggest::choice(name, &names, "materials")
             };
             self.source.error(span, format!("there is no material `{name}`")).help(help)
         })

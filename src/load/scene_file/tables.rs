@@ -115,7 +115,7 @@ pub struct MaterialTable {
     /// Share of the light that is scattered to all sides.
     #[schemars(extend("default" = 0.8))]
     pub diffuse: Option<At<Color>>,
-    /// Picture file (PNG, JPEG, WebP, TGA or BMP, in sRGB; HDR or EXR, linear) multiplied with
+    /// Picture file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied with
     /// `diffuse`.
     pub diffuse_map: Option<At<String>>,
     /// Share of the light in the highlight.
@@ -268,6 +268,8 @@ pub struct ModelTable {
     pub lights: Option<bool>,
     /// Which of the animations in a glTF file it plays, by name; without one, the first.
     pub animation: Option<At<String>>,
+    /// Which variant of its materials a glTF file shows, by name; without one, the default.
+    pub variant: Option<At<String>>,
 }
 
 /// A light.

@@ -6,9 +6,9 @@ use super::animation_tables::{Interpolation as Between, List, TrackTable};
 use super::names::{Object, What};
 use super::source::{Source, Span};
 use super::spanned::At;
-use super::suggest;
 use super::tables::Kind;
 use crate::error::{Error, Result};
+use crate::load::suggest;
 use crate::scene::Lens;
 use crate::scene::animation::{Curve, Interpolation, Value};
 

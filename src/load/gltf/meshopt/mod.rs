@@ -87,6 +87,11 @@ impl Packed {
         })
     }
 
+    /// How many bytes it is unpacked.
+    pub fn size(&self) -> u64 {
+        (self.count as u64).saturating_mul(self.stride as u64)
+    }
+
     /// The bytes of the view.
     ///
     /// # Errors

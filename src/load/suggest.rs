@@ -143,6 +143,15 @@ pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     }
 }
 
+/// As [`advice`], with what there is to choose from in either case: of names that somebody gave.
+pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
+    let all = list(candidates);
+    match closest(found, candidates) {
+        Some(meant) => format!("did you mean `{meant}`? The {kinds} are {all}"),
+        None => format!("the {kinds} are {all}"),
+    }
+}
+
 /// `a`, `b` and `c`; the first of many.
 pub fn list(names: &[&str]) -> String {
     const MOST: usize = 20;

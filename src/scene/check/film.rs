@@ -1,0 +1,60 @@
+//! What makes a film valid.
+
+use super::require::{color, require};
+use crate::error::Result;
+use crate::scene::{Adaptive, FilmSettings};
+
+/// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
+pub const MAX_PIXELS: u64 = 1 << 28;
+/// The most samples a pixel can have.
+pub const MAX_SPP: u32 = 1 << 16;
+/// The most surfaces that light can be followed through.
+pub const MAX_DEPTH: u32 = 1 << 16;
+
+/// Checks a film.
+pub(super) fn check(film: &FilmSettings) -> Result<()> {
+    check_size(film.size)?;
+    let uniform = Adaptive { max: film.spp, threshold: Adaptive::THRESHOLD };
+    let Adaptive { max, threshold } = film.adaptive.unwrap_or(uniform);
+    check_samples(film.spp, max)?;
+    require((0.0..=1.0).contains(&threshold), || {
+        format!("the threshold must be from 0 to 1, found {threshold}")
+    })?;
+    color(|| "the background".to_owned(), film.background)?;
+    require(film.max_depth <= MAX_DEPTH, || {
+        format!("max_depth must be at most {MAX_DEPTH}, found {}", film.max_depth)
+    })?;
+    require((0.0..=1.0).contains(&film.cutoff), || {
+        format!("the cutoff must be from 0 to 1, found {}", film.cutoff)
+    })?;
+    require(film.exposure.is_finite(), || {
+        format!("the exposure must be finite, found {}", film.exposure)
+    })
+}
+
+/// Checks the size of a picture.
+///
+/// # Errors
+/// When a side is 0 or the picture has more than [`MAX_PIXELS`].
+pub fn check_size(size: [u32; 2]) -> Result<()> {
+    let [width, height] = size.map(u64::from);
+    require(width > 0 && height > 0 && width * height <= MAX_PIXELS, || {
+        format!("a picture of {width}x{height} pixels cannot be made")
+    })
+    .map_err(|e| e.help(format!("each side at least 1, and at most {MAX_PIXELS} pixels in all")))
+}
+
+/// Checks the fewest and the most samples of a pixel.
+///
+/// # Errors
+/// When there are none or more than [`MAX_SPP`], or the most are fewer than the fewest.
+pub fn check_samples(min: u32, max: u32) -> Result<()> {
+    for spp in [min, max] {
+        require((1..=MAX_SPP).contains(&spp), || {
+            format!("samples per pixel must be from 1 to {MAX_SPP}, found {spp}")
+        })?;
+    }
+    require(min <= max, || {
+        format!("the most samples per pixel, {max}, are fewer than the fewest, {min}")
+    })
+}

@@ -1,0 +1,71 @@
+//! What makes a scene valid, whoever built it.
+
+mod camera;
+mod film;
+mod light;
+mod material;
+mod require;
+mod shape;
+mod texture;
+
+pub use film::{MAX_DEPTH, MAX_PIXELS, MAX_SPP, check_samples, check_size};
+
+use require::require;
+
+use crate::error::Result;
+use crate::geometry::Bounds;
+use crate::scene::{Material, Scene};
+
+/// The greatest absolute coordinate in world space; Embree ignores what lies beyond 1.8e18, and
+/// f32 products of coordinates must stay finite.
+pub const MAX_COORDINATE: f64 = 1e15;
+
+impl Scene {
+    /// Checks what the rest of the program takes for granted: numbers are finite and in range,
+    /// indices point at something.
+    ///
+    /// # Errors
+    /// The first thing that is not so, with the object's index.
+    pub fn check(&self) -> Result<()> {
+        film::check(&self.film)?;
+        let textures = self.textures.len();
+        let mut materials = self.materials.iter().enumerate();
+        materials.try_for_each(|(i, material)| material::check(i, material, textures))?;
+        (0..self.spheres.len()).try_for_each(|i| self.check_sphere(i))?;
+        (0..self.planes.len()).try_for_each(|i| self.check_plane(i))?;
+        (0..self.meshes.len()).try_for_each(|i| self.check_mesh(i))?;
+        let moved = self.animation.as_ref().map(|a| a.moved_instances(self.instances.len()));
+        for i in 0..self.instances.len() {
+            // What moves may be flat at one time; it then is not there.
+            let may_be_flat = moved.as_ref().is_some_and(|moved| moved[i]);
+            self.check_instance(i, may_be_flat)?;
+        }
+        self.check_textures()?;
+        check_extent(&self.bounds())?;
+        self.check_lights_and_cameras()?;
+        self.animation.iter().try_for_each(|animation| animation.check(self))
+    }
+
+    /// Checks the textures; a picture need not have been read where no material in use shows it.
+    fn check_textures(&self) -> Result<()> {
+        let mut shown = vec![false; self.textures.len()];
+        let maps = self.materials_in_use().flat_map(Material::textures);
+        maps.for_each(|map| shown[map.0 as usize] = true);
+        let mut textures = self.textures.iter().zip(shown).enumerate();
+        textures.try_for_each(|(i, (texture, shown))| texture::check(i, texture, shown))
+    }
+
+    /// Checks what is cheap to check.
+    pub(in crate::scene) fn check_lights_and_cameras(&self) -> Result<()> {
+        self.lights.iter().enumerate().try_for_each(|(i, light)| light::check(i, light))?;
+        self.cameras.iter().enumerate().try_for_each(|(i, camera)| camera::check(i, camera))
+    }
+}
+
+/// Checks that a scene within these bounds is not too large.
+pub(in crate::scene) fn check_extent(bounds: &Bounds) -> Result<()> {
+    let extent = bounds.max_abs();
+    require(extent <= MAX_COORDINATE, || {
+        format!("the scene reaches out to {extent:e}, beyond the {MAX_COORDINATE:e} supported")
+    })
+}

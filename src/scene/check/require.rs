@@ -1,0 +1,44 @@
+//! The conditions that several checks share, and how they are reported.
+
+use glam::{DVec3, Vec3};
+
+use super::MAX_COORDINATE;
+use crate::error::{Error, Result};
+
+/// What does not hold is an error of input.
+pub(super) fn require(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::input(message())) }
+}
+
+/// `p` is finite and within [`MAX_COORDINATE`].
+pub(super) fn position(what: impl FnOnce() -> String, p: DVec3) -> Result<()> {
+    require(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE, || {
+        format!("{}: must be finite and within 1e15 of the origin, found {p}", what())
+    })
+}
+
+/// `v` has length 1, to within rounding.
+pub(super) fn unit(what: impl FnOnce() -> String, v: DVec3) -> Result<()> {
+    require((v.length() - 1.0).abs() < 1e-6, || {
+        format!("{}: must have length 1, found {v}", what())
+    })
+}
+
+/// `c` is finite and nowhere negative.
+pub(super) fn color(what: impl FnOnce() -> String, c: Vec3) -> Result<()> {
+    require(c.is_finite() && c.min_element() >= 0.0, || {
+        format!("{}: must be finite and not negative, found {c}", what())
+    })
+}
+
+/// `index` is one of `count`.
+pub(super) fn index(
+    what: impl FnOnce() -> String,
+    kind: &str,
+    index: u32,
+    count: usize,
+) -> Result<()> {
+    require((index as usize) < count, || {
+        format!("{}: there is no {kind} {index}, only {count} of them", what())
+    })
+}

@@ -1,0 +1,38 @@
+//! What makes a texture valid.
+
+use super::require::require;
+use crate::error::Result;
+use crate::scene::Texture;
+
+/// Checks texture `i`, whose picture must have been read if it is `shown`.
+pub(super) fn check(i: usize, texture: &Texture, shown: bool) -> Result<()> {
+    let image = &texture.image;
+    if !image.is_read() && image.texels.is_empty() {
+        return require(!shown, || {
+            format!(
+                "texture {i} (`{}`): the picture was not read, and a material in use shows it",
+                image.name
+            )
+        })
+        .map_err(|e| e.help("load the scene without skipping `pictures`"));
+    }
+    let pixels = u64::from(image.width) * u64::from(image.height);
+    require(pixels > 0 && pixels == image.texels.len() as u64, || {
+        format!(
+            "texture {i} (`{}`): {}x{} pixels declared, {} there",
+            image.name,
+            image.width,
+            image.height,
+            image.texels.len()
+        )
+    })?;
+    require(texture.set < 2, || {
+        format!(
+            "texture {i}: there are two sets of texture coordinates, 0 and 1, not {}",
+            texture.set
+        )
+    })?;
+    require(texture.transform.is_finite(), || {
+        format!("texture {i}: its transform must be finite, found {}", texture.transform)
+    })
+}
