@@ -157,7 +157,7 @@ fn objects_and_materials_are_meshes() {
 
 #[test]
 fn comments_continuations_and_line_ends() {
-    let scene = load("# a\r\nv 0 0 0 # b\r\nv 1 0 0\r\nv 0 1 0\r\nf 1 \\\r\n2 3#c\r\n");
+    let scene = load("# a\r\nv 0 0 0 # b\r\nv 1 0 0# d e\r\nv 0 1 0\r\nf 1 \\\r\n2 3#c\r\n");
     assert_eq!(scene.triangle_count(), 1);
 }
 
@@ -206,8 +206,7 @@ fn number_that_is_none_names_its_line() {
 
 #[test]
 fn face_that_is_none_names_its_line() {
-    for face in ["f 1 2 x", "f 1/2/3/4 2 3", "f 1 2 /3", "f 1 2 3.5", "f 1 2 99999999999999999999"]
-    {
+    for face in ["f 1 2 x", "f 1/2/3/4 2 3", "f 1 2 /3", "f 1 2 3.5"] {
         let error = fails(format!("{VERTICES}{face}"));
         assert_eq!(error.place_in_file(), Some(&Place::Line(4)), "{face}");
     }
@@ -225,7 +224,7 @@ fn compiled_object_file() {
 
 #[test]
 fn face_of_vertices_that_are_not_there_is_dropped() {
-    for bad in ["f 0 1 2", "f 1 2 4", "f -4 1 2", "f 1 2 9223372036854775807"] {
+    for bad in ["f 0 1 2", "f 1 2 4", "f -4 1 2", "f 1 2 99999999999999999999"] {
         let scene = load(format!("{VERTICES}f 1 2 3\n{bad}"));
         assert_eq!(scene.triangle_count(), 1, "{bad}");
         assert_warns(&scene, "1 faces are left out: they name vertices that are not there");
@@ -432,7 +431,12 @@ fn libraries_of_several_names_and_names_with_spaces() {
     let folder = Folder::new();
     folder.write("a b.mtl", "newmtl x\nKd 1 0 0");
     folder.write("c.mtl", "newmtl y\nKd 0 1 0");
-    for line in ["mtllib a b.mtl c.mtl", "mtllib a b.mtl\nmtllib c.mtl", "mtllib a\\ b.mtl c.mtl"] {
+    for line in [
+        "mtllib a b.mtl c.mtl",
+        "mtllib a b.mtl\nmtllib c.mtl",
+        "mtllib a\\ b.mtl c.mtl",
+        "mtllib \"a b.mtl\"\nmtllib \"c.mtl\"",
+    ] {
         let text = format!("{line}\n{VERTICES}usemtl x\nf 1 2 3\nusemtl y\nf 1 2 3");
         let scene = folder.load("model.obj", text).unwrap();
         let colors: Vec<_> = scene.materials.iter().map(|m| m.diffuse).collect();

@@ -1,5 +1,7 @@
 //! A camera for model files that bring none.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -123,14 +125,21 @@ fn extent_of_box(bounds: &Bounds, along: DVec3) -> f64 {
 fn mesh_extents<const N: usize>(mesh: &Mesh, instance: &Instance, along: [DVec3; N]) -> [f64; N] {
     let none = [f64::NEG_INFINITY; N];
     let local = along.map(|along| instance.transform.matrix3.transpose() * along);
-    let reach = |triangles: &[[u32; 3]]| {
-        triangles.as_flattened().iter().fold(none, |most, &i| {
-            let corner = mesh.positions.get(i as usize).copied().unwrap_or_default();
-            let corner = DVec3::from(corner.map(f64::from));
-            greater(most, local.map(|local| corner.dot(local)))
+    // Each vertex once, though several triangles have it.
+    let used: Vec<AtomicBool> = mesh.positions.iter().map(|_| AtomicBool::new(false)).collect();
+    mesh.triangles.par_chunks(GRAIN).for_each(|triangles| {
+        let used = triangles.as_flattened().iter().filter_map(|&i| used.get(i as usize));
+        used.for_each(|used| used.store(true, Ordering::Relaxed));
+    });
+    let reach = |(positions, used): (&[[f32; 3]], &[AtomicBool])| {
+        let used = positions.iter().zip(used).filter(|(_, used)| used.load(Ordering::Relaxed));
+        used.fold(none, |most, (position, _)| {
+            let position = DVec3::from(position.map(f64::from));
+            greater(most, local.map(|local| position.dot(local)))
         })
     };
-    let most = mesh.triangles.par_chunks(GRAIN).map(reach).reduce(|| none, greater);
+    let parts = mesh.positions.par_chunks(GRAIN).zip(used.par_chunks(GRAIN));
+    let most = parts.map(reach).reduce(|| none, greater);
     std::array::from_fn(|i| instance.transform.translation.dot(along[i]) + most[i])
 }
 

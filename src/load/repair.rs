@@ -35,12 +35,7 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         debug_assert!(length == 0 || length == count);
     }
     mend_normals(mesh, tally, place);
-    let mut bad = 0;
-    let uvs = mesh.uvs.iter_mut().chain(&mut mesh.second_uvs).flatten();
-    for uv in uvs.filter(|x| !x.is_finite()) {
-        *uv = 0.0;
-        bad += 1;
-    }
+    let bad: u64 = [&mut mesh.uvs, &mut mesh.second_uvs].into_iter().map(mend_uvs).sum();
     tally.add("{} texture coordinates are not finite and become 0", bad, at);
     let mut bad = 0;
     let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
@@ -65,6 +60,18 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
     }
 }
 
+/// Replaces texture coordinates that are not finite with 0, and counts them.
+fn mend_uvs(uvs: &mut Vec<[f32; 2]>) -> u64 {
+    // Nearly always there are none, which is told fast.
+    let finite =
+        |uvs: &[[f32; 2]]| uvs.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
+    if uvs.par_chunks(GRAIN).all(finite) {
+        return 0;
+    }
+    let bad = uvs.iter_mut().flatten().filter(|x| !x.is_finite());
+    bad.map(|x| *x = 0.0).count() as u64
+}
+
 /// Drops triangles with two corners at one place. Those whose corners only stand in line are kept:
 /// they close the seams between large faces and several small ones.
 fn drop_degenerate(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
@@ -87,6 +94,9 @@ fn mend_normals(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         let length = Vec3::from(*n).length_squared();
         !(length > 0.0 && length.is_finite())
     };
+    if !mesh.normals.par_chunks(GRAIN).any(|normals| normals.iter().any(is_bad)) {
+        return;
+    }
     // An unnormalised normal can be tiny or huge and still have a direction.
     for normal in mesh.normals.iter_mut().filter(|n| is_bad(n)) {
         let largest = normal.iter().fold(0f32, |m, x| m.max(x.abs()));

@@ -2,9 +2,11 @@
 //! that name different kinds of data.
 
 use std::fmt::Write;
+use std::num::{IntErrorKind, ParseIntError};
 
 use smallvec::SmallVec;
 
+use super::lines::words;
 use crate::error::{Error, Result};
 
 /// Absolute indices of a position, texture coordinates and a normal, from 1; 0 for none.
@@ -18,12 +20,11 @@ const NOWHERE: u32 = u32::MAX;
 /// # Errors
 /// When one of them is none.
 pub fn corners(text: &str, so_far: [u32; 3]) -> Result<SmallVec<[Corner; 8]>> {
-    text.split_whitespace().map(|word| corner(word, so_far)).collect()
+    words(text).map(|word| corner(word, so_far)).collect()
 }
 
 /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
 fn corner(word: &str, so_far: [u32; 3]) -> Result<Corner> {
-    let word = word.split('#').next().unwrap_or(word);
     let broken = || {
         Error::input(format!("`{word}` is no corner of a face"))
             .help("`v`, `v/vt`, `v//vn` or `v/vt/vn`, each a whole number")
@@ -35,7 +36,10 @@ fn corner(word: &str, so_far: [u32; 3]) -> Result<Corner> {
         if part.is_empty() {
             continue;
         }
-        let number: i64 = part.parse().map_err(|_| broken())?;
+        let number: i64 = part.parse().or_else(|error: ParseIntError| match error.kind() {
+            IntErrorKind::PosOverflow | IntErrorKind::NegOverflow => Ok(0),
+            _ => Err(broken()),
+        })?;
         let absolute = match number {
             n if n < 0 => n.saturating_add(i64::from(count) + 1),
             n => n,

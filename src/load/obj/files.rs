@@ -20,6 +20,11 @@ pub fn find(guard: &Guard, folder: &Path, name: &str) -> Result<Opened> {
     })
 }
 
+/// A file's name without the quotes around it.
+pub fn unquoted(name: &str) -> &str {
+    name.strip_prefix('"').and_then(|name| name.strip_suffix('"')).unwrap_or(name)
+}
+
 /// The path, from a folder, of what is below it and has a name in another case. Only what is
 /// really below is looked at: nothing is followed out of it.
 fn in_any_case(folder: &Path, name: &str) -> Option<String> {

@@ -5,7 +5,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::files::find;
+use super::files::{find, unquoted};
 use super::lines::decode;
 use super::material::Maker;
 use super::mtl::{UNNAMED, clean};
@@ -36,7 +36,8 @@ impl<'a> Library<'a> {
         let own = path.with_extension("mtl");
         let own = || find(guard, folder, &own.file_name().unwrap_or_default().to_string_lossy());
         for name in names {
-            // A name may hold spaces, and a line several names.
+            // A name may stand in quotes or hold spaces, and a line have several names.
+            let name = unquoted(name);
             if let Ok(file) = find(guard, folder, name) {
                 library.add(file, tally);
                 continue;

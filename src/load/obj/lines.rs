@@ -136,6 +136,17 @@ fn strip_comment(text: &str) -> &str {
     }
 }
 
+/// The words of a line of numbers, in which a comment may begin anywhere (`1 2 3# so`), save in
+/// Microsoft's `1.#QNAN`, `1.#INF` and `-1.#IND`.
+pub fn words(text: &str) -> impl Iterator<Item = &str> {
+    let begins = |at: &usize| {
+        let (before, after) = text.split_at_checked(*at).unwrap_or_default();
+        !(before.ends_with('.') && ["#I", "#Q", "#S"].iter().any(|name| after.starts_with(name)))
+    };
+    let end = memchr::memchr_iter(b'#', text.as_bytes()).find(begins).unwrap_or(text.len());
+    text.get(..end).unwrap_or(text).split_whitespace()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,6 +182,13 @@ mod tests {
     #[test]
     fn number_sign_within_a_name_is_no_comment() {
         assert_eq!(all("usemtl a#1 #b"), [one("usemtl", "a#1", 1)]);
+    }
+
+    #[test]
+    fn comment_may_follow_a_number_at_once() {
+        let all = |text| words(text).map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(all("1 2 3.# so #"), ["1", "2", "3."]);
+        assert_eq!(all("1.#QNAN -1.#IND 2#c"), ["1.#QNAN", "-1.#IND", "2"]);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A texture statement of an MTL file: options, then the file's name, which may hold spaces.
 
+use super::files::unquoted;
+
 /// A texture statement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
@@ -37,11 +39,7 @@ impl Map {
             map.apply(option, values);
             file = rest;
         }
-        let quoted = file.strip_prefix('"').and_then(|f| f.strip_suffix('"'));
-        file.clone_into(&mut map.file);
-        if let Some(quoted) = quoted {
-            quoted.clone_into(&mut map.file);
-        }
+        unquoted(file).clone_into(&mut map.file);
         (!map.file.is_empty()).then_some(map)
     }
 

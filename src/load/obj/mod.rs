@@ -93,19 +93,22 @@ fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Tally) -> Optio
     let count = positions.len();
     // OBJ's v runs up the picture, ours runs down.
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
-    let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
     // As on a screen: programs that write vertex colours mean them so.
     let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / unit));
-    let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
-    let mut mesh = Mesh {
-        name: name.unwrap_or_default().to_owned(),
-        triangles: triangles(source, &positions, tally, place),
-        normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
-        uvs: per_vertex(uvs, count),
-        colors: per_vertex(colors, count),
-        positions,
-        ..Mesh::default()
+    let attributes = || {
+        let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
+        let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
+        Mesh {
+            normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
+            uvs: per_vertex(uvs, count),
+            colors: per_vertex(colors, count),
+            ..Mesh::default()
+        }
     };
+    let (attributes, triangles) =
+        rayon::join(attributes, || triangles(source, &positions, tally, place));
+    let name = name.unwrap_or_default().to_owned();
+    let mut mesh = Mesh { name, positions, triangles, ..attributes };
     if mesh.normals.is_empty() && part.setting.smoothing.is_some() {
         mesh.normals = smooth::normals(&mesh);
     }

@@ -20,6 +20,8 @@ use crate::load::tally::Tally;
 
 /// About how many bytes a thread works on at a time.
 const CHUNK: usize = 1 << 20;
+/// About how many bytes are searched at once for what says more than faces do.
+const BLOCK: usize = 1 << 12;
 
 /// Faces that become one mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -106,7 +108,7 @@ pub fn rewrite<T: Send>(
     tally: &mut Tally,
     read: impl FnOnce(&mut Stream) -> T + Send,
 ) -> Result<(Rewritten, T)> {
-    let chunks = chunks(text);
+    let chunks: Vec<&str> = cut(text, CHUNK).collect();
     let surveys: Vec<Place> = chunks.par_iter().map(|chunk| survey(chunk)).collect();
     let mut here = Place::default();
     let mut places = Vec::with_capacity(chunks.len());
@@ -134,13 +136,15 @@ pub fn rewrite<T: Send>(
     })
 }
 
-/// A text cut after lines that the next one does not continue.
-fn chunks(text: &str) -> Vec<&str> {
-    let mut chunks = Vec::new();
+/// A text cut after lines that the next one does not continue, into pieces of about a `size`.
+fn cut(text: &str, size: usize) -> impl Iterator<Item = &str> {
     let mut rest = text;
-    while !rest.is_empty() {
+    std::iter::from_fn(move || {
+        if rest.is_empty() {
+            return None;
+        }
         // A line feed is never within a character.
-        let mut end = CHUNK.min(rest.len());
+        let mut end = size.min(rest.len());
         loop {
             end += end_of_line(rest.as_bytes().get(end..).unwrap_or_default());
             let last = rest.get(..end).unwrap_or_default();
@@ -149,17 +153,16 @@ fn chunks(text: &str) -> Vec<&str> {
                 break;
             }
         }
-        let (chunk, after) = rest.split_at_checked(end).unwrap_or((rest, ""));
-        chunks.push(chunk);
+        let (piece, after) = rest.split_at_checked(end).unwrap_or((rest, ""));
         rest = after;
-    }
-    chunks
+        Some(piece)
+    })
 }
 
 /// What holds after a chunk of which nothing before is known.
 fn survey(chunk: &str) -> Place {
     let mut place = Place { start: chunk.len(), ..Place::default() };
-    for line in lines(chunk) {
+    for line in cut(chunk, BLOCK).filter(|block| says_more_than_faces(block)).flat_map(lines) {
         let kind = match line.text.as_bytes() {
             [b'f' | b'#', b' ', ..] => continue,
             [b'v', b' ' | b'\t', ..] => 0,
@@ -182,6 +185,12 @@ fn survey(chunk: &str) -> Place {
     }
     place.lines = memchr::memchr_iter(b'\n', chunk.as_bytes()).count();
     place
+}
+
+/// Whether some lines may be no faces: the keywords of all that [`survey`] looks for begin with
+/// letters beyond `f`. Most of a file are faces, and the greatest of many bytes is found at once.
+fn says_more_than_faces(block: &str) -> bool {
+    block.bytes().fold(0, u8::max) > b'f'
 }
 
 impl Counts {
@@ -222,10 +231,32 @@ mod tests {
     #[test]
     fn chunks_end_where_lines_do_and_make_the_text() {
         let text = "v 1 2 \\\n3\n".repeat(CHUNK / 4);
-        let found = chunks(&text);
+        let found: Vec<&str> = cut(&text, CHUNK).collect();
         assert!(found.len() > 2);
         assert_eq!(found.concat(), text);
         assert!(found.iter().all(|chunk| chunk.ends_with("3\n")));
+    }
+
+    #[test]
+    fn a_file_reads_alike_line_by_line_and_as_a_whole() {
+        // A face that is written anew, and a last line without an end.
+        let text = "v 0 0 0\nv 1 0 0\nf 1 2 -1\nv 0 1 0\nf 1 2 3";
+        let lines = |made: &mut Stream| made.lines().map(Result::unwrap).collect::<Vec<_>>();
+        let whole = |made: &mut Stream| std::io::read_to_string(made).unwrap();
+        let (_, lines) = rewrite(text, &mut Tally::default(), lines).unwrap();
+        let (_, whole) = rewrite(text, &mut Tally::default(), whole).unwrap();
+        assert_eq!(lines, ["v 0 0 0", "v 1 0 0", "v 0 1 0", "g 0", "f 1 2 2", "f 1 2 3", ""]);
+        assert_eq!(whole.lines().collect::<Vec<_>>(), lines[..6]);
+    }
+
+    #[test]
+    fn what_stands_among_many_faces_is_surveyed() {
+        let faces = "f 1 2 3\n".repeat(BLOCK);
+        let text = format!("{faces}usemtl a \\\nbed\n{faces}vt 0 0\n{faces} v 0 0 0\ns 2");
+        let place = survey(&text);
+        assert_eq!(place.counts.of, [1, 1, 0]);
+        assert_eq!(place.setting.material.as_deref(), Some("a  bed"));
+        assert_eq!((place.setting.smoothing, place.lines), (Some(2), 3 * BLOCK + 4));
     }
 
     #[test]

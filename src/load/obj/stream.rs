@@ -5,6 +5,7 @@ use std::io::{self, BufRead, Read};
 use std::sync::mpsc::Receiver;
 use std::vec::IntoIter;
 
+use super::lines::end_of_line;
 use super::rewrite::{Part, Rewritten};
 use super::segments::{Segment, Segments};
 use super::sorter::Sorted;
@@ -114,10 +115,9 @@ impl<'a> Stream<'a> {
             return Some(Segment::Written(format!("g {}\n", self.begun - 1)));
         }
     }
-}
 
-impl BufRead for Stream<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+    /// What is left of the piece that is being read, or the next one; nothing at the end.
+    fn rest(&mut self) -> io::Result<&str> {
         while self.read >= self.piece.text(self.original).len() {
             // The last line of a file may lack its end.
             let is_open = !matches!(self.piece.text(self.original).as_bytes(), [] | [.., b'\n']);
@@ -131,11 +131,27 @@ impl BufRead for Stream<'_> {
                 break;
             }
         }
-        Ok(self.piece.text(self.original).as_bytes().get(self.read..).unwrap_or_default())
+        Ok(self.piece.text(self.original).get(self.read..).unwrap_or_default())
+    }
+}
+
+impl BufRead for Stream<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.rest().map(str::as_bytes)
     }
 
     fn consume(&mut self, count: usize) {
         self.read += count;
+    }
+
+    /// As it is by default, without the search for what is no UTF-8: here is none, and tobj reads
+    /// line by line.
+    fn read_line(&mut self, line: &mut String) -> io::Result<usize> {
+        let rest = self.rest()?;
+        let end = end_of_line(rest.as_bytes());
+        line.push_str(rest.get(..end).unwrap_or_default());
+        self.consume(end);
+        Ok(end)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use super::lines::words;
 use crate::error::{Error, Result};
 
 /// The keywords of positions, texture coordinates and normals.
@@ -15,7 +16,7 @@ pub const KINDS: [&str; 3] = ["v", "vt", "vn"];
 pub fn write(kind: usize, text: &str, colored: bool, out: &mut String) -> Result<bool> {
     // How many numbers tobj wants, and how many there must be.
     let (wanted, least) = [(3, 3), (2, 1), (3, 3)][kind];
-    let words: SmallVec<[&str; 8]> = text.split_whitespace().collect();
+    let words: SmallVec<[&str; 8]> = words(text).collect();
     let numbers: SmallVec<[f32; 8]> = words.iter().map(|w| number(w)).collect::<Result<_>>()?;
     if numbers.len() < least {
         let message = format!("`{}` has {} numbers, and needs {least}", KINDS[kind], numbers.len());
@@ -33,7 +34,7 @@ pub fn write(kind: usize, text: &str, colored: bool, out: &mut String) -> Result
             // tobj takes a weight or a colour.
             Some(weight) => push(out, &(number / weight).to_string()),
             // The file's own digits, lest anything be lost; what isn't finite is dealt with later.
-            None if number.is_finite() => push(out, word.split('#').next().unwrap_or(word)),
+            None if number.is_finite() => push(out, word),
             None => push(out, "nan"),
         }
     }
@@ -59,15 +60,13 @@ fn number(word: &str) -> Result<f32> {
     if word.contains(".#") {
         return Ok(f32::NAN);
     }
-    let clean = word.split('#').next().unwrap_or(word);
-    let begins =
-        clean.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
-    match clean.parse() {
+    let begins = word.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
+    let comma = word.contains(',');
+    match word.parse() {
         Ok(number) => Ok(number),
-        Err(_) if begins && !clean.contains(',') => Ok(f32::NAN),
+        Err(_) if begins && !comma => Ok(f32::NAN),
         Err(_) => {
             let error = Error::input(format!("`{word}` is no number"));
-            let comma = clean.contains(',');
             Err(if comma { error.help("decimals have a point, not a comma") } else { error })
         }
     }
