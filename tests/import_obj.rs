@@ -328,8 +328,8 @@ fn transparency_of_1_alone_is_opaque_with_a_warning() {
 
 #[test]
 fn glass_may_have_a_transparency_of_1() {
-    let m = optics("Tr 1\nillum 7");
-    assert_eq!(m.transmit, Vec3::ONE);
+    let (_, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1\nillum 7");
+    assert_eq!((m.transmit, m.thin), (Vec3::ONE, false));
 }
 
 #[test]
