@@ -35,7 +35,7 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         debug_assert!(length == 0 || length == count);
     }
     mend_normals(mesh, tally, place);
-    let bad: u64 = [&mut mesh.uvs, &mut mesh.second_uvs].into_iter().map(mend_uvs).sum();
+    let bad = mend_uvs(&mut mesh.uvs) + mend_uvs(&mut mesh.second_uvs);
     tally.add("{} texture coordinates are not finite and become 0", bad, at);
     let mut bad = 0;
     let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
@@ -61,7 +61,7 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
 }
 
 /// Replaces texture coordinates that are not finite with 0, and counts them.
-fn mend_uvs(uvs: &mut Vec<[f32; 2]>) -> u64 {
+fn mend_uvs(uvs: &mut [[f32; 2]]) -> u64 {
     // Nearly always there are none, which is told fast.
     let finite =
         |uvs: &[[f32; 2]]| uvs.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
