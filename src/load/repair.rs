@@ -35,7 +35,7 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Tally, place: &str) {
         debug_assert!(length == 0 || length == count);
     }
     mend_normals(mesh, tally, place);
-    let bad: u64 = [&mut mesh.uvs, &mut mesh.second_uvs].into_iter().map(|uvs| mend_uvs(uvs)).sum();
+    let bad = mend_uvs(&mut mesh.uvs) + mend_uvs(&mut mesh.second_uvs);
     tally.add("{} texture coordinates are not finite and become 0", bad, at);
     let mut bad = 0;
     let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
