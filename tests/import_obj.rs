@@ -329,7 +329,7 @@ fn transparency_of_1_alone_is_opaque_with_a_warning() {
 
 #[test]
 fn glass_may_have_a_transparency_of_1() {
-    let m = optics("Tr 1\nillum 7");
+    let m = optics("Tr 1\nillum 4");
     assert_eq!(m.transmit, Vec3::ONE);
 }
 
