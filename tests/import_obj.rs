@@ -284,8 +284,20 @@ fn illumination_models_without_highlight() {
 }
 
 #[test]
-fn shininess_of_zero_is_brought_into_range() {
-    assert_eq!(with_mtl(&Folder::new(), "newmtl m\nNs 0").1.shininess, 1.0);
+fn shininess_below_one_is_brought_into_range() {
+    assert_eq!(with_mtl(&Folder::new(), "newmtl m\nNs 0.5").1.shininess, 1.0);
+}
+
+#[test]
+fn shininess_of_zero_is_no_highlight() {
+    let (_, m) = with_mtl(&Folder::new(), "newmtl m\nKs 1 1 1\nNs 0");
+    assert_eq!(m.specular, Vec3::ZERO);
+}
+
+#[test]
+fn mirrors_keep_their_colour_where_the_shininess_is_zero() {
+    let (_, m) = with_mtl(&Folder::new(), "newmtl m\nKs 1 0.5 0\nNs 0\nillum 3");
+    assert_eq!((m.reflect, m.specular), (Vec3::new(1.0, 0.5, 0.0), Vec3::ZERO));
 }
 
 /// What light does at the material `m` of an MTL file, of which there is nothing to say.

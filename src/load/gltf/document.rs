@@ -120,6 +120,13 @@ fn spare_animation(animation: &mut Value) {
     if !all_whole {
         animation.insert("samplers".to_owned(), Value::Array(Vec::new()));
     }
+    let samplers = animation.get_mut("samplers").and_then(Value::as_array_mut);
+    for sampler in samplers.into_iter().flatten().filter_map(Value::as_object_mut) {
+        // An unknown word costs its channels alone; what is no word would cost the file.
+        if sampler.get("interpolation").is_some_and(|kind| !kind.is_string()) {
+            sampler.insert("interpolation".to_owned(), "?".into());
+        }
+    }
     if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
         channels.retain(|channel| {
             let target = channel.get("target");
@@ -193,6 +200,14 @@ mod tests {
         let file = br#"{"asset":{"version":"2.0","extras":42},
             "animations":[{"channels":[{"sampler":0,"target":{}}],"samplers":[]}]}"#;
         assert_eq!(parse(file).unwrap().0.animations.len(), 1);
+    }
+
+    #[test]
+    fn interpolation_that_is_no_word_is_an_unknown_one() {
+        let file = br#"{"asset":{"version":"2.0"},"animations":[{"channels":[],
+            "samplers":[{"input":0,"output":1,"interpolation":0}]}]}"#;
+        let sampler = &parse(file).unwrap().0.animations[0].samplers[0];
+        assert!(matches!(sampler.interpolation, json::validation::Checked::Invalid));
     }
 
     #[test]

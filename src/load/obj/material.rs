@@ -51,6 +51,10 @@ impl<'a> Maker<'a, '_> {
         let whole = if material.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
         material.emission = source.emissive.map_or(whole, Vec3::from);
         self.light_beyond(&mut material);
+        // Programs write 0 that mean no highlight: one of that exponent would be everywhere.
+        if source.shininess == Some(0.0) && material.shininess_map.is_none() {
+            (material.specular, material.specular_map) = (Vec3::ZERO, None);
+        }
         self.normals(&mut material);
         material
     }
