@@ -314,9 +314,22 @@ fn opacity_of_1_is_opaque_whatever_index_and_filter_say() {
 
 #[test]
 fn opacity_of_0_is_a_warning() {
-    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1");
+    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nd 0");
     assert_eq!(m.transmit, Vec3::ONE);
     assert_warns(&scene, "an opacity of 0");
+}
+
+#[test]
+fn transparency_of_1_alone_is_opaque_with_a_warning() {
+    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1.000000\nillum 2");
+    assert_eq!(m.transmit, Vec3::ZERO);
+    assert_warns(&scene, "`Tr 1` and no `d`");
+}
+
+#[test]
+fn glass_may_have_a_transparency_of_1() {
+    let (_, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1\nillum 7");
+    assert_eq!((m.transmit, m.thin), (Vec3::ONE, false));
 }
 
 #[test]

@@ -9,8 +9,10 @@ use crate::error::{Error, Result};
 use crate::write;
 
 /// What the files of scenes and pictures end in.
-const SCENES_AND_PICTURES: [&str; 13] =
-    ["toml", "gltf", "glb", "bin", "obj", "mtl", "png", "jpg", "jpeg", "webp", "tga", "bmp", "exr"];
+const SCENES_AND_PICTURES: [&str; 14] = [
+    "toml", "gltf", "glb", "vrm", "bin", "obj", "mtl", "png", "jpg", "jpeg", "webp", "tga", "bmp",
+    "exr",
+];
 
 /// Checks that JSON could be written to `path`.
 ///

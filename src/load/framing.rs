@@ -91,12 +91,21 @@ fn stand(
     middle + camera.right * x + camera.up * y - camera.forward * depth
 }
 
-/// How far a scene reaches along some directions, which are of any length; what moves, or is
-/// nothing, with its whole box.
+/// How far a scene reaches along some directions, which are of any length, wherever it moves; with
+/// its box, where it has nothing else.
 pub fn extents<const N: usize>(scene: &Scene, bounds: &Bounds, along: [DVec3; N]) -> [f64; N] {
-    if scene.animation.is_some() || scene.spheres.is_empty() && scene.triangle_count() == 0 {
-        return along.map(|along| extent_of_box(bounds, along));
+    let mut most = [f64::NEG_INFINITY; N];
+    match scene.animation {
+        Some(_) => scene.over_time(|poses| most = greater(most, extents_now(poses.scene(), along))),
+        None => most = extents_now(scene, along),
     }
+    match most.iter().all(|most| most.is_finite()) {
+        true => most,
+        false => along.map(|along| extent_of_box(bounds, along)),
+    }
+}
+
+fn extents_now<const N: usize>(scene: &Scene, along: [DVec3; N]) -> [f64; N] {
     let sphere = |s: &Sphere| along.map(|a| s.center.dot(a) + s.radius * a.length());
     let meshes = scene.instances.iter().filter_map(|instance| {
         let mesh = scene.meshes.get(instance.mesh.0 as usize)?;
@@ -202,6 +211,27 @@ mod tests {
         let half = (2.0 / to.length()).asin();
         assert!((half.tan() - HALF_FOV.tan() * FILLED).abs() < 1e-9);
         assert!(to.normalize().dot(camera.forward) > 1.0 - 1e-12);
+    }
+
+    #[test]
+    fn what_moves_touches_the_margin_somewhere_on_its_way() {
+        use crate::scene::animation::{Animation, Curve, Keys, Motion, Mover, Node};
+        let mut scene = Scene::default();
+        scene.film.size = [300, 300];
+        scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
+        // Away from the camera: the box of its way has corners far from all that is seen.
+        let mut keys = Keys::still();
+        keys.translation = Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW * 8.0]);
+        let mut animation = Animation::new(24, 24.0);
+        let motion = Motion::Keys(keys);
+        let node = animation.add_node(Node { parent: None, place: DAffine3::IDENTITY, motion });
+        let (center, radius) = (DVec3::ZERO, None);
+        animation.movers.push(Mover::Sphere { sphere: 0, node: Some(node), center, radius });
+        scene.animation = Some(animation);
+        frame(&mut scene);
+        let to = -scene.cameras[0].position;
+        let half = (1.0 / to.length()).asin();
+        assert!((half.tan() - HALF_FOV.tan() * FILLED).abs() < 1e-9, "{half}");
     }
 
     #[test]

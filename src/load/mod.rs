@@ -128,7 +128,7 @@ struct Choice<'a> {
 /// Loads a model file as it is: with its own cameras and lights, or none.
 fn model(file: Opened, guard: &Guard, choice: &Choice) -> Result<Scene> {
     match extension(&file.path).as_str() {
-        "gltf" | "glb" => gltf::load(file, guard, choice),
+        "gltf" | "glb" | "vrm" => gltf::load(file, guard, choice),
         "obj" if choice.animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),

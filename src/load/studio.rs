@@ -14,7 +14,7 @@ const GAP: f64 = 1e-4;
 const AMBIENT: [f32; 2] = [0.2, 0.1];
 
 /// How bright a file's own lights may make white in the middle of the model, as they are.
-const SHOWN: std::ops::RangeInclusive<f32> = 0.25..=4.0;
+const SHOWN: std::ops::RangeInclusive<f32> = 0.25..=2.0;
 
 /// Gives a bare model a neutral backdrop and, where it has none, lights, as its first camera sees
 /// it: a key light from the upper left, a weaker one from the right, and a little from everywhere.
@@ -65,18 +65,20 @@ fn blur(material: &mut Material, backdrop: Vec3) {
 }
 
 /// How bright white is that faces all lights at once: the median of the middle of the model and the
-/// corners of its box, since a light may stand right beside one of them.
+/// points halfway to the corners of its box, since a light may stand right beside one of them. The
+/// corners themselves are often those of a wide floor, far from what is lit.
 fn brightness(scene: &Scene) -> f32 {
     let bounds = scene.bounds();
-    let corner = |i: u32| {
+    let center = bounds.center();
+    let halfway = |i: u32| {
         let side = |k: u32| if i >> k & 1 == 0 { bounds.lower } else { bounds.upper };
-        DVec3::new(side(0).x, side(1).y, side(2).z)
+        center.midpoint(DVec3::new(side(0).x, side(1).y, side(2).z))
     };
     let at = |point: DVec3| -> f32 {
         let arrivals = scene.lights.iter().filter_map(|light| light.arrival(point));
         arrivals.map(|arrival| arrival.intensity.max_element()).sum()
     };
-    let mut found: Vec<f32> = (0..8).map(corner).chain([bounds.center()]).map(at).collect();
+    let mut found: Vec<f32> = (0..8).map(halfway).chain([center]).map(at).collect();
     found.sort_by(f32::total_cmp);
     found[found.len() / 2]
 }
@@ -185,7 +187,7 @@ mod tests {
         let mut scene = ball();
         light(&mut scene);
         scene.lights.truncate(1);
-        scene.lights[0].intensity = Vec3::splat(3.0);
+        scene.lights[0].intensity = Vec3::splat(1.9);
         light(&mut scene);
         assert_eq!((scene.film.exposure, scene.film.background), (0.0, Vec3::splat(BACKDROP)));
     }

@@ -198,3 +198,9 @@ proptest! {
         prop_assert_eq!(packed.meshes, apart.meshes);
     }
 }
+
+#[test]
+fn a_vrm_file_is_a_binary_one() {
+    let scene = Folder::new().load("avatar.vrm", Model::triangle().glb()).unwrap();
+    assert_eq!(scene.triangle_count(), 1);
+}

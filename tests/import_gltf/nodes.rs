@@ -88,3 +88,30 @@ fn child_that_stands_among_the_roots_is_placed_by_its_parent() {
     assert_eq!(scene.instances[0].transform.translation.x, 5.0);
     assert_warns(&scene, "stand twice");
 }
+
+#[test]
+fn a_node_that_is_not_visible_hides_all_that_hangs_on_it() {
+    let mut model = Model::triangle();
+    let visible = |visible| json!({"KHR_node_visibility": {"visible": visible}});
+    model.json["extensionsUsed"] = json!(["KHR_node_visibility"]);
+    model.json["nodes"] = json!([
+        {"mesh": 0, "children": [1], "extensions": visible(false)},
+        {"mesh": 0, "extensions": visible(true)},
+        {"mesh": 0, "translation": [5, 0, 0], "extensions": visible(true)},
+    ]);
+    model.json["scenes"] = json!([{"nodes": [0, 2]}]);
+    let scene = model.load().unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+    assert_eq!(scene.instances.len(), 1);
+    assert_eq!(scene.instances[0].transform.translation, DVec3::new(5.0, 0.0, 0.0));
+}
+
+#[test]
+fn extensions_of_what_is_not_seen_are_passed_over_also_where_they_are_required() {
+    let mut model = Model::triangle();
+    let names = json!(["OMI_physics_body", "EXT_structural_metadata", "KHR_audio_emitter"]);
+    model.json["extensionsUsed"] = names.clone();
+    model.json["extensionsRequired"] = names;
+    let scene = model.load().unwrap();
+    assert_eq!(scene.warnings, [""; 0]);
+}

@@ -9,8 +9,10 @@ use gltf::json;
 use gltf::json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf::json::validation::Checked;
 
-use super::buffers::{Buffers, get, range};
+use super::buffers::{Buffers, get};
+use super::number::Number;
 use super::packed;
+use super::rows::Rows;
 use crate::error::{Error, Place, Result};
 use crate::load::guard::Guard;
 use crate::load::limits::Limit;
@@ -40,13 +42,6 @@ pub struct Supplied {
 
 /// So many elements a triangle that is unpacked counts as: unpacking takes memory for each.
 const ELEMENTS_PER_FACE: u64 = 4;
-
-/// A number within a buffer: what it is and how it reads.
-#[derive(Clone, Copy)]
-struct Number {
-    kind: ComponentType,
-    normalized: bool,
-}
 
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
@@ -307,75 +302,5 @@ fn name(kind: ComponentType) -> &'static str {
         ComponentType::U16 => "unsigned shorts",
         ComponentType::U32 => "unsigned ints",
         ComponentType::F32 => "floats",
-    }
-}
-
-/// Elements of `size` bytes, `stride` bytes apart, known to lie within their bytes.
-struct Rows<'a> {
-    bytes: &'a [u8],
-    stride: usize,
-    size: usize,
-    left: usize,
-}
-
-impl<'a> Rows<'a> {
-    fn new(bytes: &'a [u8], offset: u64, stride: usize, size: usize, count: usize) -> Option<Self> {
-        if count == 0 {
-            return Some(Self { bytes: &[], stride, size, left: 0 });
-        }
-        let length = (count as u64 - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
-        Some(Self { bytes: range(bytes, offset, length)?, stride, size, left: count })
-    }
-}
-
-impl<'a> Rows<'a> {
-    /// The bytes of all elements, where there are no others between them.
-    fn packed(&self) -> Option<&'a [u8]> {
-        (self.stride == self.size).then_some(self.bytes)
-    }
-}
-
-impl<'a> Iterator for Rows<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        self.left = self.left.checked_sub(1)?;
-        let row = self.bytes.get(..self.size)?;
-        self.bytes = self.bytes.get(self.stride..).unwrap_or_default();
-        Some(row)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.left, Some(self.left))
-    }
-}
-
-impl Number {
-    /// The value as a float. Normalised integers map as the standard's part 3.6.2.2 says.
-    fn float(self, bytes: &[u8]) -> f32 {
-        let scale = |value: f32, greatest: f32| {
-            if self.normalized { (value / greatest).max(-1.0) } else { value }
-        };
-        match *bytes {
-            [a] if self.kind == ComponentType::I8 => scale(f32::from(a as i8), 127.0),
-            [a] => scale(f32::from(a), 255.0),
-            [a, b] if self.kind == ComponentType::I16 => {
-                scale(f32::from(i16::from_le_bytes([a, b])), 32767.0)
-            }
-            [a, b] => scale(f32::from(u16::from_le_bytes([a, b])), 65535.0),
-            [a, b, c, d] if self.kind == ComponentType::F32 => f32::from_le_bytes([a, b, c, d]),
-            [a, b, c, d] => scale(u32::from_le_bytes([a, b, c, d]) as f32, u32::MAX as f32),
-            _ => 0.0,
-        }
-    }
-
-    /// The value as an unsigned integer.
-    fn integer(self, bytes: &[u8]) -> u32 {
-        match *bytes {
-            [a] => u32::from(a),
-            [a, b] => u32::from(u16::from_le_bytes([a, b])),
-            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
-            _ => 0,
-        }
     }
 }

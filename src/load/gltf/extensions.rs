@@ -5,7 +5,7 @@ use gltf::json;
 use crate::error::{Error, Place, Result};
 use crate::load::tally::Tally;
 
-/// The extensions that are read, or that change nothing which is.
+/// The extensions that are read.
 const READ: [&str; 18] = [
     "EXT_meshopt_compression",
     "KHR_draco_mesh_compression",
@@ -22,15 +22,42 @@ const READ: [&str; 18] = [
     "KHR_materials_variants",
     "KHR_materials_volume",
     "KHR_mesh_quantization",
+    "KHR_node_visibility",
     "KHR_texture_basisu",
     "KHR_texture_transform",
-    "KHR_xmp_json_ld",
 ];
+
+/// The extensions that say nothing of what is seen: metadata, physics, sound, what can be clicked,
+/// and coarser meshes beside the ones that are shown.
+const UNSEEN: [&str; 15] = [
+    "EXT_feature_metadata",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "FB_ngon_encoding",
+    "GODOT_single_root",
+    "KHR_audio_emitter",
+    "KHR_interactivity",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MSFT_lod",
+    "MSFT_physics",
+];
+/// How the names of further such extensions begin.
+const UNSEEN_FAMILIES: [&str; 6] =
+    ["OMI_collider", "OMI_physics_", "OMI_seat", "OMI_spawn_point", "OMI_vehicle_", "OMI_link"];
 
 /// Refuses a file that cannot be shown without an extension that isn't read, and warns of
 /// extensions that a file uses but can do without.
 pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
-    let is_read = |name: &str| READ.contains(&name);
+    let is_read = |name: &str| {
+        READ.contains(&name)
+            || UNSEEN.contains(&name)
+            || UNSEEN_FAMILIES.iter().any(|family| name.starts_with(family))
+    };
     for (i, name) in root.extensions_required.iter().enumerate() {
         if !is_read(name) {
             return Err(Error::input(format!("the file requires {name}, which is not read"))

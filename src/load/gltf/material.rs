@@ -7,7 +7,8 @@ use gltf::json;
 use gltf::json::texture::Info;
 
 use super::buffers::get;
-use super::texture::{Slot, Textures};
+use super::slot::Slot;
+use super::texture::Textures;
 use crate::error::Result;
 use crate::load::tally::Tally;
 use crate::scene::{

@@ -97,7 +97,7 @@ pub fn walk<'a>(
             Some(_) => (own, DAffine3::IDENTITY),
             None => (above.mover, above.rest * local),
         };
-        let is_shown = above.is_shown;
+        let is_shown = above.is_shown && !is_hidden(node);
         let here = Above { world, mover, rest, is_shown, depth };
         let children = node.children.iter().flatten().enumerate();
         let children = children
@@ -111,6 +111,13 @@ pub fn walk<'a>(
         placed.push(Placed { node, index, world, mover, rest, is_shown });
     }
     Ok(placed)
+}
+
+/// Whether KHR_node_visibility hides a node, and with it all that hangs on it.
+fn is_hidden(node: &Node) -> bool {
+    let others = node.extensions.as_ref().map(|extensions| &extensions.others);
+    let visibility = others.and_then(|others| others.get("KHR_node_visibility"));
+    visibility.and_then(|object| object.get("visible")) == Some(&json::Value::Bool(false))
 }
 
 /// Where the children of a node stand; as in [`Placed`].

@@ -71,15 +71,15 @@ impl<'a> Maker<'a, '_> {
     fn light_beyond(&mut self, material: &mut Material) {
         let illumination = self.illumination();
         let name = || format!("`{}`", self.source.name);
-        if illumination.opacity == 0.0 {
-            self.tally.add("{} materials have an opacity of 0 (d 0, or Tr 1)", 1, name);
-        }
         let opacity_map = self.source.dissolve_texture.as_deref();
         if illumination.is_glass() {
             let count = u64::from(opacity_map.is_some());
             let reason = "{} textures of opacity are not read: their materials are glass";
             self.tally.unsupported(reason, count, name);
             return illumination.apply(material);
+        }
+        if illumination.opacity == 0.0 {
+            self.tally.add("{} materials have an opacity of 0 and cannot be seen", 1, name);
         }
         let metallic = self.metallic(material);
         if opacity_map.is_none() && metallic.is_none() {
@@ -188,17 +188,25 @@ impl<'a> Maker<'a, '_> {
         self.textures.get(map, transfer, self.folder, self.scene)
     }
 
-    fn illumination(&self) -> Illumination {
+    fn illumination(&mut self) -> Illumination {
         let transparency = self.other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
         let filter = self.other("Tf").map(|tf| {
             let mut numbers = tf.split_whitespace().flat_map(str::parse);
             Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
         });
-        Illumination {
+        let mut illumination = Illumination {
             model: self.source.illumination_model.unwrap_or(2),
             opacity: self.source.dissolve.unwrap_or(1.0 - transparency).clamp(0.0, 1.0),
             filter,
             ior: self.source.optical_density,
+        };
+        // MeshLab and others write the opacity there, and seldom another one than 1.
+        if self.source.dissolve.is_none() && transparency == 1.0 && !illumination.is_glass() {
+            let reason = "{} materials have `Tr 1` and no `d`: they are drawn opaque, as the \
+                          programs that write it mean them";
+            self.tally.add(reason, 1, || format!("`{}`", self.source.name));
+            illumination.opacity = 1.0;
         }
+        illumination
     }
 }

@@ -9,6 +9,7 @@ mod animation;
 mod animation_tables;
 mod camera;
 mod color;
+mod film;
 mod light;
 mod model;
 mod mover;

@@ -90,7 +90,7 @@ fn open(resolver: &Resolver<'_>, name: &At<String>) -> Result<Opened> {
     let source = resolver.source;
     let fail = |message| source.cannot_have(span, "model", name, &message);
     match load::extension(&source.file(name)).as_str() {
-        "gltf" | "glb" | "obj" => {}
+        "gltf" | "glb" | "vrm" | "obj" => {}
         "toml" => return Err(fail(Error::input("a scene file cannot stand in another one"))),
         _ => {
             return Err(fail(

@@ -178,16 +178,26 @@ impl Scene {
     /// # Panics
     /// When the animation was not [checked](Scene::check).
     pub fn bounds_over_time(&self) -> Bounds {
-        /// At how many times an animation is looked at.
+        if self.animation.is_none() {
+            return self.bounds();
+        }
+        let mut bounds = Bounds::EMPTY;
+        self.over_time(|poses| bounds = bounds.union(poses.bounds()));
+        bounds
+    }
+
+    /// Looks at the scene at some moments of its animation, from its start to its end.
+    pub(crate) fn over_time(&self, mut look: impl FnMut(&mut Poses<'_>)) {
+        /// At how many times an animation is looked at, besides its start.
         const MOMENTS: u32 = 24;
-        let Some(animation) = &self.animation else { return self.bounds() };
-        let moment = |i: u32| animation.seconds() * f64::from(i) / f64::from(MOMENTS);
+        let Some(animation) = &self.animation else { return };
         let mut poses = Poses::new(self);
-        let mut bounds = |i| {
-            poses.pose(moment(i)).ok()?;
-            Some(poses.bounds())
-        };
-        (0..=MOMENTS).filter_map(&mut bounds).fold(Bounds::EMPTY, Bounds::union)
+        for i in 0..=MOMENTS {
+            let time = animation.seconds() * f64::from(i) / f64::from(MOMENTS);
+            if poses.pose(time).is_ok() {
+                look(&mut poses);
+            }
+        }
     }
 }
 

@@ -1,0 +1,110 @@
+//! A material's reference to a texture.
+
+use glam::{Affine2, Mat2, Vec2};
+use gltf::json;
+use gltf::json::texture::Info;
+
+/// What a material's reference to a texture says: which one, by which coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slot {
+    /// The number of the texture in the file.
+    pub index: usize,
+    /// The number of the TEXCOORD set.
+    pub set: u32,
+    /// KHR_texture_transform.
+    pub transform: Affine2,
+}
+
+const TRANSFORM: &str = "KHR_texture_transform";
+
+/// KHR_texture_transform, as far as a reference gives it.
+#[derive(serde::Deserialize)]
+#[serde(default, rename_all = "camelCase")]
+struct Transform {
+    offset: [f32; 2],
+    rotation: f32,
+    scale: [f32; 2],
+    tex_coord: Option<u32>,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self { offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2], tex_coord: None }
+    }
+}
+
+impl Transform {
+    /// From a set of coordinates to those on the picture.
+    ///
+    /// Scale, then rotate, then offset. Positive angles turn counter-clockwise as one sees the
+    /// picture, whose v runs down: so do Khronos' viewer and its TextureTransformTest, while the
+    /// GLSL in the extension's text has the sign the other way.
+    fn affine(&self) -> Affine2 {
+        let (sin, cos) = self.rotation.sin_cos();
+        let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
+        Affine2::from_mat2_translation(
+            turn * Mat2::from_diagonal(self.scale.into()),
+            self.offset.into(),
+        )
+    }
+}
+
+impl Slot {
+    /// That of a plain reference.
+    pub fn of(info: &Info) -> Self {
+        let extension = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
+        let transform = extension.map(|t| Transform {
+            offset: t.offset.0,
+            rotation: t.rotation.0,
+            scale: t.scale.0,
+            tex_coord: t.tex_coord,
+        });
+        Self::with(info.index.value(), info.tex_coord, transform)
+    }
+
+    /// That of a normal texture.
+    pub fn of_normal(info: &json::material::NormalTexture) -> Self {
+        let others = info.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+        Self::with(info.index.value(), info.tex_coord, parsed(others))
+    }
+
+    /// That of an occlusion texture.
+    pub fn of_occlusion(info: &json::material::OcclusionTexture) -> Self {
+        let others = info.extensions.as_ref().and_then(|e| e.others.get(TRANSFORM));
+        Self::with(info.index.value(), info.tex_coord, parsed(others))
+    }
+
+    fn with(index: usize, set: u32, transform: Option<Transform>) -> Self {
+        let transform = transform.unwrap_or_default();
+        let set = transform.tex_coord.unwrap_or(set);
+        Self { index, set, transform: transform.affine() }
+    }
+}
+
+/// A transform that the `gltf` crate leaves as it stands in the JSON; what is no transform is none.
+fn parsed(extension: Option<&json::Value>) -> Option<Transform> {
+    json::deserialize::from_value(extension?.clone()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn transform_scales_then_turns_then_shifts() {
+        let rotation = std::f32::consts::FRAC_PI_2;
+        let (offset, scale) = ([10.0, 20.0], [2.0, 3.0]);
+        let transform = Transform { offset, rotation, scale, tex_coord: None }.affine();
+        let [u, v] = transform.transform_point2(Vec2::X).to_array();
+        // (1, 0) becomes (2, 0), turns to (0, −2), which is up, and is shifted.
+        assert!((u - 10.0).abs() < 1e-6 && (v - 18.0).abs() < 1e-6, "{u} {v}");
+    }
+
+    #[test]
+    fn a_transform_may_choose_another_set() {
+        let transform = serde_json::json!({"texCoord": 1, "scale": [2, 2]});
+        let slot = Slot::with(3, 0, parsed(Some(&transform)));
+        assert_eq!((slot.index, slot.set), (3, 1));
+        assert_eq!(slot.transform.transform_point2(Vec2::ONE), Vec2::splat(2.0));
+    }
+}
