@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::cli::args::{Loading, Tracing};
+use crate::cli::load::{Loading, Tracing};
 use crate::cli::values::{BackendName, PrecisionName, SampleRange, sample_range, size, wait};
 use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};

@@ -1,9 +1,79 @@
 //! From the command line to a scene.
 
-use crate::cli::args::Tracing;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::values::{PrecisionName, seconds, size};
 use crate::cli::{files, loss};
 use crate::error::{Error, Result};
+use crate::load::{Limits, NamedLimit, Options};
+use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 use crate::scene::{Scene, Skips};
+
+/// How the files of a scene are loaded; shared by the commands that load one.
+#[derive(Args, Clone)]
+pub struct Loading {
+    /// Show this variant of the materials of a glTF file, in a scene file of each model that has
+    /// one of this name and names none itself; `envers info` lists them
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Let files name others that are anywhere, not only beside and below SCENE
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Another limit on what SCENE may ask for: bytes, json, nodes, depth, instances, vertices, triangles,
+    /// deformed, elements, keys, pictures or pixels; may be given several times
+    #[arg(long, value_name = "NAME=NUMBER")]
+    pub limit: Vec<NamedLimit>,
+}
+
+impl Loading {
+    /// The options of a load.
+    pub fn options(&self, size: Option<[u32; 2]>, skips: Skips) -> Options {
+        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
+        let limits = self.limit.iter().fold(Limits::default(), with);
+        let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
+        Options { size, skips, variant, allow_outside, limits }
+    }
+}
+
+/// What to render and how; shared by the commands that trace rays.
+#[derive(Args)]
+pub struct Tracing {
+    /// A scene file (.toml) or a model (.gltf, .glb, .obj)
+    pub scene: PathBuf,
+    /// Size of the picture in pixels, such as 1920x1080 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Samples per pixel [default: the scene's; bare models 16]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
+    pub spp: Option<u32>,
+    /// How often light is followed off mirrors and through glass, from 0 to 65536 [default: the
+    /// scene's, else 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), allow_negative_numbers = true)]
+    pub max_depth: Option<u32>,
+    /// Camera, by name or by index from 0 [default: the first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// One moment of an animation, in seconds [default: the first frame, at 0]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// How far hits can be trusted: fast is f64 formulas and f32 traversal, certified is proven
+    #[arg(long, value_enum, default_value = "fast")]
+    pub precision: PrecisionName,
+    /// Threads [default: all there are]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub loading: Loading,
+    /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
+    /// by a placeholder
+    #[arg(long)]
+    pub strict: bool,
+    /// Print no progress and no warnings
+    #[arg(short, long)]
+    pub quiet: bool,
+}
 
 impl Tracing {
     /// Loads the scene as it is at one moment, as [`Tracing::load_animated`].

@@ -17,13 +17,14 @@ mod needs;
 mod object;
 mod pyramid;
 mod report;
+mod texels;
 mod texture;
 mod tone;
 
 pub use camera::{Camera, Lens, RayMaker};
 pub use faces::Faces;
 pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
-pub use image::{Image, Texel, Texels};
+pub use image::Image;
 pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
 pub use material::{
     AlphaMode, Coverage, Material, MaterialId, NormalMap, OcclusionMap, ShininessMap,
@@ -35,6 +36,7 @@ pub use needs::{Needs, Skips, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use pyramid::{Level, Pyramid};
 pub use report::{DropReason, Report};
+pub use texels::{Texel, Texels};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
 pub use tone::Tone;
 

@@ -4,7 +4,7 @@
 use glam::Vec4;
 use rayon::prelude::*;
 
-use super::image::Texels;
+use super::texels::Texels;
 use crate::scene::Transfer;
 
 /// A picture's smaller copies, each half as large as the one before, down to one pixel.

@@ -16,6 +16,7 @@ mod plain;
 mod polygon;
 mod rewrite;
 mod segments;
+mod setting;
 mod smooth;
 mod sorter;
 mod stream;
@@ -27,7 +28,7 @@ use std::path::Path;
 use glam::{DAffine3, DVec3};
 
 use self::library::Library;
-use self::rewrite::Part;
+use self::setting::Part;
 use crate::error::{Error, Result};
 use crate::load::guard::{Guard, Opened};
 use crate::load::limits::Limit;

@@ -2,7 +2,7 @@
 //! a line number, and loses count where only some vertices of a mesh have normals.
 //!
 //! The text made here has the vertices first, then the faces, with indices that are known to
-//! exist, sorted into [`Part`]s whose faces all have the same attributes. Nearly all of it are
+//! exist, sorted into [`Part`](super::setting::Part)s whose faces all have the same attributes. Nearly all of it are
 //! stretches of the file as it stands. Threads share the file in chunks: they first [survey] them,
 //! since a line's meaning depends on what stands before it, and a face may name a vertex that
 //! stands after it; and then [sort](super::sorter) their lines, while tobj already reads what they
@@ -12,9 +12,10 @@ use std::sync::mpsc;
 
 use rayon::prelude::*;
 
-use super::lines::{Statement, end_of_line, is_open, lines};
+use super::lines::{end_of_line, is_open, lines};
+use super::setting::Place;
 use super::sorter::Sorter;
-use super::stream::Stream;
+use super::stream::{Rewritten, Stream};
 use crate::error::Result;
 use crate::load::tally::Tally;
 
@@ -22,81 +23,6 @@ use crate::load::tally::Tally;
 const CHUNK: usize = 1 << 20;
 /// About how many bytes are searched at once for what says more than faces do.
 const BLOCK: usize = 1 << 12;
-
-/// Faces that become one mesh.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Part {
-    /// What the file says of them.
-    pub setting: Setting,
-    /// Whether they name texture coordinates, and normals.
-    pub has: [bool; 2],
-}
-
-/// What statements before a face say of it; nothing where none has said anything yet.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Setting {
-    /// The object's or group's name.
-    pub name: Option<String>,
-    /// The material that it names; empty for none.
-    pub material: Option<String>,
-    /// Its smoothing group; 0 for none.
-    pub smoothing: Option<u32>,
-}
-
-impl Setting {
-    /// Follows a statement, if it is one that says something of the faces after it.
-    pub fn follow(&mut self, statement: &Statement) -> bool {
-        let rest = statement.rest.as_ref();
-        match statement.keyword.as_ref() {
-            "o" | "g" => self.name = Some(rest.to_owned()),
-            "usemtl" => self.material = Some(rest.to_owned()),
-            // `off`, too, means none.
-            "s" => self.smoothing = Some(rest.parse().unwrap_or(u32::from(rest == "on"))),
-            _ => return false,
-        }
-        true
-    }
-
-    /// What holds after `later` as well.
-    fn then(&self, later: &Self) -> Self {
-        Self {
-            name: later.name.as_ref().or(self.name.as_ref()).cloned(),
-            material: later.material.as_ref().or(self.material.as_ref()).cloned(),
-            smoothing: later.smoothing.or(self.smoothing),
-        }
-    }
-}
-
-/// How many of each kind of vertex data there are.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Counts {
-    /// Positions, texture coordinates and normals.
-    pub of: [u32; 3],
-    /// Whether a position has a colour.
-    pub colored: bool,
-}
-
-/// What holds at a place of the file.
-#[derive(Clone, Debug, Default)]
-pub struct Place {
-    /// Where in the text it is.
-    pub start: usize,
-    /// Lines before it.
-    pub lines: usize,
-    /// Vertex data before it.
-    pub counts: Counts,
-    /// What is said of the faces after it.
-    pub setting: Setting,
-}
-
-/// What an OBJ file says beside vertices and faces.
-#[derive(Debug, Default)]
-pub struct Rewritten {
-    /// The parts; tobj finds them as groups that are named by their number.
-    pub parts: Vec<Part>,
-    /// The material libraries that the file names.
-    pub libraries: Vec<String>,
-}
 
 /// Rewrites a file for `read`, on a thread of its own, and gives what it makes of it.
 ///
@@ -191,36 +117,6 @@ fn survey(chunk: &str) -> Place {
 /// letters beyond `f`. Most of a file are faces, and the greatest of many bytes is found at once.
 fn says_more_than_faces(block: &str) -> bool {
     block.bytes().fold(0, u8::max) > b'f'
-}
-
-impl Counts {
-    /// Counts a line of vertex data of a kind: position, texture coordinates or normal.
-    pub fn add(&mut self, kind: usize, line: &str) {
-        if let Some(count) = self.of.get_mut(kind) {
-            *count = count.saturating_add(1);
-        }
-        // Six numbers, whatever their form.
-        self.colored |= kind == 0 && {
-            let spaces = line.bytes().fold(0u32, |n, b| n + u32::from((b == b' ') | (b == b'\t')));
-            spaces > 5 && line.split('#').next().unwrap_or(line).split_whitespace().count() > 6
-        };
-    }
-}
-
-impl Place {
-    /// What holds after what `there` was surveyed of.
-    fn then(&self, there: &Self) -> Self {
-        let of = |k: usize| self.counts.of[k].saturating_add(there.counts.of[k]);
-        Self {
-            start: self.start + there.start,
-            lines: self.lines + there.lines,
-            counts: Counts {
-                of: std::array::from_fn(of),
-                colored: self.counts.colored || there.counts.colored,
-            },
-            setting: self.setting.then(&there.setting),
-        }
-    }
 }
 
 #[cfg(test)]

@@ -6,14 +6,23 @@ use std::sync::mpsc::Receiver;
 use std::vec::IntoIter;
 
 use super::lines::end_of_line;
-use super::rewrite::{Part, Rewritten};
 use super::segments::{Segment, Segments};
+use super::setting::Part;
 use super::sorter::Sorted;
 use crate::error::{Error, Result};
 use crate::load::tally::Tally;
 
 /// A chunk of the file, as a thread is done with it.
 pub type Done = Result<(Sorted, Tally)>;
+
+/// What an OBJ file says beside vertices and faces.
+#[derive(Debug, Default)]
+pub struct Rewritten {
+    /// The parts; tobj finds them as groups that are named by their number.
+    pub parts: Vec<Part>,
+    /// The material libraries that the file names.
+    pub libraries: Vec<String>,
+}
 
 /// Reads the vertices of all chunks, in their order and each as soon as it is there, and then the
 /// faces, part by part.
