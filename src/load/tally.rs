@@ -151,7 +151,11 @@ impl Tally {
 
 impl Entry {
     fn sentence(&self, file: &Path) -> String {
-        let text = self.reason.replacen("{}", &self.count.to_string(), 1);
+        let text = match self.count {
+            // One place says it: "1 faces" would be wrong, and "first at" what there are more of.
+            1 => self.reason.replacen("{} ", "", 1),
+            count => self.reason.replacen("{}", &count.to_string(), 1),
+        };
         match (self.first.is_empty(), self.count) {
             (true, _) => format!("{}: {text}", file.display()),
             (false, 1) => format!("{}: {text}, at {}", file.display(), self.first),
@@ -210,7 +214,7 @@ mod tests {
         let mut scene = Scene::default();
         tally.finish(Path::new("a"), &mut scene);
         assert_eq!(scene.warnings.len(), 4);
-        assert_eq!(scene.report.unsupported, ["a: 1 meshes are knitted, at meshes[1]"]);
+        assert_eq!(scene.report.unsupported, ["a: meshes are knitted, at meshes[1]"]);
         assert_eq!(scene.report.placeholders, ["a: images[0] is not there"]);
         assert_eq!(scene.report.to_string(), "3 read = 0 handed over + 3 not-finite");
     }

@@ -61,7 +61,7 @@ fn strict_refuses_a_file_whose_materials_are_missing() {
 fn without_strict_a_loss_is_a_warning() {
     let done = lossy().run("info a.glb");
     assert_eq!(done.status, Some(0));
-    assert!(done.stderr.contains("1 faces are left out"), "{}", done.stderr);
+    assert!(done.stderr.contains("faces are left out"), "{}", done.stderr);
 }
 
 #[test]

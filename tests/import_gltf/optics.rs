@@ -92,7 +92,7 @@ fn frosted_glass_is_drawn_clear_with_a_warning() {
     source["pbrMetallicRoughness"]["roughnessFactor"] = 0.6.into();
     let mut model = Model::triangle();
     model.material(source);
-    assert_warns(&model.load().unwrap(), "1 frosted materials are drawn clear");
+    assert_warns(&model.load().unwrap(), "frosted materials are drawn clear");
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn an_index_of_0_reflects_everything() {
 fn an_index_that_is_none_is_a_warning() {
     let mut model = Model::triangle();
     model.material(glass([1.0; 4], json!({"KHR_materials_ior": {"ior": 0.5}})));
-    assert_warns(&model.load().unwrap(), "1 indices of refraction");
+    assert_warns(&model.load().unwrap(), "indices of refraction");
 }
 
 #[test]

@@ -195,7 +195,7 @@ mod tests {
         let (clean, said) = cleaned(text);
         assert_eq!(clean, "newmtl a\nKd 1 1 1\nd 0.5\n");
         assert_eq!(said.len(), 5);
-        let first = "a.obj: 1 lines are ignored: `Ks` wants three numbers from 0 up, or one, at \
+        let first = "a.obj: lines are ignored: `Ks` wants three numbers from 0 up, or one, at \
                      a.mtl:3 (`Ks 1 2`)";
         assert_eq!(said[0], first);
     }
