@@ -71,18 +71,36 @@ pub fn packed(
 }
 
 /// A picture of one colour in a KTX 2 file, packed by Basis Universal as UASTC.
-pub fn ktx([width, height]: [u32; 2], color: [u8; 4]) -> Vec<u8> {
-    // A block of one colour: mode 8 (five bits, 0x17), then red, green, blue and alpha.
+pub fn ktx(size: [u32; 2], color: [u8; 4]) -> Vec<u8> {
+    // A block of one colour: mode 8 (five bits, 0x17), then red, green, blue and alpha; sRGB.
     let block = u128::from(u32::from_le_bytes(color)) << 5 | 0x17;
+    ktx_of(size, 0, [166, 2], block)
+}
+
+/// The same of floats, given as the bits of halves, packed as UASTC HDR.
+pub fn ktx_of_floats(size: [u32; 2], [r, g, b, a]: [u16; 4]) -> Vec<u8> {
+    // ASTC's block of one colour of floats, without bounds, in its lower half (Khronos Data Format
+    // Specification, section 23.23); linear.
+    let color = [r, g, b, a].iter().rev().fold(0u128, |all, half| all << 16 | u128::from(*half));
+    ktx_of(size, 1_000_066_000, [167, 1], color << 64 | 0xFFFF_FFFF_FFFF_FFFC)
+}
+
+/// A KTX 2 file of blocks that are the same: of a format, a model of colour and a transfer.
+fn ktx_of(
+    [width, height]: [u32; 2],
+    format: u32,
+    [model, transfer]: [u32; 2],
+    block: u128,
+) -> Vec<u8> {
     let blocks = (width.div_ceil(4) * height.div_ceil(4)) as usize;
     let data = block.to_le_bytes().repeat(blocks);
-    // The descriptor: its length, its block's, the model (UASTC, sRGB), blocks of 4×4, RGBA.
-    let descriptor = [44, 0, 2 | 40 << 16, 166 | 1 << 8 | 2 << 16, 3 | 3 << 8, 16, 0];
+    // The descriptor: its length, its block's, the model, blocks of 4×4, RGBA.
+    let descriptor = [44, 0, 2 | 40 << 16, model | 1 << 8 | transfer << 16, 3 | 3 << 8, 16, 0];
     let sample = [127 << 16 | 3 << 24, 0, 0, u32::MAX];
     // Format, type size, size, depth, layers, faces, levels, packing, then where things are.
-    let (header, at) = ([0, 1, width, height, 0, 0, 1, 1, 0, 104, 44, 0, 0, 0, 0, 0, 0], 148u64);
+    let header = [format, 1, width, height, 0, 0, 1, 1, 0, 104, 44, 0, 0, 0, 0, 0, 0];
     let words = |words: &[u32]| words.iter().flat_map(|w| w.to_le_bytes()).collect::<Vec<u8>>();
-    let level = [at, data.len() as u64, data.len() as u64].map(u64::to_le_bytes);
+    let level = [148, data.len() as u64, data.len() as u64].map(u64::to_le_bytes);
     [
         b"\xABKTX 20\xBB\r\n\x1A\n",
         &words(&header)[..],

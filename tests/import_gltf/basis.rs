@@ -2,7 +2,7 @@
 
 use envers::scene::Texels;
 
-use super::common::packed::ktx;
+use super::common::packed::{ktx, ktx_of_floats};
 use super::*;
 
 const COLOR: [u8; 4] = [200, 100, 50, 128];
@@ -38,6 +38,29 @@ fn assert_placeholder(picture: &[u8], why: &str) {
 #[test]
 fn picture_is_unpacked() {
     let scene = showing(&ktx([8, 4], COLOR)).load().unwrap();
+    assert_eq!(texels(&scene), ([8, 4], &Texels::Bytes(vec![COLOR; 32])));
+}
+
+#[test]
+fn picture_of_floats_stays_one() {
+    // 0.5, 1, 4 and 1.
+    let scene = showing(&ktx_of_floats([4, 4], [0x3800, 0x3C00, 0x4400, 0x3C00])).load().unwrap();
+    assert_eq!(texels(&scene), ([4, 4], &Texels::Floats(vec![[0.5, 1.0, 4.0, 1.0]; 16])));
+}
+
+#[test]
+fn picture_may_be_packed_once_more_by_zstandard() {
+    let plain = ktx([8, 4], COLOR);
+    let (header, data) = plain.split_at(148);
+    let length = data.len() as u8;
+    let [low, high] = (u16::from(length) << 3 | 1).to_le_bytes();
+    // A frame of one segment of so many bytes, and in it a last block that is stored as it is
+    // (RFC 8878, section 3.1.1).
+    let frame = [&[0x28, 0xB5, 0x2F, 0xFD, 0x20, length, low, high, 0], data].concat();
+    let mut packed = [header, &frame].concat();
+    packed[44] = 2;
+    packed[88] = frame.len() as u8;
+    let scene = showing(&packed).load().unwrap();
     assert_eq!(texels(&scene), ([8, 4], &Texels::Bytes(vec![COLOR; 32])));
 }
 
