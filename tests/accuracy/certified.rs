@@ -3,17 +3,17 @@
 //! The rays are adversarial: aimed exactly (as f64 can) at vertices, edges, diagonals and tangents,
 //! along axes, with zeros and negative zeros in the direction.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
-use common::{Random, ball, random_rays, random_scene};
 use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side};
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::load;
 use envers::scene::{Instance, Material, Mesh, Plane, Scene, Sphere};
+use envers_testing::Random;
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
+
+use crate::random_scenes::{ball, random_rays, random_scene};
 
 fn closest(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Option<Hit>> {
     let mut hits = vec![None; rays.len()];

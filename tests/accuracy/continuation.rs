@@ -1,13 +1,12 @@
 //! A ray that goes straight through surfaces meets each of them once, in order, whoever finds them.
 
-mod common;
-
-use common::{random_rays, random_scene};
 use envers::geometry::{Departure, Geometry, Hit, Ray, Side};
 use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::scene::{Material, MaterialId, Plane, Scene, Sphere};
 use envers::surface::Surface;
 use glam::DVec3;
+
+use crate::random_scenes::{random_rays, random_scene};
 
 fn empty() -> Scene {
     let mut scene = Scene::default();

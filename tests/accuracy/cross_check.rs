@@ -1,13 +1,12 @@
 //! The intersectors against each other: brute force, BVH and Embree.
 
-mod common;
-
-use common::{random_rays, random_scene};
 use envers::geometry::{Hit, Ray};
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::scene::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
+
+use crate::random_scenes::{random_rays, random_scene};
 
 const SCENES: u64 = 20;
 const RAYS: usize = 100_000;

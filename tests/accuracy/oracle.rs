@@ -1,6 +1,5 @@
 //! The exact oracle, against cases worked out by hand and against the formulas in f64 where those
 //! lose nothing: who judges must be judged too.
-#![cfg(feature = "measure")]
 
 use std::cmp::Ordering;
 
@@ -14,7 +13,7 @@ use envers::write::Settings;
 use glam::DVec3;
 use proptest::prelude::*;
 
-mod common;
+use crate::random_scenes::{random_rays, random_scene};
 
 fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
@@ -212,8 +211,8 @@ fn oracle_keeps_the_rule_for_leaving_a_sphere() {
 fn oracle_agrees_with_the_formulas_on_random_scenes() {
     let mut hits_seen = 0;
     for seed in 0..4 {
-        let scene = common::random_scene(seed, DVec3::ZERO, 4.0);
-        let rays = common::random_rays(seed + 50, DVec3::ZERO, 4.0, 2000);
+        let scene = random_scene(seed, DVec3::ZERO, 4.0);
+        let rays = random_rays(seed + 50, DVec3::ZERO, 4.0, 2000);
         let closest = |who: &dyn Intersector| -> Vec<Option<Hit>> {
             let mut hits = vec![None; rays.len()];
             who.closest(&rays, Coherence::Incoherent, &mut hits);
@@ -239,7 +238,7 @@ fn oracle_agrees_with_the_formulas_on_random_scenes() {
 
 /// A picture with everything in it, small enough for the oracle.
 fn picture(seed: u64) -> Scene {
-    let mut scene = common::random_scene(seed, DVec3::ZERO, 2.0);
+    let mut scene = random_scene(seed, DVec3::ZERO, 2.0);
     scene.film.size = [72, 54];
     let position = v(1.0, 2.0, 7.0);
     let lens = Lens::FovY(0.8);
@@ -357,7 +356,7 @@ fn certified_hits_equal_the_oracles_to_the_bit() {
     let (mut hits_seen, mut weights_apart) = (0, 0.0f64);
     for seed in 0..3 {
         let scene = picture(seed);
-        let rays = common::random_rays(seed + 90, DVec3::ZERO, 2.0, 3000);
+        let rays = random_rays(seed + 90, DVec3::ZERO, 2.0, 3000);
         let closest = |who: &dyn Intersector| -> Vec<Option<Hit>> {
             let mut hits = vec![None; rays.len()];
             who.closest(&rays, Coherence::Incoherent, &mut hits);

@@ -1,40 +1,9 @@
-//! What several tests need: random numbers that are the same every time, and random scenes.
-#![allow(dead_code)] // Each test binary uses its own part.
+//! Random scenes and rays that are the same every time.
 
 use envers::geometry::Ray;
 use envers::scene::{Instance, Material, Mesh, Plane, Scene, Sphere};
+use envers_testing::Random;
 use glam::{DAffine3, DQuat, DVec3, EulerRot};
-
-/// SplitMix64 (Steele, Lea, Flood 2014).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// In [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    pub fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    pub fn below(&mut self, n: usize) -> usize {
-        (self.bits() % n as u64) as usize
-    }
-
-    /// In the cube [-half, half]³.
-    pub fn cube(&mut self, half: f64) -> DVec3 {
-        DVec3::new(self.range(-half, half), self.range(-half, half), self.range(-half, half))
-    }
-}
 
 /// A closed ball of triangles: an octahedron, divided `level` times.
 pub fn ball(level: u32) -> Mesh {

@@ -1,5 +1,4 @@
 //! The sweeps of `envers stress`, with few rays of each kind; and that a sweep can fail.
-#![cfg(feature = "measure")]
 
 use envers::geometry::Ray;
 use envers::measure::stress::{Goal, Method, Options, Row, Table, plot, stress};

@@ -1,5 +1,4 @@
 //! Every demo scene, through both intersectors: no hit that nothing explains.
-#![cfg(all(feature = "embree", feature = "measure"))]
 
 use std::path::Path;
 

@@ -1,40 +1,21 @@
 //! The `envers` command, run as its users run it.
 
-#[path = "cli/adaptive.rs"]
 mod adaptive;
-#[path = "cli/asked.rs"]
-mod asked;
-#[path = "cli/bench.rs"]
 mod bench;
-#[path = "cli/frames.rs"]
 mod frames;
-#[path = "cli/inputs.rs"]
+mod help;
 mod inputs;
-#[path = "cli/outputs.rs"]
 mod outputs;
-#[path = "cli/render.rs"]
 mod render;
-#[path = "cli/reports.rs"]
 mod reports;
-#[path = "cli/skips.rs"]
-mod skips;
-#[path = "cli/stress.rs"]
+mod sandbox_and_limits;
 mod stress;
-#[path = "cli/strict.rs"]
 mod strict;
-#[path = "cli/tone.rs"]
 mod tone;
-#[path = "cli/trust.rs"]
-mod trust;
-#[path = "cli/variants.rs"]
+mod unneeded_features;
 mod variants;
-#[path = "cli/warnings.rs"]
 mod warnings;
-#[path = "cli/work.rs"]
-mod work;
-
-#[path = "import_common/mod.rs"]
-mod import_common;
+mod work_counters;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -213,7 +194,7 @@ impl Folder {
     fn with_everything() -> Self {
         let folder = Self::with(EVERYTHING);
         folder.write("tetrahedron.obj", TETRAHEDRON);
-        folder.write("triangle.glb", import_common::Model::triangle().glb());
+        folder.write("triangle.glb", envers_testing::Model::triangle().glb());
         folder
     }
 

@@ -6,7 +6,7 @@ use super::*;
 fn scene() -> Folder {
     let folder = Folder::new();
     std::fs::create_dir(folder.path("scene")).unwrap();
-    folder.write("dot.png", import_common::png(&[[255; 4]]));
+    folder.write("dot.png", envers_testing::png(&[[255; 4]]));
     let text = SPHERE.replace("specular = 0.5", "diffuse_map = \"../dot.png\"");
     folder.write("scene/scene.toml", text);
     folder

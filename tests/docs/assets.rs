@@ -1,13 +1,11 @@
-//! The committed models and drawings are what `examples/make_assets.rs` makes, and the scenes that use them
+//! The committed models and drawings are what `xtask` makes, and the scenes that use them
 //! load without a warning.
-
-#[path = "../examples/make_assets.rs"]
-mod make_assets;
 
 use std::path::Path;
 
 use envers::load::load;
 use envers::scene::LightKind;
+use xtask::assets;
 
 /// The largest file that is committed, in bytes.
 const LIMIT: usize = 500_000;
@@ -16,12 +14,12 @@ const LIMIT: usize = 500_000;
 /// square roots.
 #[test]
 fn committed_models_and_drawings_are_those_of_the_generator() {
-    for (name, bytes) in make_assets::files() {
+    for (name, bytes) in assets::files() {
         assert!(bytes.len() < LIMIT, "{name} is {} bytes long", bytes.len());
-        let committed = std::fs::read(make_assets::root().join(&name)).unwrap_or_default();
+        let committed = std::fs::read(assets::root().join(&name)).unwrap_or_default();
         assert!(
             committed == bytes,
-            "{name} is not what the generator makes; run `cargo run --example make_assets`, and \
+            "{name} is not what the generator makes; run `cargo run -p xtask -- make-assets`, and \
              look at the scenes or chapters that use it"
         );
     }
@@ -29,8 +27,8 @@ fn committed_models_and_drawings_are_those_of_the_generator() {
 
 /// Holds a folder's files with one of the endings to the generator.
 fn made(folder: &str, endings: &[&str]) {
-    let made: Vec<_> = make_assets::files().into_iter().map(|(name, _)| name).collect();
-    for entry in std::fs::read_dir(make_assets::root().join(folder)).expect(folder) {
+    let made: Vec<_> = assets::files().into_iter().map(|(name, _)| name).collect();
+    for entry in std::fs::read_dir(assets::root().join(folder)).expect(folder) {
         let name = entry.expect("the folder can be read").file_name().display().to_string();
         if endings.iter().any(|ending| name.ends_with(ending)) {
             assert!(made.contains(&format!("{folder}/{name}")), "{name}");
@@ -40,12 +38,12 @@ fn made(folder: &str, endings: &[&str]) {
 
 #[test]
 fn no_model_is_committed_that_the_generator_does_not_make() {
-    made(make_assets::MODELS, &[""]);
+    made(assets::MODELS, &[""]);
 }
 
 #[test]
 fn no_drawing_is_committed_that_the_generator_does_not_make() {
-    made(make_assets::DRAWINGS, &[".svg"]);
+    made(assets::DRAWINGS, &[".svg"]);
 }
 
 #[test]
@@ -65,7 +63,7 @@ fn demo_scenes_and_models_load_without_a_warning() {
 /// What the room is there to show: instances of one mesh, textures, lights and a camera of its own.
 #[test]
 fn room_uses_what_gltf_offers() {
-    let scene = load(&make_assets::root().join("assets/scenes/gallery/models/room.glb"))
+    let scene = load(&assets::root().join("assets/scenes/gallery/models/room.glb"))
         .expect("the room loads");
     assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
     let own = scene.lights.iter().filter(|light| light.kind != LightKind::Ambient).count();
@@ -76,7 +74,7 @@ fn room_uses_what_gltf_offers() {
 /// What the vase is there to show: two materials, one with a texture, on smooth polygons.
 #[test]
 fn vase_uses_what_obj_offers() {
-    let scene = load(&make_assets::root().join("assets/scenes/gallery/models/vase.obj"))
+    let scene = load(&assets::root().join("assets/scenes/gallery/models/vase.obj"))
         .expect("the vase loads");
     assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));
 }

@@ -3,22 +3,16 @@
 //! The same mutations every time; `ENVERS_SEED` tries others, `ENVERS_MUTATIONS` so many of each
 //! file. Where `ENVERS_CORPUS` names a corpus of model files, the small ones of it are damaged, too.
 
-#[path = "common/mod.rs"]
-mod common;
-#[path = "import_common/mod.rs"]
-mod import_common;
-
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use common::Random;
 use draco_core::GeometryAttributeType as Kind;
 use envers::error::ErrorKind;
+use envers_testing::packed::{ktx, packed};
+use envers_testing::{Folder, Random, corpus, data_uri, files, whole};
 use image::ImageFormat;
-use import_common::packed::{ktx, packed};
-use import_common::{Folder, data_uri, whole};
 use serde_json::Value;
 
 /// How long a damaged file of a few kilobytes may take.
@@ -409,10 +403,10 @@ damaged_pictures! {
 #[test]
 fn damaged_corpus() {
     const SMALL: u64 = 64 << 10;
-    let Some(corpus) = import_common::corpus() else { return };
+    let Some(corpus) = corpus() else { return };
     let is_small = |path: &Path| path.metadata().is_ok_and(|m| m.is_file() && m.len() <= SMALL);
     let mut folders: BTreeMap<PathBuf, Vec<String>> = BTreeMap::new();
-    for path in import_common::files(&corpus, &["gltf", "glb", "obj"]) {
+    for path in files(&corpus, &["gltf", "glb", "obj"]) {
         if is_small(&path) {
             let name = path.file_name().unwrap().to_string_lossy().into_owned();
             folders.entry(path.parent().unwrap().to_owned()).or_default().push(name);
@@ -421,8 +415,7 @@ fn damaged_corpus() {
     let count = number("ENVERS_MUTATIONS", OF_CORPUS);
     for (from, names) in &folders {
         let folder = Folder::new();
-        for path in import_common::files(from, &["gltf", "glb", "obj", "mtl", "bin", "png", "jpg"])
-        {
+        for path in files(from, &["gltf", "glb", "obj", "mtl", "bin", "png", "jpg"]) {
             let within = path.strip_prefix(from).unwrap().to_string_lossy().into_owned();
             if is_small(&path) {
                 folder.write(&within, std::fs::read(&path).unwrap());

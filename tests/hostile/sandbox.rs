@@ -2,10 +2,6 @@
 //!
 //! Who opens what is told by the kernel: inotify reports every opening of a file in the folders
 //! outside, whoever does it and however. One test shows that it would be seen.
-#![cfg(target_os = "linux")]
-
-#[path = "import_common/mod.rs"]
-mod import_common;
 
 use std::mem::MaybeUninit;
 use std::os::unix::fs::symlink;
@@ -13,7 +9,7 @@ use std::os::unix::net::UnixListener;
 use std::path::Path;
 
 use envers::load::{Options, load_with};
-use import_common::{Folder, Model, png};
+use envers_testing::{Folder, Model, data_uri, png};
 use rustix::fs::inotify;
 use serde_json::json;
 
@@ -168,7 +164,7 @@ const REFERENCES: [Reference; 6] = [
         model.primitive()["attributes"]["TEXCOORD_0"] = uvs.into();
         model.json["textures"] = json!([{"source": 0}]);
         model.json["images"] = json!([{"uri": name}]);
-        model.to_json(Some(&import_common::data_uri(model.bin()))).to_string()
+        model.to_json(Some(&data_uri(model.bin()))).to_string()
     }),
     ("mtl", "stranger.obj", |name| {
         format!("mtllib {name}\nusemtl secret\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

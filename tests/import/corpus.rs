@@ -2,13 +2,10 @@
 //!
 //! The triangle counts were worked out from the files themselves, not with this importer.
 
-#[path = "import_common/mod.rs"]
-mod common;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use common::{corpus, files, load_all};
+use envers_testing::{corpus, files};
 
 /// What a file should be: so many triangles (instances counted), or an error that says this.
 type Expected<'a> = Result<u64, &'a str>;
@@ -79,6 +76,22 @@ fn check(path: &Path, expected: Expected) {
             panic!("{name}: {:?} for {expected:?}", found.map(|s| s.triangle_count()));
         }
     }
+}
+
+/// Loads every file of a set; panics fail the test, and so do errors that say nothing.
+fn load_all(files: &[PathBuf]) -> (usize, usize) {
+    let (mut loaded, mut refused) = (0, 0);
+    for path in files {
+        match envers::load::load(path) {
+            Ok(_) => loaded += 1,
+            Err(error) => {
+                assert!(!error.message().is_empty(), "{}", path.display());
+                assert!(error.path().is_some(), "{}: {error}", path.display());
+                refused += 1;
+            }
+        }
+    }
+    (loaded, refused)
 }
 
 #[test]

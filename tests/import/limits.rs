@@ -1,12 +1,9 @@
 //! Each limit allows what is as much, and refuses one more.
 
-#[path = "import_common/mod.rs"]
-mod import_common;
-
 use std::path::PathBuf;
 
 use envers::load::{Limit, Limits, Options, load_with};
-use import_common::{Folder, Model, data_uri, png};
+use envers_testing::{Folder, Model, data_uri, png};
 use serde_json::json;
 
 /// A file that needs as much of something as is said.

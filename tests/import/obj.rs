@@ -1,12 +1,11 @@
 //! What OBJ and MTL files become: each test one feature or one fault.
 
-#[path = "import_common/mod.rs"]
-mod common;
-
-use common::{Folder, assert_warns, png};
 use envers::error::{Error, Place};
 use envers::scene::{AlphaMode, Material, Scene, ShininessMap, Texels, Transfer, Wrap};
+use envers_testing::{Folder, png};
 use glam::{Vec2, Vec3};
+
+use super::loading::{LoadFile, assert_warns};
 
 /// A triangle's vertices.
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

@@ -1,9 +1,6 @@
 //! What pictures do to surfaces: normals, occlusion, alpha, and pictures seen from afar. The
 //! radiances are worked out by hand, and every backend must give them.
 
-mod common;
-
-use common::Random;
 use envers::geometry::{Geometry, Hit, Ray};
 use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::render::{Options, render};
@@ -12,6 +9,7 @@ use envers::scene::{
     Material, MaterialId, Mesh, NormalMap, OcclusionMap, Plane, Scene, Shadow, Sphere, Texture,
     TextureId, Transfer,
 };
+use envers_testing::Random;
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A matt white material, and one pixel that looks along −z at the origin from `z = 5`.

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use crate::book::{root, tutorial};
+use super::book::{root, tutorial};
 
 #[test]
 fn program_and_scene_have_the_same_bodies_and_frames() {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::book::{Chapter, LANGUAGES, all, chapters, links, root, tutorial};
+use super::book::{Chapter, LANGUAGES, all, chapters, links, root, tutorial};
 
 /// The chapters of both languages side by side.
 fn pairs() -> Vec<(Chapter, Chapter)> {

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use image::codecs::gif::GifDecoder;
 use image::{AnimationDecoder, RgbImage};
 
-use crate::book::{all, root, tutorial};
+use super::book::{all, root, tutorial};
 
 /// The most that a channel may differ, of 255.
 const TOLERANCE: u8 = 1;

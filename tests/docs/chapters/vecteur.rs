@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use crate::book::tutorial;
+use super::book::tutorial;
 
 /// What Python prints for an expression, after `from vecteur import *`; or the kind of its error.
 fn python(expression: &str) -> String {

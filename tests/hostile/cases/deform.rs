@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::common::Model;
 use super::gltf::changed;
 use super::{Case, Error, Expect};
+use envers_testing::Model;
 
 /// An accessor without a view.
 fn zeros(model: &mut Model, kind: &str, component: u32, count: u64) -> usize {

@@ -1,7 +1,7 @@
 //! GLB files whose lengths lie.
 
-use super::common::{Model, whole};
 use super::{Case, Error, Loads, Warning};
+use envers_testing::{Model, whole};
 
 fn words(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::common::{Model, data_uri};
 use super::{Case, Error, Expect, Loads, Warning};
+use envers_testing::{Model, data_uri};
 
 pub fn text(model: &Model) -> String {
     model.to_json(Some(&data_uri(model.bin()))).to_string()

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::common::{data_uri, png, whole};
 use super::{Case, Error, Expect, Warning};
+use envers_testing::{data_uri, png, whole};
 
 /// Where, what stands there instead, and what comes of it. Text between `@` is written as it is.
 type Edit = (&'static str, &'static str, Expect);

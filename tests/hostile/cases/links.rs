@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::common::{Model, data_uri, png};
 use super::encode::flat_png;
 use super::gltf::{case, text};
 use super::{Case, Error, Expect, Loads, Warning};
+use envers_testing::{Model, data_uri, png};
 
 /// A triangle with a texture by a picture.
 fn textured(image: Value) -> Model {

@@ -3,10 +3,6 @@
 //! show what is left, and neither panic, abort nor hang.
 //!
 //! `ENVERS_HOSTILE=DIR` keeps the files there, each case in a folder with its name.
-#![cfg(target_os = "linux")]
-
-#[path = "../import_common/mod.rs"]
-mod common;
 
 mod deform;
 mod encode;

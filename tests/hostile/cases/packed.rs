@@ -3,8 +3,8 @@
 use draco_core::GeometryAttributeType as Kind;
 use serde_json::{Value, json};
 
-use super::common::packed::{DRACO, ktx, packed};
 use super::{Case, Error, Expect, Warning};
+use envers_testing::packed::{DRACO, ktx, packed};
 
 const OBJ: &str = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
 

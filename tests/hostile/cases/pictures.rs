@@ -1,8 +1,8 @@
 //! Pictures whose headers lie, and small ones that are huge once they are decoded.
 
-use super::common::png;
 use super::encode::{bmp, chunk, exr, flat_png, jpeg, png_of, shorts, tga, webp, whole_chunk};
 use super::{Case, Expect, Warning};
+use envers_testing::png;
 
 const OBJ: &str = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
 

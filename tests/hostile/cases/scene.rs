@@ -1,7 +1,7 @@
 //! Scene files.
 
-use super::common::{Model, png};
 use super::{Case, Error, Expect, Loads};
+use envers_testing::{Model, png};
 
 const CAMERA: &str = "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\nfov_y = 40\n";
 

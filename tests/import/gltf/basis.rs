@@ -2,8 +2,8 @@
 
 use envers::scene::Texels;
 
-use super::common::packed::{ktx, ktx_of_floats};
 use super::*;
+use envers_testing::packed::{ktx, ktx_of_floats};
 
 const COLOR: [u8; 4] = [200, 100, 50, 128];
 const NAME: &str = "KHR_texture_basisu";

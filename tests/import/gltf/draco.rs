@@ -4,8 +4,8 @@ use draco_core::{DataType, GeometryAttributeType as Kind};
 use envers::load::{Limit, Limits, Options};
 use envers::scene::DropReason;
 
-use super::common::packed::{DRACO, bytes, draco, packed};
 use super::*;
+use envers_testing::packed::{DRACO, bytes, draco, packed};
 
 const SQUARE: [f32; 12] = [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.];
 const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];

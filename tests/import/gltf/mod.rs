@@ -1,9 +1,6 @@
 //! What glTF files become, each test one feature, and what is said of damaged and hostile ones,
 //! each test one fault.
 
-#[path = "../import_common/mod.rs"]
-mod common;
-
 mod animation;
 mod basis;
 mod damaged_data;
@@ -21,10 +18,12 @@ mod textures;
 mod validation;
 mod variants;
 
-use common::{Folder, Model, assert_warns, data_uri, json_place, png};
 use envers::scene::{Material, Scene};
+use envers_testing::{Folder, Model, data_uri, png};
 use glam::Vec3;
 use serde_json::json;
+
+use super::loading::{LoadFile, LoadModel, assert_warns, json_place};
 
 fn material(scene: &Scene) -> &Material {
     &scene.materials[scene.instances[0].material.0 as usize]

@@ -1,16 +1,10 @@
 //! The scene file, through the door that everybody uses.
 
-#[path = "scene_file/bad.rs"]
 mod bad;
-#[path = "scene_file/docs.rs"]
 mod docs;
-#[path = "scene_file/good.rs"]
 mod good;
-#[path = "scene_file/models.rs"]
 mod models;
-#[path = "scene_file/motion.rs"]
 mod motion;
-#[path = "scene_file/random.rs"]
 mod random;
 
 use std::path::{Path, PathBuf};

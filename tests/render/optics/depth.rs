@@ -5,7 +5,7 @@ use envers::render::{Options, render};
 use envers::scene::{Material, Plane, Scene};
 use glam::{DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 /// Between two whole mirrors that glow a little.
 fn hall(depth: u32) -> Scene {

@@ -3,7 +3,7 @@
 use envers::scene::{Instance, Material, Mesh, Plane};
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 const GLASS: f64 = 1.5;
 

@@ -8,7 +8,7 @@ use envers::scene::{
 };
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 /// A mirror, glass and a matt ball on a checker, a roof, and lights of every kind of shadow.
 fn scene() -> Scene {

@@ -3,7 +3,7 @@
 use envers::scene::{Material, Plane};
 use glam::{DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 #[test]
 fn a_mirror_shows_its_share_of_the_background() {

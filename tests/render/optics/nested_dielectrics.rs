@@ -3,7 +3,7 @@
 use envers::scene::{Material, Plane};
 use glam::{DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 const WATER: f64 = 1.33;
 

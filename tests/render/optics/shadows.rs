@@ -3,7 +3,7 @@
 use envers::scene::{Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Scene, Shadow};
 use glam::{DAffine3, DVec3, Vec3};
 
-use super::common::*;
+use super::one_pixel::*;
 
 /// White ground, seen from the side, under a light at y = 10 that shines straight down on it.
 fn ground(shadow: Shadow) -> Scene {

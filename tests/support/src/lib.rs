@@ -1,18 +1,24 @@
-//! What several tests of the importers need.
-#![allow(dead_code, reason = "each test binary uses its own part")]
+//! The files that envers is tested with, and random numbers that are the same every time. It does not
+//! depend on envers, so that nothing of envers is compiled for it.
 
 pub mod packed;
+mod random;
 pub mod whole;
 
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
-use envers::error::{Place, Result};
-use envers::scene::Scene;
+pub use random::Random;
 use serde_json::{Value, json};
 
 /// A folder of files that goes away with the test.
 pub struct Folder(tempfile::TempDir);
+
+impl Default for Folder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 impl Folder {
     /// An empty folder.
@@ -31,11 +37,6 @@ impl Folder {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(&path, bytes).unwrap();
         path
-    }
-
-    /// Writes a file and loads it.
-    pub fn load(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<Scene> {
-        envers::load::load(&self.write(name, bytes))
     }
 }
 
@@ -68,6 +69,12 @@ pub struct Model {
     bin: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
+}
+
+impl Default for Model {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Model {
@@ -218,16 +225,6 @@ impl Model {
     pub fn bin(&self) -> &[u8] {
         &self.bin
     }
-
-    /// Writes the file, its buffer in a data URI, and loads it.
-    pub fn load(&self) -> Result<Scene> {
-        self.load_in(&Folder::new())
-    }
-
-    /// Writes the file in a folder and loads it.
-    pub fn load_in(&self, folder: &Folder) -> Result<Scene> {
-        folder.load("model.gltf", self.to_json(Some(&data_uri(&self.bin))).to_string())
-    }
 }
 
 /// The extensions that objects have, anywhere in a value.
@@ -238,23 +235,6 @@ fn name_extensions(value: &Value, names: &mut Vec<String>) {
     let objects = value.as_object().into_iter().flat_map(|o| o.values());
     let items = value.as_array().into_iter().flatten();
     objects.chain(items).for_each(|value| name_extensions(value, names));
-}
-
-/// The JSON path of an error, and its whole text.
-#[track_caller]
-pub fn json_place(result: Result<Scene>) -> (String, String) {
-    let error = result.map(|s| s.triangle_count()).unwrap_err();
-    match error.place_in_file() {
-        Some(Place::Json(path)) => (path.clone(), error.to_string()),
-        other => panic!("{other:?} in {error}"),
-    }
-}
-
-/// Asserts that a scene warns once, with `part` in it.
-#[track_caller]
-pub fn assert_warns(scene: &Scene, part: &str) {
-    let found = scene.warnings.iter().filter(|w| w.contains(part)).count();
-    assert_eq!(found, 1, "`{part}` in {:?}", scene.warnings);
 }
 
 /// The corpus of model files, or nothing (and a word about it) where there is none.
@@ -282,20 +262,4 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     }
     found.sort();
     found
-}
-
-/// Loads every file of a set; panics fail the test, and so do errors that say nothing.
-pub fn load_all(files: &[PathBuf]) -> (usize, usize) {
-    let (mut loaded, mut refused) = (0, 0);
-    for path in files {
-        match envers::load::load(path) {
-            Ok(_) => loaded += 1,
-            Err(error) => {
-                assert!(!error.message().is_empty(), "{}", path.display());
-                assert!(error.path().is_some(), "{}: {error}", path.display());
-                refused += 1;
-            }
-        }
-    }
-    (loaded, refused)
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::DVec3;
 
 use super::paint;
-use super::shape::circle;
+use crate::shape::circle;
 
 /// Flat polygons, without shared corners' normals.
 #[derive(Default)]
@@ -56,7 +56,7 @@ impl Solid {
 
     /// The OBJ file, which says first what it is.
     fn obj(&self, what: &str) -> Vec<u8> {
-        let mut obj = format!("# {what} Made by examples/make_assets.rs.\n");
+        let mut obj = format!("# {what} Made by xtask make-assets.\n");
         let mut line = |text: std::fmt::Arguments<'_>| {
             writeln!(obj, "{text}").expect("ok: a String takes all that is written");
         };

@@ -2,10 +2,9 @@
 
 use envers::geometry::Ray;
 use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind, Shadow};
-use envers::scene::{Material, Scene, Sphere};
+use envers::scene::{Material, Mesh, Scene, Sphere};
 use glam::{DAffine3, DVec3, Vec3};
-
-use crate::reference::knot;
+use xtask::reference::knot;
 
 /// Width and height of the pictures that are traced.
 pub const SIZE: [u32; 2] = [1000, 500];
@@ -14,7 +13,9 @@ pub const SIZE: [u32; 2] = [1000, 500];
 pub fn knot(resolution: [u32; 2]) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let mesh = scene.add_mesh(knot::mesh(resolution));
+    let knot::Mesh { positions, triangles } = knot::mesh(resolution);
+    let mesh = Mesh { name: "knot".into(), positions, triangles, ..Mesh::default() };
+    let mesh = scene.add_mesh(mesh);
     scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     finish(scene, DVec3::new(0.25, 0.15, 2.1))
 }

@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use glam::{DVec2, dvec2};
 
-use super::shape::circle;
+use crate::shape::circle;
 
 /// How a line looks.
 #[derive(Clone, Copy)]

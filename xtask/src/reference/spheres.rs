@@ -80,7 +80,7 @@ pub fn toml() -> String {
     toml
 }
 
-const HEAD: &str = r##"# S: the tutorial's sphere among 500 others. Made by examples/make_reference.rs.
+const HEAD: &str = r##"# S: the tutorial's sphere among 500 others. Made by xtask make-reference.
 [film]
 size = [1000, 500]
 transfer = "none"            # a PNG byte is 255 times the value, as in the tutorial

@@ -5,7 +5,7 @@ use glam::{DVec2, dvec2};
 use super::drawing::{
     Anchor, BODY, DASHED, Drawing, FINE, GLOW, HOLLOW, INK, LIGHT, OTHER, SHADE, SIGHT,
 };
-use super::shape::circle;
+use crate::shape::circle;
 
 /// Their names, without `.svg`, and the drawings.
 pub fn all() -> Vec<(&'static str, Drawing)> {

@@ -6,9 +6,9 @@
 use glam::{DVec2, DVec3};
 use serde_json::json;
 
-use super::glb::{Glb, at, turned};
-use super::shape::{Shape, circle, smooth};
 use super::{paint, vase};
+use crate::glb::{Glb, at, turned};
+use crate::shape::{Shape, circle, smooth};
 
 /// Width of a bay of the arcade, and how many there are to the left and at the back.
 const BAY: f64 = 3.2;
@@ -263,5 +263,5 @@ pub fn glb() -> Vec<u8> {
     let view = glb.node("view", None, view);
     let lens = json!({ "yfov": 0.76, "aspectRatio": 1.7777778, "znear": 0.1 });
     glb.camera(view, json!({ "name": "view", "type": "perspective", "perspective": lens }));
-    glb.finish("envers examples/make_assets.rs")
+    glb.finish("envers xtask make-assets")
 }

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-use super::shape::Shape;
+use crate::shape::Shape;
 
 /// A glTF file while it is made.
 #[derive(Default)]

@@ -5,24 +5,24 @@
 //! `-- [--large] [--rounds N] [triangles] [spheres] [lights] [pixels] [threads]` a part of it,
 //! with `--large` also 10,000,000 triangles (3 GB of memory).
 
-#[allow(dead_code)] // It serves the bench `intersect`, too.
-#[path = "../intersect/bare.rs"]
-mod bare;
-#[path = "../intersect/batches.rs"]
-mod batches;
-#[path = "../frame/clock.rs"]
-mod clock;
-mod frames;
-mod growth;
-mod rays;
-#[path = "../../examples/reference/mod.rs"]
-mod reference;
-#[allow(dead_code)]
-#[path = "../intersect/scenes.rs"]
-mod scenes;
+mod growth {
+    pub mod frames;
+    pub mod rays;
+    pub mod table;
+}
+mod support {
+    pub mod arguments;
+    pub mod bare;
+    pub mod batches;
+    pub mod clock;
+    pub mod scenes;
+}
 
-use bare::Bare;
-use reference::knot::resolution;
+use growth::{frames, rays};
+use support::arguments::Arguments;
+use support::bare::Bare;
+use support::scenes;
+use xtask::reference::knot::resolution;
 
 /// What is measured, and how often.
 struct Plan {
@@ -64,21 +64,25 @@ impl Plan {
 }
 
 fn main() {
-    let args: Vec<String> = std::env::args().skip(1).collect();
-    let has = |flag: &str| args.iter().any(|a| a == flag);
-    let rounds = args.iter().skip_while(|a| *a != "--rounds").nth(1);
-    let rounds = rounds.map_or(21, |n| n.parse().expect("--rounds wants a whole number from 1"));
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    let is_bench = has("--bench");
-    let plan = if is_bench { Plan::whole(has("--large"), rounds) } else { Plan::trial() };
-    let names = ["triangles", "spheres", "lights", "pixels", "threads"];
-    let all = !names.iter().any(|name| has(name));
+    let usage =
+        "scaling -- [--large] [--rounds N] [triangles] [spheres] [lights] [pixels] [threads]";
+    let mut names = Vec::new();
+    let plan = match Arguments::of_bench(usage) {
+        None => Plan::trial(),
+        Some(mut arguments) => {
+            let large = arguments.flag("--large");
+            let rounds = arguments.value("--rounds").unwrap_or(21);
+            names = arguments.rest(0);
+            Plan::whole(large, rounds)
+        }
+    };
+    let asked = |name: &str| names.is_empty() || names.iter().any(|n| n == name);
     println!("medians of {} rounds in turn", plan.rounds);
     match [16, 8, 4].into_iter().find(|&w| has_width(w)) {
-        Some(16) => measure::<16>(&plan, |name| all || has(name)),
-        Some(8) => measure::<8>(&plan, |name| all || has(name)),
-        Some(4) => measure::<4>(&plan, |name| all || has(name)),
-        _ => measure::<1>(&plan, |name| all || has(name)),
+        Some(16) => measure::<16>(&plan, asked),
+        Some(8) => measure::<8>(&plan, asked),
+        Some(4) => measure::<4>(&plan, asked),
+        _ => measure::<1>(&plan, asked),
     }
 }
 

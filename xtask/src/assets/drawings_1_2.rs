@@ -6,7 +6,7 @@ use super::drawing::{
     Anchor::{End, Middle, Start},
     BODY, DASHED, Drawing, FINE, INK, LIGHT, OTHER, SIGHT,
 };
-use super::shape::circle;
+use crate::shape::circle;
 
 /// Their names, without `.svg`, and the drawings.
 pub fn all() -> Vec<(&'static str, Drawing)> {

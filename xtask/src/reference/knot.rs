@@ -2,10 +2,17 @@
 
 use std::f64::consts::TAU;
 
-use envers::scene::Mesh;
 use glam::DVec3;
 
-use super::glb::{Glb, at};
+use crate::glb::{Glb, at};
+
+/// A triangle mesh.
+pub struct Mesh {
+    /// The positions of its vertices.
+    pub positions: Vec<[f32; 3]>,
+    /// The indices of each triangle's vertices.
+    pub triangles: Vec<[u32; 3]>,
+}
 
 /// How many triangles the knot of M has.
 pub const TRIANGLES: usize = 1_000_000;
@@ -48,19 +55,19 @@ pub fn mesh([rings, sides]: [u32; 2]) -> Mesh {
             [[a, b, c], [a, c, d]]
         })
         .collect();
-    Mesh { name: "knot".into(), positions, triangles, ..Mesh::default() }
+    Mesh { positions, triangles }
 }
 
 /// The model file that [`TOML`] names.
 pub fn glb(mesh: &Mesh) -> Vec<u8> {
     let mut glb = Glb::default();
-    let id = glb.triangles(&mesh.name, &mesh.positions, &mesh.triangles);
-    glb.place(&mesh.name, None, id, at(0.0, 0.0, 0.0));
-    glb.finish("envers examples/make_reference.rs")
+    let id = glb.triangles("knot", &mesh.positions, &mesh.triangles);
+    glb.place("knot", None, id, at(0.0, 0.0, 0.0));
+    glb.finish("envers xtask make-reference")
 }
 
 /// The scene file.
-pub const TOML: &str = r##"# M: a torus knot of a million triangles, a mirror and glass. Made by examples/make_reference.rs.
+pub const TOML: &str = r##"# M: a torus knot of a million triangles, a mirror and glass. Made by xtask make-reference.
 [film]
 size = [1000, 500]
 background = "#a9c4e4"

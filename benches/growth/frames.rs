@@ -10,12 +10,12 @@ use glam::DVec3;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
+use super::table::slope;
 use crate::Plan;
-use crate::bare::{Bare, Packet, packets};
-use crate::clock::{median, time};
-use crate::growth::slope;
-use crate::reference::knot::resolution;
-use crate::scenes;
+use crate::support::bare::{Bare, Packet, packets};
+use crate::support::clock::{median, time};
+use crate::support::scenes;
+use xtask::reference::knot::resolution;
 
 /// The scenes whose frames are made, and what they are called.
 fn both() -> [(&'static str, Scene); 2] {

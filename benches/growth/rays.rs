@@ -8,13 +8,13 @@ use envers::intersect::{Coherence, Embree, Precision};
 use envers::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 
+use super::table::{self, Step};
 use crate::Plan;
-use crate::bare::{Bare, Packet, packets};
-use crate::batches::Batches;
-use crate::clock::{median, time};
-use crate::growth::{self, Step};
-use crate::reference::spheres::SplitMix;
-use crate::scenes;
+use crate::support::bare::{Bare, Packet, packets};
+use crate::support::batches::Batches;
+use crate::support::clock::{median, time};
+use crate::support::scenes;
+use xtask::reference::spheres::SplitMix;
 
 /// `count` spheres at random in a cube of side 2, the smaller the more there are: they hide about
 /// as much of each other's background whatever their number, so that only the number grows.
@@ -54,7 +54,7 @@ const KINDS: [&str; 2] = ["coherent", "random"];
 /// Measures scenes of growing size with the rays of a picture, and with random ones.
 pub fn growth<const W: usize>(what: &str, scenes: impl Iterator<Item = Scene>, plan: &Plan) {
     let mut steps = Vec::new();
-    growth::print_head(what, &KINDS);
+    table::print_head(what, &KINDS);
     for mut scene in scenes {
         scene.film.size = plan.size;
         let primary = scenes::primary(&scene);
@@ -64,10 +64,10 @@ pub fn growth<const W: usize>(what: &str, scenes: impl Iterator<Item = Scene>, p
         let bare = Bare::build(&scene, W);
         let step = |rays: &[Ray], coherence| step::<W>(&scene, &ours, &bare, rays, coherence, plan);
         steps.push([step(&primary, Coherence::Coherent), step(&random, Coherence::Incoherent)]);
-        growth::print_row(&steps[steps.len() - 1]);
+        table::print_row(&steps[steps.len() - 1]);
     }
     for (i, kind) in KINDS.into_iter().enumerate() {
-        growth::print_growth(what, kind, &steps.iter().map(|s| &s[i]).collect::<Vec<_>>());
+        table::print_growth(what, kind, &steps.iter().map(|s| &s[i]).collect::<Vec<_>>());
     }
 }
 

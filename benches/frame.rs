@@ -5,23 +5,26 @@
 //! times our frame and the bare calls in turn; what is printed are medians, and the median of the
 //! ratio. On one thread time is the thread's own, so that a busy machine matters less.
 
-#[path = "../intersect/bare.rs"]
-mod bare;
-mod clock;
-mod record;
+mod support {
+    pub mod arguments;
+    pub mod bare;
+    pub mod clock;
+    pub mod record;
+}
 
 use std::hint::black_box;
 use std::path::Path;
 
-use bare::{Bare, Packet, packets};
-use clock::{median, time};
 use envers::geometry::Ray;
 use envers::integrator::Tiling;
 use envers::intersect::{Builder, Precision};
 use envers::render::{self, Options};
 use envers::scene::Scene;
 use rayon::prelude::*;
-use record::{Batch, Recorder};
+use support::arguments::Arguments;
+use support::bare::{Bare, Packet, packets};
+use support::clock::{median, time};
+use support::record::{Batch, Recorder};
 
 struct Settings {
     scenes: Vec<String>,
@@ -39,38 +42,24 @@ impl Settings {
     }
 }
 
+/// Returns the settings of the command line; nothing unless `cargo bench` runs this.
 fn settings() -> Option<Settings> {
-    let mut settings = Settings {
-        scenes: Vec::new(),
-        size: None,
-        threads: 1,
-        rounds: 15,
-        tiling: Tiling::default(),
-        ours: None,
-    };
-    let mut arguments = std::env::args().skip(1);
-    while let Some(argument) = arguments.next() {
-        let mut number = || arguments.next()?.parse().ok();
-        match argument.as_str() {
-            "--bench" => {}
-            "--tile" => {
-                let [rows, columns] = [number()?, number()?];
-                settings.tiling = Tiling { rows, columns, ..settings.tiling };
-            }
-            "--ours" => settings.ours = Some(Precision::Fast),
-            "--ours-certified" => settings.ours = Some(Precision::Certified),
-            "--threads" => settings.threads = number()?,
-            "--rounds" => settings.rounds = number()?,
-            "--size" => {
-                let text = arguments.next()?;
-                let (width, height) = text.split_once('x')?;
-                settings.size = Some([width.parse().ok()?, height.parse().ok()?]);
-            }
-            other if other.starts_with("--") => return None,
-            _ => settings.scenes.push(argument),
-        }
+    let usage = "frame -- SCENE... [--size WxH] [--threads N] [--rounds N]";
+    let mut arguments = Arguments::of_bench(usage)?;
+    let mut tiling = Tiling::default();
+    if let Some([rows, columns]) = arguments.pair("--tile") {
+        tiling = Tiling { rows, columns, ..tiling };
     }
-    Some(settings)
+    let fast = arguments.flag("--ours").then_some(Precision::Fast);
+    let certified = arguments.flag("--ours-certified").then_some(Precision::Certified);
+    Some(Settings {
+        size: arguments.pair("--size"),
+        threads: arguments.value("--threads").unwrap_or(1),
+        rounds: arguments.value("--rounds").unwrap_or(15),
+        tiling,
+        ours: certified.or(fast),
+        scenes: arguments.rest(1),
+    })
 }
 
 /// The rays of one kind, in packets of every width.
@@ -122,14 +111,7 @@ impl Kind {
 }
 
 fn main() {
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    if !std::env::args().any(|a| a == "--bench") {
-        return;
-    }
-    let Some(settings) = settings() else {
-        eprintln!("cargo bench --bench frame -- SCENE... [--size WxH] [--threads N] [--rounds N]");
-        std::process::exit(2);
-    };
+    let Some(settings) = settings() else { return };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().unwrap();
     for name in &settings.scenes {
         let mut scene = envers::load::load_for(Path::new(name), settings.size).unwrap();

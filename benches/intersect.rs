@@ -4,17 +4,16 @@
 //! the ceiling: medians of runs taken in turn, ours and the bare loop's. `-- ratios` prints the
 //! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
-mod bare;
-mod batches;
-#[path = "../../examples/reference/mod.rs"]
-mod reference;
-mod scenes;
+mod support {
+    pub mod arguments;
+    pub mod bare;
+    pub mod batches;
+    pub mod scenes;
+}
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use bare::{Bare, Packet, packets};
-use batches::Batches;
 use criterion::{Criterion, Throughput};
 use envers::geometry::Ray;
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
@@ -22,6 +21,10 @@ use envers::render::{self, Options};
 use envers::scene::{Arrival, Scene};
 use envers::surface::Surface;
 use glam::Vec3;
+use support::arguments::Arguments;
+use support::bare::{Bare, Packet, packets};
+use support::batches::Batches;
+use support::scenes;
 
 struct Case {
     name: &'static str,
@@ -216,18 +219,17 @@ fn beside(
 }
 
 fn main() {
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    if !std::env::args().any(|a| a == "--bench") {
+    let Some(mut arguments) = Arguments::of_bench("intersect [-- ratios | certified]") else {
         return;
-    }
+    };
+    let (ratios, certified) = (arguments.flag("ratios"), arguments.flag("certified"));
     let cases = [Case::new("M", scenes::knot([2000, 250])), Case::new("S", scenes::spheres())];
-    let ratios_only = std::env::args().any(|a| a == "ratios" || a == "certified");
-    if !ratios_only {
+    if !(ratios || certified) {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         cases.iter().for_each(|case| criterion(&mut c, case));
         c.final_summary();
     }
-    if std::env::args().any(|a| a == "certified") {
+    if certified {
         println!("what certified costs, one thread, medians of 37 in turn");
         cases.iter().for_each(price);
         return;

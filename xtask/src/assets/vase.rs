@@ -5,7 +5,7 @@ use std::fmt::Write;
 use glam::{DVec2, DVec3};
 
 use super::paint;
-use super::shape::{Shape, smooth};
+use crate::shape::{Shape, smooth};
 
 const SEGMENTS: u32 = 48;
 
@@ -59,7 +59,7 @@ pub fn fittings() -> Shape {
 
 /// `vase.obj`, `vase.mtl` and `vase.png`.
 pub fn files() -> Vec<(&'static str, Vec<u8>)> {
-    let mut obj = "# A vase with handles, 1 m high. Made by examples/make_assets.rs.\n".to_owned();
+    let mut obj = "# A vase with handles, 1 m high. Made by xtask make-assets.\n".to_owned();
     obj += "mtllib vase.mtl\n";
     let mut first = 1;
     for (name, material, shape) in [("body", "painted", body()), ("fittings", "glaze", fittings())]
@@ -68,7 +68,7 @@ pub fn files() -> Vec<(&'static str, Vec<u8>)> {
         first += shape.positions.len() as u32;
     }
     let mtl = "\
-# Made by examples/make_assets.rs.
+# Made by xtask make-assets.
 newmtl painted
 Kd 1 1 1
 Ks 0.25 0.24 0.22
