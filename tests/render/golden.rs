@@ -1,7 +1,7 @@
 //! Small pictures of every scene in `assets/scenes/`, against those committed in `tests/golden/`,
 //! through every backend of this build: no channel of any pixel may differ by more than 1 of 255.
 //!
-//! `ENVERS_BLESS=1 cargo test --test golden` writes them anew, and fails all the same: look at
+//! `ENVERS_BLESS=1 cargo test --test render golden` writes them anew, and fails all the same: look at
 //! them, and run the tests again without it. On a mismatch, `target/golden-failures/` shows the
 //! expected picture, the difference and the actual one side by side.
 

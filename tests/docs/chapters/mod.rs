@@ -9,7 +9,7 @@
 //!   (`book::Command`). All run in order in a folder that has copies of `assets/` and of
 //!   `docs/tutorial/`, and succeed.
 //! - A PNG that a chapter shows is made by one of its commands (`-o NAME.png`), within 1 of 255.
-//!   `ENVERS_BLESS=1 cargo test --test chapters` writes them anew, and fails all the same.
+//!   `ENVERS_BLESS=1 cargo test --test docs chapters` writes them anew, and fails all the same.
 //! - A GIF that a chapter shows is made by one of its commands, and has as many frames.
 //! - A block of `rust`, `toml` or `python` follows a comment `<!-- from PATH -->` and stands in
 //!   that file but for white space. A line of no more than `…` behind the file's comment sign

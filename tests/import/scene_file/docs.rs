@@ -83,7 +83,7 @@ fn the_committed_schema_is_that_of_the_types() {
     }
     assert!(
         same,
-        "{} is not what the types say; `ENVERS_BLESS=1 cargo test --test scene_file` rewrites it",
+        "{} is not what the types say; `ENVERS_BLESS=1 cargo test --test import scene_file` rewrites it",
         path.display()
     );
 }
