@@ -10,8 +10,8 @@ use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::integrator::{Counts, Integrator, Scratch, Seen, Tiling};
 use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
+use crate::scene::Scene;
 use crate::scene::animation::Poses;
-use crate::scene::{Scene, Skips};
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,8 +30,6 @@ pub struct Options {
     pub view: View,
     /// How it is cut into batches.
     pub tiling: Tiling,
-    /// Which work is left out where the scene has no need of it.
-    pub skips: Skips,
 }
 
 /// A picture, and what it took.
@@ -108,8 +106,7 @@ pub fn render(
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
         let mut builder = Builder::new(options.backend, options.precision, threads)
-            .with_quality(quality(scene, options))
-            .skipping(options.skips);
+            .with_quality(quality(scene, options));
         let start = Instant::now();
         let intersector = builder.build(scene)?;
         let made = Made::new(start, &builder, builder.built());
@@ -142,8 +139,7 @@ pub fn render_frames(
             true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
             false => Builder::new(backend, precision, threads),
         }
-        .with_quality(quality(scene, options))
-        .skipping(options.skips);
+        .with_quality(quality(scene, options));
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         let mut poses = Poses::new(scene);
@@ -235,8 +231,8 @@ pub fn with_intersector(
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
-    let Options { view, tiling, skips, .. } = *options;
-    let integrator = Integrator::new(scene, intersector, camera, view, tiling, skips);
+    let Options { view, tiling, .. } = *options;
+    let integrator = Integrator::new(scene, intersector, camera, view, tiling);
     let rows = tiling.rows;
     let strip = size[0] as usize * rows;
     let strips = film.pixels.len().div_ceil(strip);

@@ -12,7 +12,7 @@ use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load;
 use crate::scene::animation::{Animation, Mover};
-use crate::scene::{Lens, LightKind, Needs, Scene, Skips, detail};
+use crate::scene::{Lens, LightKind, Needs, Scene, detail};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -107,8 +107,7 @@ impl fmt::Display for Motion {
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
-    let scene =
-        load::load_with(&arguments.scene, &arguments.loading.options(None, Skips::default()))?;
+    let scene = load::load_with(&arguments.scene, &arguments.loading.options(None))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);
@@ -130,7 +129,7 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     // As the default of `render`: precision fast, on Embree where it is built in.
     let mut warnings = scene.warnings.clone();
     warnings.extend(detail::lost(scene, Backend::default() != Backend::Rust));
-    let needs = Needs::of(scene, Skips::default());
+    let needs = Needs::of(scene);
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,

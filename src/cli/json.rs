@@ -9,7 +9,7 @@ use crate::cli::loss::Loaded;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
 use crate::intersect::{BuildQuality, Built};
 use crate::render::Statistics;
-use crate::scene::{self, FilmSettings, Needs, Scene, Skips, Work};
+use crate::scene::{self, FilmSettings, Needs, Scene, Work};
 
 /// `render --stats`.
 #[derive(Serialize)]
@@ -172,7 +172,6 @@ impl Stats {
         scene: &Scene,
         frames: usize,
         statistics: &Statistics,
-        skips: Skips,
         layers: u64,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
@@ -192,7 +191,7 @@ impl Stats {
             geometry: Geometry::of(scene),
             build: statistics.into(),
             rays: rays.into(),
-            skipped: skipped(&Needs::of(scene, skips), &work),
+            skipped: skipped(&Needs::of(scene), &work),
             work,
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::geometry::{Geometry, Hit};
 use crate::integrator::counts::WorkCounts;
-use crate::scene::{Finish, Material, Mesh, Scene, Skips, Work};
+use crate::scene::{Finish, Material, Mesh, Scene};
 use crate::shading::Reflectance;
 use crate::surface::{self, Detail};
 
@@ -28,22 +28,21 @@ pub(super) struct Look {
 }
 
 impl Look {
-    pub fn of(scene: &Scene, material: &Material, skips: Skips) -> Self {
+    pub fn of(scene: &Scene, material: &Material) -> Self {
         // A material that nothing is made of may have pictures that were not read.
         let finish = match material.is_textured() {
             true => material.finish(),
             false => surface::finish(scene, material, &Detail::default()),
         };
         let reflectance = scattered(&finish);
-        let highlight = reflectance.specular != Vec3::ZERO || material.metallic.is_some();
         Self {
             finish,
             reflectance,
             is_finite: finish.emission.is_finite() && reflectance.diffuse.is_finite(),
-            shines: skips.does(Work::Highlights, highlight),
-            is_textured: skips.does(Work::Uv, material.is_textured()),
-            has_normals: skips.does(Work::NormalMaps, material.normal_map.is_some()),
-            is_followed: skips.does(Work::Reflection, material.is_followed()),
+            shines: reflectance.specular != Vec3::ZERO || material.metallic.is_some(),
+            is_textured: material.is_textured(),
+            has_normals: material.normal_map.is_some(),
+            is_followed: material.is_followed(),
         }
     }
 }
@@ -67,14 +66,11 @@ pub(super) struct Details {
 }
 
 impl Details {
-    pub fn of(scene: &Scene, skips: Skips) -> Self {
+    pub fn of(scene: &Scene) -> Self {
         let checkers = scene.planes.iter().map(|plane| plane.checker.is_some());
         let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
         let colors = scene.meshes.iter().map(|mesh| has(mesh));
-        Self {
-            planes: checkers.map(|has| skips.does(Work::Checkers, has)).collect(),
-            meshes: colors.map(|has| skips.does(Work::VertexColors, has)).collect(),
-        }
+        Self { planes: checkers.collect(), meshes: colors.collect() }
     }
 
     /// Whether what was hit, whose material looks like this, is asked for any.

@@ -28,7 +28,7 @@ use glam::Vec3;
 use crate::film::{Pixel, View};
 use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{Camera, FilmSettings, Material, Needs, RayMaker, Scene, Skips, Work};
+use crate::scene::{Camera, FilmSettings, Material, Needs, RayMaker, Scene, Work};
 use crate::surface::Surface;
 use adaptive::{Note, Notes};
 pub use adaptive::{STEPS, Seen};
@@ -110,15 +110,13 @@ struct Wave {
 }
 
 impl<'a> Integrator<'a> {
-    /// An integrator for the scene's film settings, which looks through `camera`. It leaves out
-    /// only `skips` of what the scene has no need of.
+    /// An integrator for the scene's film settings, which looks through `camera`.
     pub fn new(
         scene: &'a Scene,
         intersector: &'a dyn Intersector,
         camera: &Camera,
         view: View,
         tiling: Tiling,
-        skips: Skips,
     ) -> Self {
         // Debug views are not averages: one sample.
         let film = match view {
@@ -126,9 +124,8 @@ impl<'a> Integrator<'a> {
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
         let rays = camera.rays(scene.film.size);
-        let needs = Needs::of(scene, skips);
+        let needs = Needs::of(scene);
         let must = |work| needs.must(work);
-        let casts = scene.lights.iter().map(|light| light.casts_shadow());
         let bodies = Bodies::of(scene);
         let eye = match bodies.is_empty() {
             true => Some(Interiors::default()),
@@ -150,13 +147,9 @@ impl<'a> Integrator<'a> {
             lens: must(Work::Mipmaps).then(|| EyeCone::of(&rays, &film)),
             has_smooth_normals: must(Work::SmoothNormals),
             has_highlights: must(Work::Highlights),
-            asks: casts.map(|casts| skips.does(Work::Shadows, casts)).collect(),
-            details: Details::of(scene, skips),
-            looks: scene
-                .materials
-                .iter()
-                .map(|material| Look::of(scene, material, skips))
-                .collect(),
+            asks: scene.lights.iter().map(|light| light.casts_shadow()).collect(),
+            details: Details::of(scene),
+            looks: scene.materials.iter().map(|material| Look::of(scene, material)).collect(),
             arch: pulp::Arch::new(),
             may_pass: eye.as_ref() != Some(&Interiors::default())
                 || bodies.may_hide()

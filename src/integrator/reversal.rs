@@ -11,7 +11,7 @@ use super::{Integrator, Tiling};
 use crate::film::View;
 use crate::geometry::{PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
-use crate::scene::{Camera, Lens, Material, Plane, Scene, Skips, Sphere};
+use crate::scene::{Camera, Lens, Material, Plane, Scene, Sphere};
 use crate::surface::{Cone, Surface};
 
 /// A path: the surfaces that it met, whether it went through each, its share of the light, and
@@ -139,7 +139,7 @@ proptest! {
         let intersector = BruteForce::new(&scene, Precision::Certified);
         let camera = &scene.cameras[0];
         let integrator =
-            Integrator::new(&scene, &intersector, camera, View::Beauty, Tiling::default(), Skips::default());
+            Integrator::new(&scene, &intersector, camera, View::Beauty, Tiling::default());
         let origin = DVec3::from(origin);
         let to = DVec3::from(target) - origin;
         prop_assume!(to.length() > 0.1);

@@ -8,7 +8,7 @@ use crate::intersect::embree::{self, Embree};
 use crate::intersect::kept::used;
 use crate::intersect::standing::Standing;
 use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
-use crate::scene::{MeshId, Scene, Skips, Work};
+use crate::scene::{MeshId, Scene};
 
 /// What building took, and what was kept of a frame before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +80,6 @@ pub struct Builder {
     precision: Precision,
     threads: usize,
     quality: BuildQuality,
-    skips: Skips,
     /// What frames share; nothing for one picture.
     shared: Option<Shared>,
     built: Built,
@@ -97,13 +96,14 @@ struct Shared {
 impl Builder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        let (quality, skips, built) = Default::default();
-        Self { backend, precision, threads, quality, skips, shared: None, built }
-    }
-
-    /// The same builder, which leaves out only `skips` of what a scene has no need of.
-    pub fn skipping(self, skips: Skips) -> Self {
-        Self { skips, ..self }
+        Self {
+            backend,
+            precision,
+            threads,
+            quality: BuildQuality::default(),
+            shared: None,
+            built: Built::default(),
+        }
     }
 
     /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
@@ -153,7 +153,6 @@ impl Builder {
                     precision: self.precision,
                     threads: self.threads,
                     quality: self.quality,
-                    skips: self.skips,
                     width: None,
                 };
                 let (built, moved) = match shared {
@@ -170,7 +169,7 @@ impl Builder {
             Backend::Rust => {
                 // The BVH is built on the caller's rayon pool, and always has all its levels.
                 let _ = self.threads;
-                let (mut built, moved) = match shared {
+                let (built, moved) = match shared {
                     None => (Bvh::build(scene, self.precision), None),
                     Some(shared) => {
                         let moved = shared.standing.follow(scene);
@@ -178,7 +177,6 @@ impl Builder {
                         (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
                     }
                 };
-                built.planes = self.skips.does(Work::Planes, built.planes);
                 (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
             }
         };
@@ -188,8 +186,8 @@ impl Builder {
         };
         let moved = moved.unwrap_or_default();
         let (sphere_sets, instanced) = work;
-        let is_tested = |&i: &u32| self.skips.does(Work::AlphaTests, scene.is_masked(i));
-        let masked = (0..scene.instances.len() as u32).filter(is_tested).count() as u64;
+        let masked =
+            (0..scene.instances.len() as u32).filter(|&i| scene.is_masked(i)).count() as u64;
         self.built += match built.tops {
             0 => Built {
                 tops_kept: 1,

@@ -25,7 +25,7 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{Report, Scene, Skips, Work, closed};
+use crate::scene::{Report, Scene, closed};
 
 use guard::{Guard, Opened};
 pub use limits::{Limit, Limits, NamedLimit};
@@ -41,9 +41,6 @@ pub struct Options {
     /// The size of the picture in pixels, in place of the file's; a camera that frames the scene is
     /// placed for it.
     pub size: Option<[u32; 2]>,
-    /// Unless these are without [`Work::Pictures`], pictures are only named that no material in use
-    /// shows.
-    pub skips: Skips,
     /// Which variant of its materials a glTF file shows (KHR_materials_variants), in place of the
     /// default ones; in a scene file, each model that has one of this name and names none itself.
     pub variant: Option<String>,
@@ -106,13 +103,6 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     let open = closed::open_bodies(&scene);
     scene.warnings.extend(open);
     Ok(scene)
-}
-
-impl Options {
-    /// Whether pictures are read that nothing shows.
-    fn reads_all_pictures(&self) -> bool {
-        !self.skips.has(Work::Pictures)
-    }
 }
 
 /// What of a model file is to be loaded.

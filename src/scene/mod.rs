@@ -32,7 +32,7 @@ pub use material::{
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic::{Finish, Metallic, MetallicMaps, sharpness, shininess};
-pub use needs::{Needs, Skips, Work};
+pub use needs::{Needs, Work};
 pub use object::{Checker, Instance, Plane, Sphere};
 pub use pyramid::{Level, Pyramid};
 pub use report::{DropReason, Report};

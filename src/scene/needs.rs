@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use crate::error::{Error, Result};
 use crate::scene::{Image, Material, Mesh, Scene, TextureId};
 
 /// A kind of work that not every scene needs.
@@ -83,66 +82,16 @@ impl Work {
     }
 }
 
-/// Which kinds of work are left out where a scene has no need of them: all of them, by default.
-///
-/// Without one the picture is the same in precision `certified`, bit for bit, and takes longer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Skips {
-    /// A bit for each kind.
-    off: u16,
-}
-
-impl Default for Skips {
-    /// All.
-    fn default() -> Self {
-        Self { off: 0 }
-    }
-}
-
-impl Skips {
-    /// None: all work is done, whether a scene needs it or not.
-    pub const NONE: Self = Self { off: u16::MAX };
-
-    /// All but those with these names; `all` names each.
-    ///
-    /// # Errors
-    /// When a name is none of them.
-    pub fn without(names: &[impl AsRef<str>]) -> Result<Self> {
-        names.iter().try_fold(Self::default(), |skips, name| match name.as_ref() {
-            "all" => Ok(Self::NONE),
-            name => match Work::ALL.into_iter().find(|work| work.name() == name) {
-                Some(work) => Ok(Self { off: skips.off | 1 << work as u8 }),
-                None => {
-                    let names: Vec<&str> = Work::ALL.into_iter().map(Work::name).collect();
-                    Err(Error::input(format!("no kind of work is called `{name}`"))
-                        .help(format!("they are {}, and all", names.join(", "))))
-                }
-            },
-        })
-    }
-
-    /// Whether a kind of work is done where there is, or is no, need of it.
-    pub fn does(self, work: Work, needed: bool) -> bool {
-        needed || !self.has(work)
-    }
-
-    /// Whether a kind of work is left out where there is no need of it.
-    pub fn has(self, work: Work) -> bool {
-        self.off & 1 << work as u8 == 0
-    }
-}
-
 /// What of the work a scene needs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Needs {
     /// For each kind of work, how many things need it, and of how many.
     counts: [(u64, u64); Work::ALL.len()],
-    skips: Skips,
 }
 
 impl Needs {
-    /// What a checked scene needs, where `skips` may be left out.
-    pub fn of(scene: &Scene, skips: Skips) -> Self {
+    /// What a checked scene needs.
+    pub fn of(scene: &Scene) -> Self {
         let materials: Vec<&Material> = scene.materials_in_use().collect();
         let mut uses = vec![0u64; scene.meshes.len()];
         scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
@@ -186,12 +135,12 @@ impl Needs {
             Work::Reflection => made_of(Material::is_followed),
             Work::Refraction => made_of(Material::may_transmit),
         });
-        Self { counts, skips }
+        Self { counts }
     }
 
-    /// Whether work must be done: the scene needs it, or it is not to be left out.
+    /// Whether the scene needs a kind of work.
     pub fn must(&self, work: Work) -> bool {
-        self.skips.does(work, self.counts[work as usize].0 > 0)
+        self.counts[work as usize].0 > 0
     }
 
     /// The work that is done though the scene may have no need of it, with what it is done for.
@@ -254,8 +203,8 @@ mod tests {
     use crate::scene::{Instance, Plane, Sphere};
     use glam::{DAffine3, DVec3};
 
-    fn skipped(scene: &Scene, skips: Skips) -> Vec<&'static str> {
-        Needs::of(scene, skips).skipped().map(|(work, _)| work.name()).collect()
+    fn skipped(scene: &Scene) -> Vec<&'static str> {
+        Needs::of(scene).skipped().map(|(work, _)| work.name()).collect()
     }
 
     fn ball() -> Scene {
@@ -266,42 +215,24 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_has_its_own_bit_and_name() {
+    fn each_kind_has_its_own_place_and_name() {
+        let mut names = std::collections::BTreeSet::new();
         for (i, work) in Work::ALL.into_iter().enumerate() {
             assert_eq!(work as usize, i);
-            let skips = Skips::without(&[work.name()]).unwrap();
-            let off: Vec<Work> = Work::ALL.into_iter().filter(|&w| !skips.has(w)).collect();
-            assert_eq!(off, [work]);
+            assert!(names.insert(work.name()), "{}", work.name());
         }
     }
 
     #[test]
-    fn a_name_that_is_none_is_refused_with_those_that_are() {
-        let error = Skips::without(&["sphere"]).unwrap_err();
-        assert!(error.message().contains("`sphere`"), "{error}");
-        assert!(error.advice().is_some_and(|help| help.contains("vertex-colors, smooth-normals")));
-    }
-
-    #[test]
     fn an_empty_scene_needs_nothing() {
-        assert_eq!(Needs::of(&Scene::default(), Skips::default()).done().count(), 0);
+        assert_eq!(Needs::of(&Scene::default()).done().count(), 0);
     }
 
     #[test]
     fn a_ball_needs_user_geometry_and_no_more() {
-        let needs = Needs::of(&ball(), Skips::default());
+        let needs = Needs::of(&ball());
         let done: Vec<_> = needs.done().collect();
         assert_eq!(done, [(Work::Spheres, "1 of 1 spheres are user geometry".to_owned())]);
-    }
-
-    #[test]
-    fn what_is_not_to_be_skipped_is_done() {
-        let skips = Skips::without(&["uv", "planes"]).unwrap();
-        let all = skipped(&ball(), Skips::default());
-        let rest: Vec<_> =
-            all.into_iter().filter(|name| !["uv", "planes"].contains(name)).collect();
-        assert_eq!(skipped(&ball(), skips), rest);
-        assert_eq!(skipped(&ball(), Skips::NONE), [""; 0]);
     }
 
     #[test]
@@ -309,10 +240,10 @@ mod tests {
         let mut scene = ball();
         let glass = Material { transmit: Vec3::ONE, specular: Vec3::ONE, ..Material::default() };
         let glass = scene.add_material(glass);
-        assert!(skipped(&scene, Skips::default()).contains(&"refraction"));
+        assert!(skipped(&scene).contains(&"refraction"));
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
         for name in ["refraction", "reflection", "highlights", "planes"] {
-            assert!(!skipped(&scene, Skips::default()).contains(&name), "{name}");
+            assert!(!skipped(&scene).contains(&name), "{name}");
         }
     }
 
@@ -323,7 +254,7 @@ mod tests {
         let material = scene.spheres[0].material;
         for expected in [true, false] {
             scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
-            assert_eq!(skipped(&scene, Skips::default()).contains(&"instances"), expected);
+            assert_eq!(skipped(&scene).contains(&"instances"), expected);
         }
     }
 }

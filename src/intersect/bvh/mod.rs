@@ -29,8 +29,6 @@ pub struct Bvh<'s> {
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
     meshes: Vec<Arc<MeshTree>>,
-    /// Whether planes are tried.
-    pub(super) planes: bool,
 }
 
 /// Where the meshes stand.
@@ -72,8 +70,7 @@ impl<'s> Bvh<'s> {
         let primitives = Primitives { scene, precision };
         let meshes = mesh_trees(scene, None);
         let instances = Instances::new(scene, &meshes).into();
-        let (spheres, planes) = (sphere_tree(scene).into(), !scene.planes.is_empty());
-        Self { primitives, spheres, instances, meshes, planes }
+        Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
     /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
@@ -96,7 +93,7 @@ impl<'s> Bvh<'s> {
         }
         shared.tops += u64::from(!(spheres_stay && instances_stay));
         let (spheres, instances) = (shared.spheres.clone(), shared.instances.clone());
-        Self { primitives, spheres, instances, meshes, planes: !scene.planes.is_empty() }
+        Self { primitives, spheres, instances, meshes }
     }
 
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
@@ -187,11 +184,11 @@ impl Intersector for Bvh<'_> {
     }
 
     fn closest_extras(&self, _: &Rays) -> Extras {
-        Extras { planes: self.planes, filters: false }
+        Extras { planes: !self.primitives.scene.planes.is_empty(), filters: false }
     }
 
     fn occluded_extras(&self) -> Extras {
-        Extras { planes: self.planes, filters: false }
+        Extras { planes: !self.primitives.scene.planes.is_empty(), filters: false }
     }
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
@@ -204,16 +201,14 @@ impl Intersector for Bvh<'_> {
                 *limit = limit.min(hit.t);
                 false
             });
-            if self.planes {
-                self.primitives.merge_planes(ray, best);
-            }
+            self.primitives.merge_planes(ray, best);
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.planes && self.primitives.planes_occlude(ray);
+            *blocked = self.primitives.planes_occlude(ray);
             if !*blocked {
                 let mut limit = ray.tmax;
                 self.visit(ray, &mut limit, |hit, _| {

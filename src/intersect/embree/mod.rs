@@ -54,7 +54,7 @@ use crate::intersect::kept::Kept;
 use crate::intersect::standing::Moved;
 use crate::intersect::{BuildQuality, Coherence, Extras, Intersector, Precision, leaving};
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Instance, Scene, Skips, Work};
+use crate::scene::{Instance, Scene};
 use canary::failed;
 use frame::Frame;
 pub use memory::peak as peak_memory;
@@ -70,8 +70,6 @@ pub(super) struct Asked {
     pub threads: usize,
     /// How good the trees are.
     pub quality: BuildQuality,
-    /// Which work is left out where the scene has no need of it.
-    pub skips: Skips,
     /// How wide its packets are; none for the widest that is native.
     pub width: Option<Width>,
 }
@@ -81,8 +79,6 @@ pub struct Embree<'s> {
     scene: &'s Scene,
     /// The largest absolute coordinate in the scene.
     reach: f64,
-    /// Whether planes are tried.
-    planes: bool,
     /// Whether every triangle blocks light.
     all_block: bool,
     /// Of which instances the alpha is tested; empty where it is of none.
@@ -114,7 +110,7 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(&boxes);
         let device = new_device(scene, asked.threads)?;
         let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
-        Ok(Self::of(scene, asked, &bounds, top.into()))
+        Ok(Self::of(scene, &bounds, top.into()))
     }
 
     /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
@@ -130,17 +126,16 @@ impl<'s> Embree<'s> {
         let bounds = scene.bounds_with(boxes);
         let frame = Frame::on_stage(bounds, shared.stage);
         let top = shared.top(scene, asked, frame, boxes, moved)?;
-        Ok(Self::of(scene, asked, &bounds, top))
+        Ok(Self::of(scene, &bounds, top))
     }
 
-    fn of(scene: &'s Scene, asked: Asked, bounds: &Bounds, top: Arc<Top>) -> Self {
-        let planes = asked.skips.does(Work::Planes, !scene.planes.is_empty());
+    fn of(scene: &'s Scene, bounds: &Bounds, top: Arc<Top>) -> Self {
         let blocks = |(i, instance): (u32, &Instance)| {
             scene.blocks_light(PrimitiveId::triangle(instance.mesh.0, 0, i))
         };
         let all_block = (0..).zip(&scene.instances).all(blocks);
-        let masked = masked(scene, asked.skips);
-        Self { scene, reach: leaving::scene_reach(scene, bounds), planes, all_block, masked, top }
+        let masked = masked(scene);
+        Self { scene, reach: leaving::scene_reach(scene, bounds), all_block, masked, top }
     }
 
     /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
@@ -167,7 +162,6 @@ impl<'s> Embree<'s> {
             precision: top.precision,
             careful: false,
             reach: self.reach,
-            planes: self.planes,
             all_block: self.all_block,
             masked: &self.masked,
         }
@@ -266,12 +260,9 @@ fn is_outsized(mesh: &Bounds) -> bool {
     mesh.max_abs() > MAX_COORDINATE
 }
 
-/// Of which instances the alpha is tested: of those with a mask, or of all where that is not to be
-/// skipped; none at all where there is none.
-fn masked(scene: &Scene, skips: Skips) -> Vec<bool> {
-    let masked: Vec<bool> = (0..scene.instances.len() as u32)
-        .map(|i| skips.does(Work::AlphaTests, scene.is_masked(i)))
-        .collect();
+/// True for each instance whose alpha is tested; empty where no instance has a mask.
+fn masked(scene: &Scene) -> Vec<bool> {
+    let masked: Vec<bool> = (0..scene.instances.len() as u32).map(|i| scene.is_masked(i)).collect();
     if masked.contains(&true) { masked } else { Vec::new() }
 }
 
@@ -314,11 +305,14 @@ impl Intersector for Embree<'_> {
     fn closest_extras(&self, rays: &Rays) -> Extras {
         let asked = !rays.are_fresh() || !self.masked.is_empty();
         let filters = self.top.precision == Precision::Fast && asked;
-        Extras { planes: self.planes, filters }
+        Extras { planes: !self.scene.planes.is_empty(), filters }
     }
 
     fn occluded_extras(&self) -> Extras {
-        Extras { planes: self.planes, filters: self.top.precision == Precision::Fast }
+        Extras {
+            planes: !self.scene.planes.is_empty(),
+            filters: self.top.precision == Precision::Fast,
+        }
     }
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {

@@ -27,8 +27,6 @@ pub struct Target<'a> {
     pub careful: bool,
     /// The largest absolute coordinate in the scene.
     pub reach: f64,
-    /// Whether planes are tried.
-    pub planes: bool,
     /// Whether every triangle blocks light.
     pub all_block: bool,
     /// Of which instances the alpha is tested; empty where it is of none.
@@ -207,7 +205,7 @@ fn closest_in_packet<'a, const W: usize>(
             found.set(at + i, target.brute_force().first(&packet.ray(i)));
         }
     }
-    if target.planes {
+    if !target.scene.planes.is_empty() {
         target.primitives().merge_planes_into(&packet, &context.exact, context.slack, found, at);
     }
     true
@@ -265,7 +263,7 @@ fn occluded<const W: usize>(
                 blocked[i] = target.brute_force().blocks(&packet.ray(i));
             }
         }
-        if target.planes {
+        if !target.scene.planes.is_empty() {
             target.primitives().planes_block(&packet, &context.exact, blocked);
         }
     }

@@ -23,7 +23,7 @@ use crate::intersect::embree::{
 };
 use crate::intersect::standing::Moved;
 use crate::intersect::{BuildQuality, Precision};
-use crate::scene::{Mesh, Scene, Work};
+use crate::scene::{Mesh, Scene};
 
 /// A committed Embree scene and what belongs to it.
 pub struct Top {
@@ -80,7 +80,7 @@ impl Top {
         let precision = asked.precision;
         let width = asked.width.unwrap_or_else(|| Width::native(&device));
         // Frames share meshes.
-        let all_instanced = asked.skips.does(Work::Instances, shared.is_some());
+        let all_instanced = shared.is_some();
         let mut meshes = Meshes::default();
         let (instance_of, instanced) = match precision {
             Precision::Fast => {
@@ -95,7 +95,7 @@ impl Top {
             }
         };
         let mut spheres = None;
-        if asked.skips.does(Work::Spheres, !scene.spheres.is_empty()) {
+        if !scene.spheres.is_empty() {
             let table = SphereTable::new(scene, frame);
             let callbacks = match precision {
                 Precision::Fast => spheres::callbacks(width),

@@ -47,7 +47,7 @@ pub fn scene(
         source,
         guard,
         names: &names,
-        shown: Shown::of(source, &tables, options.reads_all_pictures()),
+        shown: Shown::of(source, &tables),
         variant: options.variant.as_deref(),
         rigs: &rigs,
         scene: Scene { film, animation, ..Scene::default() },
