@@ -40,5 +40,5 @@ pub fn files() -> Vec<(String, Vec<u8>)> {
 
 /// The top of the checkout.
 pub fn root() -> &'static Path {
-    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("ok: it is a folder of the checkout")
 }
