@@ -196,18 +196,6 @@ fn each_picture_that_is_asked_for_is_encoded_and_no_other() {
 }
 
 #[test]
-fn what_is_not_to_be_skipped_is_done_even_so() {
-    let folder = bare_and(PLANE);
-    let kinds = ["pictures", "uv", "checkers", "vertex-colors", "smooth-normals", "highlights"];
-    for kind in kinds.into_iter().chain(["shadows"]) {
-        assert_eq!(work(&folder, "")[kind], 0, "{kind}");
-        let done = work(&folder, &format!("--no-skip {kind}"));
-        assert!(done[kind].as_u64().unwrap() > 0, "{kind}");
-    }
-    assert!(work(&bare(), "--no-skip planes")["planes"].as_u64().unwrap() > 0);
-}
-
-#[test]
 fn a_debug_view_shades_nothing() {
     let folder = made_of("specular = 0.5\ndiffuse_map = \"wood.png\"");
     let work = work(&folder, "--view normal");
