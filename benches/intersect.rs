@@ -4,6 +4,7 @@
 //! the ceiling: medians of runs taken in turn, ours and the bare loop's. `-- ratios` prints the
 //! ratios only, `-- certified` what precision `certified` costs beside `fast`, rays and frames.
 
+#[allow(dead_code, reason = "each bench uses its own part")]
 mod support {
     pub mod arguments;
     pub mod bare;
@@ -222,14 +223,14 @@ fn main() {
     let Some(mut arguments) = Arguments::of_bench("intersect [-- ratios | certified]") else {
         return;
     };
-    let (ratios, certified) = (arguments.flag("ratios"), arguments.flag("certified"));
+    let (only_ratios, only_price) = (arguments.flag("ratios"), arguments.flag("certified"));
     let cases = [Case::new("M", scenes::knot([2000, 250])), Case::new("S", scenes::spheres())];
-    if !(ratios || certified) {
+    if !(only_ratios || only_price) {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         cases.iter().for_each(|case| criterion(&mut c, case));
         c.final_summary();
     }
-    if certified {
+    if only_price {
         println!("what certified costs, one thread, medians of 37 in turn");
         cases.iter().for_each(price);
         return;

@@ -8,6 +8,7 @@
 // To call what is compiled for an instruction set.
 #![allow(unsafe_code)]
 
+#[allow(dead_code, reason = "each bench uses its own part")]
 mod support {
     pub mod arguments;
 }

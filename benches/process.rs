@@ -6,6 +6,7 @@
 //! of the scene is made. Both use all threads, take turns in one run, and are timed by the clock on
 //! the wall; what is printed are medians, and the median of the rounds' ratios.
 
+#[allow(dead_code, reason = "each bench uses its own part")]
 mod support {
     pub mod arguments;
     pub mod bare;

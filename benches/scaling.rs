@@ -10,6 +10,7 @@ mod growth {
     pub mod rays;
     pub mod table;
 }
+#[allow(dead_code, reason = "each bench uses its own part")]
 mod support {
     pub mod arguments;
     pub mod bare;

@@ -245,12 +245,12 @@ impl<'s> Crate<'s> {
             return self.file(&target, depth + 1);
         }
         let globs = source.imports.iter().filter(|i| i.name.as_deref() == Some("*"));
-        let of_globs = globs.filter_map(|import| {
+        let mut of_globs = globs.filter_map(|import| {
             let module = &import.path[..import.path.len() - 1];
             let other = *self.files.get(module)?;
             self.sources[other].defines(item).then_some(other)
         });
-        Some(of_globs.last().unwrap_or(file))
+        Some(of_globs.next_back().unwrap_or(file))
     }
 }
 

@@ -30,11 +30,11 @@ pub fn tokens(text: &str) -> Vec<&str> {
                 end += if bytes[end] == b'\\' { 2 } else { 1 };
             }
             end + 1
-        } else if rest.starts_with('\'') {
+        } else if let Some(quoted) = rest.strip_prefix('\'') {
             // A character, which a quote closes, or a lifetime.
-            let length = match rest[1..].chars().next() {
+            let length = match quoted.chars().next() {
                 Some('\\') => rest[3..].find('\'').map(|n| n + 4),
-                Some(c) => rest[1 + c.len_utf8()..].starts_with('\'').then(|| c.len_utf8() + 2),
+                Some(c) => quoted[c.len_utf8()..].starts_with('\'').then(|| c.len_utf8() + 2),
                 None => None,
             };
             at + length.unwrap_or(1)
