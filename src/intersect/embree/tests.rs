@@ -66,13 +66,7 @@ fn compare(width: PacketWidth, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let asked = BuildOptions {
-        precision,
-        threads: 1,
-        quality,
-        width: Some(width),
-        ..BuildOptions::default()
-    };
+    let asked = BuildOptions { precision, threads: 1, quality, width: Some(width) };
     let embree = Embree::build_as(&scene, asked).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
