@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::values::{PrecisionName, seconds, size};
-use crate::cli::{files, loss};
+use crate::cli::{files, load_report};
 use crate::error::{Error, Result};
 use crate::load::{Limits, NamedLimit, Options};
 use crate::scene::Scene;
@@ -96,7 +96,7 @@ impl Tracing {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let mut scene = crate::load::load_with(&self.scene, &self.loading.options(self.size))?;
         if self.strict {
-            loss::check_strictly(&scene, &self.scene)?;
+            load_report::check_strictly(&scene, &self.scene)?;
         }
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);

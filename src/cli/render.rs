@@ -15,7 +15,7 @@ use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, Tone, detail};
+use crate::scene::{Adaptive, FilmSettings, Scene, Tone, precision_warnings};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -59,7 +59,7 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let mut warnings = scene.warnings.clone();
     let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(detail::lost(&first, f32_rays));
+    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
     warnings.extend(oddities(&first, camera, view, &done));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));

@@ -3,16 +3,16 @@
 use glam::Vec3;
 
 use crate::geometry::{Geometry, Hit};
-use crate::integrator::counts::WorkCounts;
-use crate::scene::{Finish, Material, Mesh, Scene};
+use crate::integrator::counts::FeatureCounts;
+use crate::scene::{Material, Mesh, Scene, ShadingParams};
 use crate::shading::Reflectance;
-use crate::surface::{self, Detail};
+use crate::surface::{self, TextureContext};
 
 /// A material as it looks where no texture, checker or vertex colour tells otherwise.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct CachedMaterial {
     /// What it does with light.
-    pub finish: Finish,
+    pub finish: ShadingParams,
     /// What of the light it scatters, less what is seen in it and through it.
     pub reflectance: Reflectance,
     /// Whether all of it is finite.
@@ -27,12 +27,12 @@ pub(super) struct Look {
     pub is_followed: bool,
 }
 
-impl Look {
+impl CachedMaterial {
     pub fn of(scene: &Scene, material: &Material) -> Self {
         // A material that nothing is made of may have pictures that were not read.
         let finish = match material.is_textured() {
-            true => material.finish(),
-            false => surface::finish(scene, material, &Detail::default()),
+            true => material.shading_params(),
+            false => surface::shading_params(scene, material, &TextureContext::default()),
         };
         let reflectance = scattered(&finish);
         Self {
@@ -42,13 +42,13 @@ impl Look {
             shines: reflectance.specular != Vec3::ZERO || material.metallic.is_some(),
             is_textured: material.is_textured(),
             has_normals: material.normal_map.is_some(),
-            is_followed: material.is_followed(),
+            is_followed: material.spawns_rays(),
         }
     }
 }
 
 /// What of the light a surface scatters: of the share that is neither reflected nor let through.
-pub(super) fn scattered(finish: &Finish) -> Reflectance {
+pub(super) fn scattered(finish: &ShadingParams) -> Reflectance {
     let rest = (Vec3::ONE - finish.reflect - finish.transmit).max(Vec3::ZERO);
     Reflectance {
         diffuse: finish.diffuse * rest,
@@ -58,14 +58,14 @@ pub(super) fn scattered(finish: &Finish) -> Reflectance {
 }
 
 /// Which planes and meshes are asked for details of their points.
-pub(super) struct Details {
+pub(super) struct GeometryDetails {
     /// For a checker, each plane.
     planes: Vec<bool>,
     /// For colours of their vertices, each mesh.
     meshes: Vec<bool>,
 }
 
-impl Details {
+impl GeometryDetails {
     pub fn of(scene: &Scene) -> Self {
         let checkers = scene.planes.iter().map(|plane| plane.checker.is_some());
         let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
@@ -75,7 +75,7 @@ impl Details {
 
     /// Whether what was hit, whose material looks like this, is asked for any.
     #[inline(always)]
-    pub fn are_asked(&self, look: &Look, hit: &Hit) -> bool {
+    pub fn are_asked(&self, look: &CachedMaterial, hit: &Hit) -> bool {
         look.is_textured || look.has_normals || self.of_geometry(hit)
     }
 
@@ -89,7 +89,7 @@ impl Details {
     }
 
     /// Counts what is asked for.
-    pub fn count(&self, look: &Look, hit: &Hit, work: &mut WorkCounts) {
+    pub fn count(&self, look: &CachedMaterial, hit: &Hit, work: &mut FeatureCounts) {
         work.uv += u64::from(look.is_textured);
         let of_kind = match hit.id.geometry {
             Geometry::Planes => &mut work.checkers,

@@ -2,7 +2,7 @@
 //! feature that the scene does not have costs nothing.
 
 use super::*;
-use envers::scene::Work;
+use envers::scene::Feature;
 
 /// A mesh that stands once, and a material with a picture that nothing is made of.
 const PLAIN: &str = r##"
@@ -72,7 +72,7 @@ impl OutOfSight {
         Self { point: [0.0, 0.0, -8.0], plane: [0.0, 0.0, -40.0], normal: [0.0, 0.0, 1.0] };
 
     /// What needs a feature, as tables of a scene file.
-    fn tables(&self, work: Work) -> String {
+    fn tables(&self, work: Feature) -> String {
         let Self { point: at, plane, normal } = self;
         let material = |keys: &str| format!("[[material]]\nname = \"needless\"\n{keys}\n");
         let sphere = format!("[[sphere]]\ncenter = {at:?}\nradius = 0.5\n");
@@ -83,26 +83,26 @@ impl OutOfSight {
         let plane =
             format!("[[plane]]\npoint = {plane:?}\nnormal = {normal:?}\ncasts_shadow = false\n");
         match work {
-            Work::Spheres => sphere,
-            Work::Instances => model("needless.obj") + &model("needless.obj"),
-            Work::Planes => plane,
-            Work::Pictures | Work::Uv => made_of("diffuse_map = \"wood.png\""),
-            Work::Mipmaps => made_of("diffuse_map = \"wood.png\"\nfilter = \"mipmap\""),
-            Work::NormalMaps => made_of("normal_map = \"wood.png\""),
-            Work::AlphaTests => {
+            Feature::Spheres => sphere,
+            Feature::Instances => model("needless.obj") + &model("needless.obj"),
+            Feature::Planes => plane,
+            Feature::Pictures | Feature::Uv => made_of("diffuse_map = \"wood.png\""),
+            Feature::Mipmaps => made_of("diffuse_map = \"wood.png\"\nfilter = \"mipmap\""),
+            Feature::NormalMaps => made_of("normal_map = \"wood.png\""),
+            Feature::AlphaTests => {
                 material("diffuse_map = \"holes.png\"\nalpha_mode = \"mask\"")
                     + &model("needless.obj")
                     + "material = \"needless\"\n"
             }
-            Work::Checkers => plane + "checker = { colors = [0.2, 0.7], size = 0.5 }\n",
-            Work::VertexColors => model("colored.obj"),
-            Work::SmoothNormals => model("smooth.obj"),
-            Work::Highlights => made_of("specular = 0.5"),
-            Work::Shadows => {
+            Feature::Checkers => plane + "checker = { colors = [0.2, 0.7], size = 0.5 }\n",
+            Feature::VertexColors => model("colored.obj"),
+            Feature::SmoothNormals => model("smooth.obj"),
+            Feature::Highlights => made_of("specular = 0.5"),
+            Feature::Shadows => {
                 format!("[[light]]\nkind = \"point\"\nposition = {at:?}\nintensity = 0\n")
             }
-            Work::Reflection => made_of("reflect = 0.5"),
-            Work::Refraction => made_of("transmit = 0.5"),
+            Feature::Reflection => made_of("reflect = 0.5"),
+            Feature::Refraction => made_of("transmit = 0.5"),
         }
     }
 }
@@ -128,7 +128,7 @@ fn assert_same(folder: &Folder, out_of_sight: &OutOfSight, flags: &str) {
     for backend in backends() {
         let flags = format!("--precision certified --backend {backend} --spp 1 {flags}");
         folder.run(&format!("render scene.toml -o without.exr {flags}")).good();
-        let tables = Work::ALL.map(|work| (work.name(), out_of_sight.tables(work)));
+        let tables = Feature::ALL.map(|work| (work.name(), out_of_sight.tables(work)));
         // One material is as good as another: the names must differ.
         let all = tables
             .iter()
@@ -188,7 +188,7 @@ fn each_feature_out_of_sight_is_one_that_the_scene_needs() {
     let folder = plain();
     write_needless_files(&folder);
     let plain = PLAIN.to_owned() + "shadow = false\n";
-    for work in Work::ALL {
+    for work in Feature::ALL {
         let needs = |scene: String| {
             folder.write("scene.toml", scene);
             let info = folder.run("info scene.toml --json -").good().json();
@@ -210,18 +210,18 @@ fn trees_planes_pictures_and_normals_are_made_for_features_out_of_sight() {
     write_needless_files(&folder);
     let plain = PLAIN.to_owned() + "shadow = false\n";
     for backend in backends() {
-        let done = |scene: &str, kind: Work| {
+        let done = |scene: &str, kind: Feature| {
             folder.write("scene.toml", scene);
             let count = &work(&folder, &format!("--backend {backend}"))[kind.name()];
             count.as_u64().unwrap_or_else(|| panic!("{} is not counted", kind.name())) > 0
         };
-        for kind in Work::ALL {
+        for kind in Feature::ALL {
             let is_done_anyway = match kind {
-                Work::Spheres | Work::Planes | Work::Pictures => true,
-                Work::AlphaTests | Work::SmoothNormals => true,
+                Feature::Spheres | Feature::Planes | Feature::Pictures => true,
+                Feature::AlphaTests | Feature::SmoothNormals => true,
                 // The BVH always has a level of instances.
-                Work::Instances if *backend == "rust" => continue,
-                Work::Instances => true,
+                Feature::Instances if *backend == "rust" => continue,
+                Feature::Instances => true,
                 _ => false,
             };
             let with = plain.clone() + &OutOfSight::BEHIND_PLAIN.tables(kind);
@@ -236,7 +236,8 @@ fn trees_planes_pictures_and_normals_are_made_for_features_out_of_sight() {
 fn no_spheres_make_no_user_geometry() {
     let folder = plain();
     assert_eq!(work(&folder, "")["spheres"], 0);
-    folder.write("scene.toml", PLAIN.to_owned() + &OutOfSight::BEHIND_PLAIN.tables(Work::Spheres));
+    folder
+        .write("scene.toml", PLAIN.to_owned() + &OutOfSight::BEHIND_PLAIN.tables(Feature::Spheres));
     assert_eq!(work(&folder, "")["spheres"], 1);
     assert_eq!(work(&Folder::with(SPHERE), "")["spheres"], 1);
 }
@@ -259,7 +260,10 @@ fn meshes_that_stand_once_make_no_instances() {
 fn pictures_that_nothing_shows_are_not_read() {
     let folder = plain();
     assert_eq!(work(&folder, "")["pictures"], 0);
-    folder.write("scene.toml", PLAIN.to_owned() + &OutOfSight::BEHIND_PLAIN.tables(Work::Pictures));
+    folder.write(
+        "scene.toml",
+        PLAIN.to_owned() + &OutOfSight::BEHIND_PLAIN.tables(Feature::Pictures),
+    );
     assert_eq!(work(&folder, "")["pictures"], 1);
     folder.write("scene.toml", PLAIN.replace("rotate =", "material = \"unused\"\nrotate ="));
     assert_eq!(work(&folder, "")["pictures"], 1);
@@ -297,7 +301,7 @@ fn statistics_say_why_work_is_skipped() {
     assert_eq!(stats["skipped"]["pictures"], "0 of 1 pictures are on a material in use");
     assert!(stats["skipped"]["shadows"].is_null());
     let again = "\n[[model]]\nfile = \"tetrahedron.obj\"\ntranslate = [7, 5, 10]\n";
-    let sphere = OutOfSight::BEHIND_PLAIN.tables(Work::Spheres);
+    let sphere = OutOfSight::BEHIND_PLAIN.tables(Feature::Spheres);
     folder.write("scene.toml", PLAIN.to_owned() + again + &sphere);
     let stats = folder.run("render scene.toml -o a.png --stats -").good().json();
     assert!(stats["skipped"]["spheres"].is_null() && stats["skipped"]["instances"].is_null());
