@@ -262,7 +262,7 @@ fn picture(seed: u64) -> Scene {
     scene
 }
 
-/// Who must equal the oracle.
+/// The intersectors that must equal the oracle.
 fn certified(scene: &Scene) -> Vec<Box<dyn Intersector + '_>> {
     vec![
         Box::new(Bvh::build(scene, Precision::Certified)),

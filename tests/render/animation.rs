@@ -1,4 +1,4 @@
-//! What moves: the eclipses of the tutorial's VI.4, and frames that share what was built.
+//! Animation: the eclipses of the tutorial's VI.4, and frames that share what was built.
 
 use std::path::Path;
 
@@ -34,13 +34,13 @@ fn frames(scene: &Scene) -> impl Iterator<Item = (u32, Scene)> {
     (1..=animation.frames).map(|frame| (frame, scene.at(animation.time(frame)).unwrap()))
 }
 
-/// Where the light stands, from which the shadows fall.
+/// Returns the position of the light, from which the shadows fall.
 fn light(scene: &Scene) -> DVec3 {
     let LightKind::Point { position, .. } = scene.lights[0].kind else { panic!("a point light") };
     position
 }
 
-/// By how much the cones of two spheres, seen from the light, overlap: the sum of their angular
+/// Returns the overlap of the cones of two spheres, seen from the light: the sum of their angular
 /// radii less the angle between their centres, in radians.
 fn overlap(scene: &Scene, a: usize, b: usize) -> f64 {
     let seen = |s: &Sphere| {
@@ -86,7 +86,7 @@ fn points(scene: &Scene, of: usize, by: usize) -> Vec<DVec3> {
     spread.filter(faces).chain([nearest]).collect()
 }
 
-/// Whether anything stands between the light and a point of the sphere, a millionth above it.
+/// True if anything stands between the light and a point of the sphere, a millionth above it.
 fn is_shadowed(intersector: &dyn Intersector, scene: &Scene, of: usize, points: &[DVec3]) -> bool {
     let center = scene.spheres[of].center;
     let above = |p: &DVec3| center + (*p - center) * (1.0 + 1e-6);

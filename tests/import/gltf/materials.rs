@@ -38,7 +38,7 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Scene {
     model.load().unwrap()
 }
 
-/// What the material does with light, at a point of this vertex colour.
+/// Returns the shading parameters of the material at a point of this vertex colour.
 fn tinted(scene: &Scene, tint: Vec3) -> ShadingParams {
     assert_eq!(scene.warnings, [""; 0]);
     surface::shading_params(
