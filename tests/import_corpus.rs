@@ -68,7 +68,7 @@ const OBJ: &[(&str, Expected)] = &[
 
 fn check(path: &Path, expected: Expected) {
     let name = path.display();
-    match (envers::load::load(path), expected) {
+    match (envers::load(path), expected) {
         (Ok(scene), Ok(triangles)) => {
             assert_eq!(scene.triangle_count(), triangles, "{name}: {:?}", scene.warnings);
         }
@@ -129,7 +129,7 @@ fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
     let Some(corpus) = corpus() else { return };
     let mut faces = 0;
     for path in files(&corpus, &["gltf", "glb", "obj"]) {
-        let Ok(scene) = envers::load::load(&path) else { continue };
+        let Ok(scene) = envers::load(&path) else { continue };
         let report = &scene.report;
         assert!(report.balances(), "{}: {report}", path.display());
         let mut shown: Vec<_> = scene.instances.iter().map(|i| i.mesh).collect();
@@ -244,7 +244,7 @@ fn files_that_khronos_validator_finds_valid_load_without_complaint() {
         if !codes.is_empty() || bufferless {
             continue;
         }
-        match envers::load::load(&path) {
+        match envers::load(&path) {
             Ok(scene) => {
                 let complaint = scene.warnings.iter().find(|w| w.contains("not valid glTF"));
                 assert_eq!(complaint, None, "{}", path.display());
@@ -259,7 +259,7 @@ fn files_in_which_khronos_validator_finds_errors_are_refused_or_warned_of() {
     let Some(corpus) = corpus() else { return };
     let mut excused = BTreeSet::new();
     for (path, codes) in judged(&corpus) {
-        let Ok(scene) = envers::load::load(&path) else { continue };
+        let Ok(scene) = envers::load(&path) else { continue };
         // That a file shows nothing says nothing of its faults.
         let mut warnings = scene.warnings.iter().filter(|w| !w.contains("there is no triangle"));
         if codes.is_empty() || warnings.next().is_some() {
