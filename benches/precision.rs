@@ -30,13 +30,13 @@ type Triangle = [DVec3; 3];
 // one number, so that none is dropped; what is not certain is NaN.
 
 #[inline(always)]
-fn plain_line(s: &Sphere, (o, d, inverse): Line) -> sphere::Line {
-    sphere::Line::new(s.center, s.radius, o, d, inverse)
+fn plain_line(s: &Sphere, (o, d, inverse): Line) -> sphere::Quadratic {
+    sphere::Quadratic::new(s.center, s.radius, o, d, inverse)
 }
 
 #[inline(always)]
-fn sure_line(s: &Sphere, (o, d, inverse): Line) -> sure_sphere::Line {
-    sure_sphere::Line::new(s.center, s.radius, o, d, inverse)
+fn sure_line(s: &Sphere, (o, d, inverse): Line) -> sure_sphere::QuadraticBound {
+    sure_sphere::QuadraticBound::new(s.center, s.radius, o, d, inverse)
 }
 
 /// Any: whether a root must be computed.

@@ -24,7 +24,7 @@ use std::time::Instant;
 use bare::{Bare, Packet, Shapes, packets};
 use clock::median;
 use embree4_sys::RTCBuildQuality;
-use envers::intersect::{Builder, Precision};
+use envers::intersect::{IntersectorBuilder, Precision};
 use envers::render::{self, Options};
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -111,7 +111,8 @@ fn bare_work(
 ) -> impl Fn() -> Parts {
     let scene = envers::load::load(scene).unwrap();
     let options = Options::default();
-    let intersector = Builder::new(Default::default(), Precision::Fast, 0).build(&scene).unwrap();
+    let intersector =
+        IntersectorBuilder::new(Default::default(), Precision::Fast, 0).build(&scene).unwrap();
     let recorder = Recorder::new(&*intersector);
     render::with_intersector(&scene, &options, &recorder, &|_| {});
     let center = scene.bounds().center();

@@ -10,7 +10,7 @@ use std::path::Path;
 use envers::film::Film;
 use envers::load;
 use envers::render::{Options, render};
-use envers::scene::{Camera, Lens, Light, LightKind, Shadow};
+use envers::scene::{Camera, Light, LightKind, Projection, Shadow};
 use envers::write::Settings;
 use glam::{DVec3, Vec3};
 use image::imageops::{FilterType, replace, resize};
@@ -68,7 +68,7 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     let at = |i: usize| model["camera"]["translation"][i].as_f64().unwrap_or(0.0);
     let eye = DVec3::new(at(0), at(1), at(2));
     // Theirs are made by Babylon.js, whose cameras see 0.8 radians unless told otherwise.
-    scene.cameras = vec![Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.8))?];
+    scene.cameras = vec![Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8))?];
     scene.lights = vec![
         light(LightKind::Directional { direction: DVec3::new(0.3, -0.8, -0.5).normalize() }, 0.6),
         light(LightKind::Directional { direction: DVec3::new(-0.2, 0.1, -1.0).normalize() }, 0.4),

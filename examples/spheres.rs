@@ -7,7 +7,7 @@ use std::path::Path;
 use envers::error::Result;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Checker, Falloff, Lens, Light, LightKind, Material, Plane, Scene, Shadow, Sphere,
+    Camera, Checker, Falloff, Light, LightKind, Material, Plane, Projection, Scene, Shadow, Sphere,
 };
 use envers::write::{Settings, write};
 use glam::{DVec3, Vec3};
@@ -48,7 +48,7 @@ fn main() -> Result<()> {
         shadow: Shadow::None,
     });
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
-    scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(0.6))?);
+    scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Projection::FovY(0.6))?);
 
     let rendering = render(&scene, &Options::default(), &|_| {})?;
     std::fs::create_dir_all("out").ok();

@@ -8,10 +8,12 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, Scratch, Seen, Tiling};
-use crate::intersect::{Backend, BuildQuality, Builder, Built, Intersector, Precision};
+use crate::integrator::{Counts, Integrator, PixelRecord, Scratch, Tiling};
+use crate::intersect::{
+    Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
+};
+use crate::scene::Scene;
 use crate::scene::animation::Poses;
-use crate::scene::{Scene, Skips};
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,8 +32,6 @@ pub struct Options {
     pub view: View,
     /// How it is cut into batches.
     pub tiling: Tiling,
-    /// Which work is left out where the scene has no need of it.
-    pub skips: Skips,
 }
 
 /// A picture, and what it took.
@@ -57,7 +57,7 @@ pub struct Statistics {
     /// Rays and other counts.
     pub counts: Counts,
     /// What was built for the intersector, and what was kept.
-    pub built: Built,
+    pub built: BuildStats,
     /// Time to build the intersector.
     pub build: Duration,
     /// Time from the first ray to the last pixel.
@@ -73,7 +73,7 @@ impl Statistics {
             quality: None,
             threads: options.threads,
             counts: Counts::default(),
-            built: Built::default(),
+            built: BuildStats::default(),
             build: Duration::ZERO,
             render: Duration::ZERO,
         }
@@ -107,12 +107,11 @@ pub fn render(
     let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
-        let mut builder = Builder::new(options.backend, options.precision, threads)
-            .with_quality(quality(scene, options))
-            .skipping(options.skips);
+        let mut builder = IntersectorBuilder::new(options.backend, options.precision, threads)
+            .with_quality(quality(scene, options));
         let start = Instant::now();
         let intersector = builder.build(scene)?;
-        let made = Made::new(start, &builder, builder.built());
+        let made = Made::new(start, &builder, builder.stats());
         Ok(picture(scene, options, &*intersector, made, progress))
     })
 }
@@ -139,11 +138,15 @@ pub fn render_frames(
         let threads = rayon::current_num_threads();
         let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
         let mut builder = match moves {
-            true => Builder::for_frames(backend, precision, threads, scene.bounds_over_time()),
-            false => Builder::new(backend, precision, threads),
+            true => IntersectorBuilder::for_frames(
+                backend,
+                precision,
+                threads,
+                scene.bounds_over_time(),
+            ),
+            false => IntersectorBuilder::new(backend, precision, threads),
         }
-        .with_quality(quality(scene, options))
-        .skipping(options.skips);
+        .with_quality(quality(scene, options));
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
         let mut poses = Poses::new(scene);
@@ -155,17 +158,17 @@ pub fn render_frames(
             let posed = poses.scene();
             let share = |of_frame: f32| progress((i as f32 + of_frame) / times.len() as f32);
             let start = Instant::now();
-            let before = builder.built();
+            let before = builder.stats();
             let rendering = if moves {
                 let intersector = builder.build(posed)?;
-                let made = Made::new(start, &builder, builder.built() - before);
+                let made = Made::new(start, &builder, builder.stats() - before);
                 picture(posed, options, &*intersector, made, &share)
             } else if let Some(intersector) = &still {
-                let made = Made::new(start, &builder, Built::kept(before.meshes));
+                let made = Made::new(start, &builder, BuildStats::kept(before.meshes));
                 picture(posed, options, &**intersector, made, &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);
-                let made = Made::new(start, &builder, builder.built());
+                let made = Made::new(start, &builder, builder.stats());
                 picture(posed, options, &**intersector, made, &share)
             };
             each(i, rendering)?;
@@ -177,12 +180,12 @@ pub fn render_frames(
 /// How an intersector was made.
 struct Made {
     quality: Option<BuildQuality>,
-    built: Built,
+    built: BuildStats,
     took: Duration,
 }
 
 impl Made {
-    fn new(start: Instant, builder: &Builder, built: Built) -> Self {
+    fn new(start: Instant, builder: &IntersectorBuilder, built: BuildStats) -> Self {
         Self { quality: builder.quality(), built, took: start.elapsed() }
     }
 }
@@ -235,8 +238,8 @@ pub fn with_intersector(
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
-    let Options { view, tiling, skips, .. } = *options;
-    let integrator = Integrator::new(scene, intersector, camera, view, tiling, skips);
+    let Options { view, tiling, .. } = *options;
+    let integrator = Integrator::new(scene, intersector, camera, view, tiling);
     let rows = tiling.rows;
     let strip = size[0] as usize * rows;
     let strips = film.pixels.len().div_ceil(strip);
@@ -249,15 +252,15 @@ pub fn with_intersector(
         progress(done as f32 / (passes * strips) as f32);
     };
     let start = Instant::now();
-    let mut seen = vec![Seen::default(); if passes == 2 { film.pixels.len() } else { 0 }];
-    let mut of_strips: Vec<&mut [Seen]> = seen.chunks_mut(strip).collect();
+    let mut seen = vec![PixelRecord::default(); if passes == 2 { film.pixels.len() } else { 0 }];
+    let mut of_strips: Vec<&mut [PixelRecord]> = seen.chunks_mut(strip).collect();
     of_strips.resize_with(strips, Default::default);
     let first_pass = film.pixels.par_chunks_mut(strip).zip(of_strips).enumerate();
     first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, seen))| {
         tell(integrator.strip(i * rows, pixels, seen, scratch));
     });
     if passes == 2 {
-        let doubtful = integrator.doubtful(&film.pixels, &seen);
+        let doubtful = integrator.pixels_to_refine(&film.pixels, &seen);
         let pixels = film.pixels.par_chunks_mut(strip).enumerate();
         let parts = pixels.zip(seen.par_chunks(strip).zip(doubtful.par_chunks(strip)));
         parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (seen, doubtful))| {

@@ -1,23 +1,23 @@
 //! What a hit means: position, normals, texture coordinates, material, side; and the rays that
 //! leave it.
 
-mod detail;
-mod finish;
 mod footprint;
-mod lanes;
 mod normal_map;
+mod shading_params;
+mod surface16;
 #[cfg(test)]
 mod tests;
+mod texture_context;
 
 use glam::{DMat3, DVec3};
 
 use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
-use crate::scene::{Arrival, MaterialId, Scene};
-pub use detail::Detail;
-pub use finish::{finish, occlusion};
-pub use footprint::{Cone, Footprint, curvature};
-pub use lanes::{Kinds, Surfaces};
+use crate::scene::{IncidentLight, MaterialId, Scene};
+pub use footprint::{Footprint, RayCone, curvature};
 pub use normal_map::mapped_normal;
+pub use shading_params::{occlusion, shading_params};
+pub use surface16::{GeometryKinds, Surface16};
+pub use texture_context::TextureContext;
 
 /// The point of a surface that a ray hit.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,9 @@ impl Surface {
         // A sphere that was gone into is left, though a ray that only touches it does both at one
         // point, where its direction tells nothing.
         let is_left = id.geometry == Geometry::Spheres
-            && ray.past.is_some_and(|past| past.through == Departure { id, side: Side::Back });
+            && ray
+                .continuation
+                .is_some_and(|past| past.crossed == Departure { id, side: Side::Back });
         if is_left || surface.geometric_normal.dot(ray.direction) > 0.0 {
             surface.side = Side::Back;
             let outside_only = id.geometry == Geometry::Spheres
@@ -75,15 +77,15 @@ impl Surface {
 
     /// The ray that asks whether the light of `arrival` is in sight; it leaves the surface on the
     /// light's side.
-    pub fn shadow_ray(&self, arrival: &Arrival) -> Ray {
+    pub fn shadow_ray(&self, arrival: &IncidentLight) -> Ray {
         let front = self.geometric_normal.dot(arrival.toward) > 0.0;
         let side = if front { Side::Front } else { Side::Back };
         Ray {
             origin: self.position,
             direction: arrival.toward,
             tmax: if arrival.bounded { 1.0 } else { f64::INFINITY },
-            from: Some(Departure { id: self.id, side }),
-            past: None,
+            departure: Some(Departure { id: self.id, side }),
+            continuation: None,
         }
     }
 }
@@ -120,7 +122,7 @@ fn on_the_plane(point: DVec3, normal: DVec3, position: DVec3) -> DVec3 {
 
 fn on_triangle(scene: &Scene, hit: &Hit) -> Surface {
     let material = scene.instances[hit.id.instance as usize].material;
-    let (position, geometric) = flat_face(scene.triangle(hit.id), hit.u, hit.v);
+    let (position, geometric) = flat_face(scene.triangle_vertices(hit.id), hit.u, hit.v);
     let normal = smooth_normal(scene, hit, geometric).unwrap_or(geometric);
     Surface { normal, ..base(hit.id, position, geometric, material) }
 }

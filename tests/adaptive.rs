@@ -1,7 +1,7 @@
 //! Adaptive samples: more where neighbouring ones disagree, wherever tiles and strips begin.
 
 use envers::film::Film;
-use envers::integrator::{Counts, Tiling, WorkCounts, sample_steps};
+use envers::integrator::{Counts, FeatureCounts, Tiling, sample_steps};
 use envers::intersect::{Backend, Precision};
 use envers::load;
 use envers::render::{Options, render};
@@ -37,7 +37,7 @@ fn regular(scene: &Scene, spp: u32) -> Scene {
 fn made(scene: &Scene, options: &Options) -> (Film, Counts) {
     let options = Options { precision: Precision::Certified, ..options.clone() };
     let rendering = render(scene, &options, &|_| {}).unwrap();
-    let counts = Counts { work: WorkCounts::default(), ..rendering.statistics.counts };
+    let counts = Counts { work: FeatureCounts::default(), ..rendering.statistics.counts };
     (rendering.film, counts)
 }
 

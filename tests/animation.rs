@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use envers::geometry::{Bounds, Ray};
-use envers::intersect::{Backend, Builder, Built, Coherence, Intersector, Precision};
+use envers::intersect::{
+    Backend, BuildStats, Coherence, Intersector, IntersectorBuilder, Precision,
+};
 use envers::render::{Options, render, render_frames};
 use envers::scene::animation::{
-    Anchor, Animation, Curve, Interpolation, Keys, Motion, Mover, Node, Orbit,
+    Anchor, Animated, Animation, Curve, Interpolation, Keyframes, Motion, Node, Orbit,
 };
 use envers::scene::{
-    Camera, Instance, Lens, Light, LightKind, MaterialId, Mesh, Scene, Shadow, Sphere,
+    Camera, Instance, Light, LightKind, MaterialId, Mesh, Projection, Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -88,7 +90,7 @@ fn points(scene: &Scene, of: usize, by: usize) -> Vec<DVec3> {
 fn is_shadowed(intersector: &dyn Intersector, scene: &Scene, of: usize, points: &[DVec3]) -> bool {
     let center = scene.spheres[of].center;
     let above = |p: &DVec3| center + (*p - center) * (1.0 + 1e-6);
-    let rays: Vec<Ray> = points.iter().map(|p| Ray::between(above(p), light(scene))).collect();
+    let rays: Vec<Ray> = points.iter().map(|p| Ray::segment(above(p), light(scene))).collect();
     let mut blocked = vec![false; rays.len()];
     intersector.occluded(&rays, Coherence::Coherent, &mut blocked);
     blocked.contains(&true)
@@ -190,9 +192,9 @@ fn workshop() -> Scene {
         shadow: Shadow::default(),
     });
     let eye = DVec3::new(0.5, 2.0, 6.0);
-    scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.8)).unwrap());
+    scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8)).unwrap());
     let mut animation = Animation::new(6, 24.0);
-    let mut keys = Keys::still();
+    let mut keys = Keyframes::still();
     keys.translation = Curve {
         times: vec![0.0, 0.25],
         values: vec![DVec3::new(-1.0, 0.0, 0.0), DVec3::new(-1.3, 0.7, 0.4)],
@@ -201,7 +203,7 @@ fn workshop() -> Scene {
     let place = DAffine3::IDENTITY;
     let node = animation.add_node(Node { parent: None, place, motion: Motion::Keys(keys) });
     let transform = DAffine3::IDENTITY;
-    animation.movers.push(Mover::Instance { instance: 1, node, transform });
+    animation.movers.push(Animated::Instance { instance: 1, node, transform });
     let round = Orbit {
         around: Anchor::fixed(DVec3::ZERO),
         center: DVec3::ZERO,
@@ -212,7 +214,7 @@ fn workshop() -> Scene {
     };
     let node = animation.add_node(Node { parent: None, place, motion: Motion::Orbit(round) });
     let (center, radius) = (scene.spheres[0].center, None);
-    animation.movers.push(Mover::Sphere { sphere: 0, node: Some(node), center, radius });
+    animation.movers.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
     scene.animation = Some(animation);
     scene
 }
@@ -246,8 +248,8 @@ fn backends() -> Vec<(Backend, Precision)> {
 }
 
 /// The films of all frames, and what was built for them.
-fn rendered(scene: &Scene, times: &[f64], options: &Options) -> (Vec<Vec<[f32; 3]>>, Built) {
-    let (mut films, mut built) = (Vec::new(), Built::default());
+fn rendered(scene: &Scene, times: &[f64], options: &Options) -> (Vec<Vec<[f32; 3]>>, BuildStats) {
+    let (mut films, mut built) = (Vec::new(), BuildStats::default());
     render_frames(scene, times, options, &|_| {}, &mut |_, frame| {
         built += frame.statistics.built;
         films.push(frame.film.pixels);
@@ -276,7 +278,7 @@ fn each_mesh_is_built_once_for_all_frames() {
 fn nothing_is_built_again_where_only_the_camera_moves() {
     let mut scene = workshop();
     let animation = scene.animation.as_mut().unwrap();
-    animation.movers = vec![Mover::Camera {
+    animation.movers = vec![Animated::Camera {
         camera: 0,
         node: Some(envers::scene::animation::NodeId(1)),
         rest: scene.cameras[0].clone(),
@@ -293,7 +295,7 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
 }
 
 /// The counts of what was placed, in the first frame and again.
-fn places(built: Built) -> [u64; 5] {
+fn places(built: BuildStats) -> [u64; 5] {
     [built.tops, built.tops_kept, built.placed, built.moved, built.spheres_moved]
 }
 
@@ -347,7 +349,7 @@ fn a_frame_that_shares_meshes_is_the_frame_that_stands_alone() {
 fn a_scene_that_grows_is_placed_anew() {
     let mut scene = workshop();
     let movers = &mut scene.animation.as_mut().unwrap().movers;
-    let Mover::Sphere { radius, .. } = &mut movers[1] else { panic!("the sphere") };
+    let Animated::Sphere { radius, .. } = &mut movers[1] else { panic!("the sphere") };
     let (times, values) = (vec![0.0, 0.2], vec![0.4, 40.0]);
     *radius = Some(Curve { times, values, interpolation: Interpolation::Linear });
     assert!(assert_alone(&scene).iter().all(|&tops| tops > 1));
@@ -377,7 +379,7 @@ fn a_scene_that_is_still_traced_is_left_as_it_is() {
         [Ray::new(ball + DVec3::Y * 5.0, DVec3::NEG_Y)]
     };
     for (backend, precision) in backends() {
-        let mut builder = Builder::for_frames(backend, precision, 1, Bounds::EMPTY);
+        let mut builder = IntersectorBuilder::for_frames(backend, precision, 1, Bounds::EMPTY);
         let [one, two] = [&first, &second].map(|scene| builder.build(scene).unwrap());
         for (intersector, scene) in [(one, &first), (two, &second)] {
             let mut hits = [None];
@@ -414,7 +416,7 @@ fn a_mesh_in_the_place_of_another_is_not_taken_for_it() {
     scene.instances.truncate(1);
     let ray = [Ray::new(DVec3::new(0.1, 5.0, 0.1), DVec3::NEG_Y)];
     for (backend, precision) in backends() {
-        let mut builder = Builder::for_frames(backend, precision, 1, Bounds::EMPTY);
+        let mut builder = IntersectorBuilder::for_frames(backend, precision, 1, Bounds::EMPTY);
         let mut hit = |scene: &Scene| {
             let mut hits = [None];
             builder.build(scene).unwrap().closest(&ray, Coherence::Coherent, &mut hits);

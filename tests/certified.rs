@@ -112,7 +112,7 @@ fn at_triangles(scene: &Scene, seed: u64, count: usize) -> Vec<Ray> {
             let mesh = scene.instances[instance as usize].mesh.0;
             let count = scene.meshes[mesh as usize].triangles.len();
             let id = PrimitiveId::triangle(mesh, r.below(count) as u32, instance);
-            let [a, b, c] = scene.triangle(id);
+            let [a, b, c] = scene.triangle_vertices(id);
             match i % 6 {
                 0 => toward(&mut r, a, size),
                 1 => toward(&mut r, b.midpoint(c), size),
@@ -120,7 +120,7 @@ fn at_triangles(scene: &Scene, seed: u64, count: usize) -> Vec<Ray> {
                 // Along an edge, and within the plane.
                 3 => Ray::new(a - (b - a), b - a),
                 4 => Ray::new(a - (b - a) + (c - a) * 0.25, b - a),
-                _ => Ray::between(a + r.cube(size), c),
+                _ => Ray::segment(a + r.cube(size), c),
             }
         })
         .collect()
@@ -263,7 +263,7 @@ fn all_agree_on_a_touching_sphere_that_a_ray_enters_from_just_outside() {
     scene.spheres.push(Sphere::new(contact + DVec3::Y, 1.0, material));
     let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
     let rays = [3e-11, 1e-10, 5e-10].map(|below| Ray {
-        from,
+        departure: from,
         ..Ray::new(contact - DVec3::Y * below, DVec3::new(0.01, 1.0, 0.0))
     });
     assert_eq!(all_agree("touching", &scene, &rays, BUDGET), rays.len());
@@ -357,7 +357,7 @@ fn primary(scene: &Scene, width: u32) -> Vec<Ray> {
     let maker = scene.cameras[0].rays(size);
     (0..size[1])
         .flat_map(|y| (0..size[0]).map(move |x| (x, y)))
-        .map(|(x, y)| maker.through(f64::from(x) + 0.5, f64::from(y) + 0.5))
+        .map(|(x, y)| maker.ray(f64::from(x) + 0.5, f64::from(y) + 0.5))
         .collect()
 }
 

@@ -4,8 +4,8 @@ use envers::geometry::{Geometry, PrimitiveId};
 use envers::intersect::{Backend, Precision};
 use envers::render::{Options, Rendering, render};
 use envers::scene::{
-    Camera, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Plane, Scene,
-    Shadow, Sphere,
+    Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Plane, Projection,
+    Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
@@ -17,7 +17,7 @@ fn scene(eye: DVec3, target: DVec3) -> Scene {
     let diffuse = Vec3::splat(0.5);
     scene.add_material(Material { diffuse, double_sided: true, ..Material::default() });
     let up = if (target - eye).normalize().y.abs() > 0.9 { DVec3::X } else { DVec3::Y };
-    scene.cameras.push(Camera::look_at(eye, target, up, Lens::FovY(1.0)).unwrap());
+    scene.cameras.push(Camera::look_at(eye, target, up, Projection::FovY(1.0)).unwrap());
     scene
 }
 
@@ -221,7 +221,7 @@ fn first_of_coincident_surfaces_is_seen_in_certified() {
     scene.instances.push(scene.instances[0].clone());
     let rays = scene.cameras[0].rays(scene.film.size);
     let rays: Vec<_> =
-        (0..48 * 48).map(|i| rays.through(f64::from(i % 48), f64::from(i / 48))).collect();
+        (0..48 * 48).map(|i| rays.ray(f64::from(i % 48), f64::from(i / 48))).collect();
     for options in backends().filter(|o| o.precision == Precision::Certified) {
         let seen = |scene: &Scene| -> Vec<Option<PrimitiveId>> {
             let mut hits = vec![None; rays.len()];
@@ -263,7 +263,7 @@ fn point_where_a_ball_touches_its_ground_is_dark() {
     for options in backends() {
         let intersector = options.backend.build(&scene, options.precision, 1).unwrap();
         let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
-        let up = Ray { from, ..Ray::new(DVec3::ZERO, DVec3::new(0.1, 1.0, 0.2)) };
+        let up = Ray { departure: from, ..Ray::new(DVec3::ZERO, DVec3::new(0.1, 1.0, 0.2)) };
         let mut blocked = [false];
         intersector.occluded(&[up], envers::intersect::Coherence::Coherent, &mut blocked);
         assert_eq!(blocked, [true], "{options:?}");

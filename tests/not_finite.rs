@@ -4,8 +4,8 @@ use envers::integrator::NotFinite;
 use envers::intersect::Backend;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Falloff, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh, Scene, Shadow,
-    Sphere,
+    Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Projection, Scene,
+    Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -14,7 +14,7 @@ fn wall(material: Material) -> Scene {
     let mut scene = Scene::default();
     scene.add_material(material);
     scene.film.size = [1, 1];
-    let camera = Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, Lens::FovY(0.01));
+    let camera = Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, Projection::FovY(0.01));
     scene.cameras.push(camera.unwrap());
     let mesh = scene.add_mesh(Mesh {
         positions: vec![[-9., -9., 0.], [9., -9., 0.], [0., 9., 0.]],

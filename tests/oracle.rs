@@ -9,7 +9,7 @@ use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side, plane, sphere, tr
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::measure::oracle::{self, Oracle};
 use envers::render::{Options, with_intersector};
-use envers::scene::{Camera, Falloff, Lens, Light, LightKind, Scene, Shadow};
+use envers::scene::{Camera, Falloff, Light, LightKind, Projection, Scene, Shadow};
 use envers::write::Settings;
 use glam::DVec3;
 use proptest::prelude::*;
@@ -197,7 +197,7 @@ fn oracle_keeps_the_rule_for_leaving_a_sphere() {
     scene.spheres.push(envers::scene::Sphere::new(DVec3::ZERO, 1.0, material));
     let leaving = |side| {
         let from = Some(Departure { id: PrimitiveId::sphere(0), side });
-        let ray = Ray { from, ..Ray::new(v(1.0 - 1e-16, 0., 0.), v(-1., 0.5, 0.)) };
+        let ray = Ray { departure: from, ..Ray::new(v(1.0 - 1e-16, 0., 0.), v(-1., 0.5, 0.)) };
         let mut hits = [None];
         Oracle::new(&scene).closest(&[ray], Coherence::Incoherent, &mut hits);
         hits[0].map(|h| h.t)
@@ -242,7 +242,7 @@ fn picture(seed: u64) -> Scene {
     let mut scene = common::random_scene(seed, DVec3::ZERO, 2.0);
     scene.film.size = [72, 54];
     let position = v(1.0, 2.0, 7.0);
-    let lens = Lens::FovY(0.8);
+    let lens = Projection::FovY(0.8);
     scene.cameras.push(Camera::look_at(position, DVec3::ZERO, DVec3::Y, lens).unwrap());
     for kind in [
         LightKind::Directional { direction: v(0.0, -0.6, -0.8) },

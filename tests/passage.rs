@@ -30,7 +30,7 @@ fn crossings(scene: &Scene, intersector: &dyn Intersector, rays: &[Ray]) -> Vec<
             assert!(all[i].len() < 1000, "{ray:?} does not end");
             let side = Surface::new(scene, ray, hit).side;
             still.push(i);
-            next.push(ray.beyond(hit, side.opposite()));
+            next.push(ray.continue_past(hit, side.opposite()));
         }
         (open, ahead) = (still, next);
     }
@@ -93,7 +93,7 @@ fn occlusion_asks_only_about_what_lies_ahead() {
             let intersector = backend.build(&scene, precision, 1).unwrap();
             let blocked = |t: f64, side: Side| {
                 let hit = Hit { t, u: 0.0, v: 0.0, id: envers::geometry::PrimitiveId::sphere(0) };
-                let ray = Ray::new(DVec3::ZERO, DVec3::Z).beyond(&hit, side);
+                let ray = Ray::new(DVec3::ZERO, DVec3::Z).continue_past(&hit, side);
                 let mut blocked = [false];
                 intersector.occluded(&[ray], Coherence::Incoherent, &mut blocked);
                 blocked[0]
@@ -147,7 +147,7 @@ fn a_ray_that_left_a_surface_does_not_meet_it_after_it_went_through_another() {
     scene.spheres.push(Sphere::new(DVec3::Z * 4.0, 1.0, MaterialId(0)));
     let id = envers::geometry::PrimitiveId::sphere(0);
     let from = Some(Departure { id, side: Side::Front });
-    let ray = [Ray { from, ..Ray::new(DVec3::Z, DVec3::Z) }];
+    let ray = [Ray { departure: from, ..Ray::new(DVec3::Z, DVec3::Z) }];
     let default = Backend::default().build(&scene, Precision::Certified, 1).unwrap();
     let found = crossings(&scene, &*default, &ray);
     assert_eq!(found[0].iter().map(|h| h.t).collect::<Vec<_>>(), [2.0, 4.0]);

@@ -3,8 +3,8 @@
 use envers::integrator::Counts;
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Checker, Falloff, Filter, Instance, Lens, Light, LightKind, Material, MaterialId, Mesh,
-    Plane, Scene, Shadow, Sphere,
+    Camera, Checker, Falloff, Filter, Instance, Light, LightKind, Material, MaterialId, Mesh,
+    Plane, Projection, Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -14,7 +14,9 @@ fn scene(material: Material) -> Scene {
     scene.add_material(material);
     scene.film.size = [1, 1];
     let eye = DVec3::Z * 5.0;
-    scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.01)).unwrap());
+    scene
+        .cameras
+        .push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.01)).unwrap());
     scene
 }
 
@@ -268,7 +270,7 @@ fn ground_far_from_the_origin_does_not_shadow_itself() {
         let mut scene = scene(matt(0.5));
         scene.film.size = [64, 64];
         let at = DVec3::splat(offset);
-        let lens = Lens::FovY(0.8);
+        let lens = Projection::FovY(0.8);
         let eye = at + DVec3::new(0.0, 1.0, 4.0);
         scene.cameras = vec![Camera::look_at(eye, at, DVec3::Y, lens).unwrap()];
         scene.spheres.push(Sphere::new(at - DVec3::Y * 6.4e6, 6.4e6, MaterialId(0)));

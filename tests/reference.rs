@@ -85,7 +85,7 @@ fn the_knot_is_closed_and_winds_outward() {
 fn no_triangle_of_the_knot_is_degenerate() {
     let mesh = knot::mesh(knot::resolution(knot::TRIANGLES));
     for i in 0..mesh.triangles.len() as u32 {
-        let [a, b, c] = mesh.corners(i).map(|p| DVec3::from(p.map(f64::from)));
+        let [a, b, c] = mesh.triangle_vertices(i).map(|p| DVec3::from(p.map(f64::from)));
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let height = (b - a).cross(c - a).length() / longest;
         assert!(height > 1e-4, "triangle {i} is {longest} long and {height} high");
@@ -97,7 +97,7 @@ fn the_knot_stands_above_the_ground_and_beside_the_spheres() {
     let scene = m(30_000);
     let instance = &scene.instances[0];
     for p in &scene.meshes[0].positions {
-        let p = instance.bake(*p);
+        let p = instance.to_world(*p);
         assert!(p.y > 0.0, "{p}");
         for sphere in &scene.spheres {
             assert!(p.distance(sphere.center) > sphere.radius, "{p} is in {sphere:?}");

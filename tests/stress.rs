@@ -24,43 +24,43 @@ fn failing(method: Method, goal: Goal) -> Vec<Row> {
 
 #[test]
 fn sphere_distances_are_correctly_rounded() {
-    passes(Goal::G1, 200);
+    passes(Goal::SphereDistance, 200);
 }
 
 #[test]
 fn tangency_is_decided_exactly() {
-    passes(Goal::G2, 500);
+    passes(Goal::Tangency, 500);
 }
 
 #[test]
 fn trees_equal_brute_force() {
-    passes(Goal::G3, 300);
+    passes(Goal::Traversal, 300);
 }
 
 #[test]
 fn closed_meshes_do_not_leak() {
-    passes(Goal::G4, 200);
+    passes(Goal::Watertight, 200);
 }
 
 #[test]
 fn grazing_triangles_are_decided_exactly() {
-    passes(Goal::G5, 300);
+    passes(Goal::Grazing, 300);
 }
 
 #[test]
 fn spheres_do_not_shadow_themselves() {
-    passes(Goal::G6, 500);
+    passes(Goal::SelfShadow, 500);
 }
 
 #[test]
 fn pictures_do_not_depend_on_scale_threads_and_tiles() {
-    passes(Goal::G7, 1000);
+    passes(Goal::Invariance, 1000);
 }
 
 #[test]
 fn seed_decides_the_rows() {
     let rows = |seed| {
-        let goals = vec![Goal::G2];
+        let goals = vec![Goal::Tangency];
         stress(&Options { goals, rays: 20, seed, ..Options::default() }, &|_| {}).unwrap()
     };
     assert_eq!(rows(7), rows(7));
@@ -76,7 +76,7 @@ fn rounded(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
 
 #[test]
 fn distance_that_is_not_correctly_rounded_fails() {
-    let rows = failing(rounded, Goal::G1);
+    let rows = failing(rounded, Goal::SphereDistance);
     assert!(rows.iter().any(|row| row.tally.max_ulp > Some(0.5)), "\n{}", Table(&rows));
 }
 
@@ -85,7 +85,7 @@ fn distance_one_ulp_off_fails_in_every_cell_that_hits() {
     fn next(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
         envers::measure::stress::certified(center, radius, ray).map(f64::next_up)
     }
-    let failed = failing(next, Goal::G2).len();
+    let failed = failing(next, Goal::Tangency).len();
     assert_eq!(failed, 34, "of G2's 34 cells");
 }
 
@@ -96,7 +96,7 @@ fn hit_that_is_missed_fails() {
         envers::measure::stress::certified(center, radius * (1.0 - 1e-6), ray)
             .and(envers::measure::stress::certified(center, radius, ray))
     }
-    let rows = failing(blind, Goal::G2);
+    let rows = failing(blind, Goal::Tangency);
     assert!(rows.iter().any(|row| row.tally.misclassified > 0), "\n{}", Table(&rows));
 }
 
@@ -105,7 +105,7 @@ fn finished_cells_are_not_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("finished.jsonl");
     let options = Options {
-        goals: vec![Goal::G2],
+        goals: vec![Goal::Tangency],
         rays: 20,
         resume: Some(file.clone()),
         ..Options::default()
@@ -125,7 +125,7 @@ fn finished_cells_are_not_tried_again() {
 fn unfinished_last_line_is_tried_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("finished.jsonl");
-    let goals = vec![Goal::G2];
+    let goals = vec![Goal::Tangency];
     let options = Options { goals, rays: 20, resume: Some(file.clone()), ..Options::default() };
     let first = stress(&options, &|_| {}).unwrap();
     let kept = std::fs::read_to_string(&file).unwrap();

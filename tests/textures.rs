@@ -8,8 +8,8 @@ use envers::geometry::{Geometry, Hit, Ray};
 use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::render::{Options, render};
 use envers::scene::{
-    AlphaMode, Camera, Channel, Coverage, Filter, Image, Instance, Lens, Light, LightKind,
-    Material, MaterialId, Mesh, NormalMap, OcclusionMap, Plane, Scene, Shadow, Sphere, Texture,
+    AlphaMode, Camera, Channel, Coverage, Filter, Image, Instance, Light, LightKind, Material,
+    MaterialId, Mesh, NormalMap, OcclusionMap, Plane, Projection, Scene, Shadow, Sphere, Texture,
     TextureId, Transfer,
 };
 use glam::{DAffine3, DVec3, Vec3};
@@ -20,7 +20,9 @@ fn scene() -> Scene {
     scene.add_material(Material { diffuse: Vec3::ONE, ..Material::default() });
     scene.film.size = [1, 1];
     let eye = DVec3::Z * 5.0;
-    scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.01)).unwrap());
+    scene
+        .cameras
+        .push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.01)).unwrap());
     scene
 }
 
@@ -356,9 +358,9 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
     scene.planes.push(plane);
     scene.lights.push(ambient());
     let (eye, target) = (DVec3::new(0.0, 1.0, 0.0), DVec3::new(0.3, 0.7, 3.0));
-    scene
-        .cameras
-        .push(Camera::look_at(eye, target, DVec3::Y, Lens::FovY(45f64.to_radians())).unwrap());
+    scene.cameras.push(
+        Camera::look_at(eye, target, DVec3::Y, Projection::FovY(45f64.to_radians())).unwrap(),
+    );
     (scene.film.size, scene.film.spp) = ([160, 90], spp);
     let film = render(&scene, &Options { threads: 1, ..Options::default() }, &|_| {}).unwrap().film;
     (0..90)

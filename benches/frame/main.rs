@@ -17,7 +17,7 @@ use bare::{Bare, Packet, packets};
 use clock::{median, time};
 use envers::geometry::Ray;
 use envers::integrator::Tiling;
-use envers::intersect::{Builder, Precision};
+use envers::intersect::{IntersectorBuilder, Precision};
 use envers::render::{self, Options};
 use envers::scene::Scene;
 use rayon::prelude::*;
@@ -142,7 +142,9 @@ fn main() {
 
 fn measure(name: &str, scene: &Scene, settings: &Settings) {
     let build = |precision| {
-        Builder::new(Default::default(), precision, settings.threads).build(scene).unwrap()
+        IntersectorBuilder::new(Default::default(), precision, settings.threads)
+            .build(scene)
+            .unwrap()
     };
     if let Some(precision) = settings.ours {
         let (fast, options) = (build(precision), settings.options());

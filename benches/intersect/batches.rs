@@ -1,6 +1,6 @@
 //! Rays as the renderer hands them over: side by side, a tile at a time.
 
-use envers::geometry::{Hits, Ray, Rays};
+use envers::geometry::{HitBatch, Ray, RayBatch};
 use envers::intersect::{Coherence, Intersector};
 
 /// How many rays make a tile.
@@ -8,27 +8,27 @@ const TILE: usize = 1024;
 
 /// Rays in batches, and room for what they hit.
 pub struct Batches {
-    rays: Vec<Rays>,
-    hits: Hits,
+    rays: Vec<RayBatch>,
+    hits: HitBatch,
     blocked: Vec<bool>,
 }
 
 impl Batches {
     pub fn new(rays: &[Ray]) -> Self {
         let batch = |rays: &[Ray]| {
-            let mut batch = Rays::default();
+            let mut batch = RayBatch::default();
             batch.extend(rays);
             batch
         };
         let rays = rays.chunks(TILE).map(batch).collect();
-        Self { rays, hits: Hits::default(), blocked: Vec::new() }
+        Self { rays, hits: HitBatch::default(), blocked: Vec::new() }
     }
 
     /// How many hit anything.
     pub fn closest(&mut self, intersector: &dyn Intersector, coherence: Coherence) -> usize {
         let mut count = 0;
         for rays in &self.rays {
-            intersector.closest_of(rays, coherence, &mut self.hits);
+            intersector.closest_batch(rays, coherence, &mut self.hits);
             count += self.hits.count();
         }
         count
@@ -39,7 +39,7 @@ impl Batches {
     pub fn occluded(&mut self, intersector: &dyn Intersector) -> usize {
         let mut count = 0;
         for rays in &self.rays {
-            intersector.occluded_of(rays, Coherence::Coherent, &mut self.blocked);
+            intersector.occluded_batch(rays, Coherence::Coherent, &mut self.blocked);
             count += self.blocked.iter().filter(|&&blocked| blocked).count();
         }
         count

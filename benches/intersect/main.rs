@@ -19,7 +19,7 @@ use criterion::{Criterion, Throughput};
 use envers::geometry::Ray;
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
 use envers::render::{self, Options};
-use envers::scene::{Arrival, Scene};
+use envers::scene::{IncidentLight, Scene};
 use envers::surface::Surface;
 use glam::Vec3;
 
@@ -42,7 +42,7 @@ impl Case {
                 let surface = Surface::new(&scene, ray, hit.as_ref()?);
                 let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
-                let arrival = Arrival { toward, bounded: true, intensity: Vec3::ONE };
+                let arrival = IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
                 lit.then(|| surface.shadow_ray(&arrival))
             })
             .collect();

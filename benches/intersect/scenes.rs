@@ -1,7 +1,7 @@
 //! The two scenes of the benches, made by formula, and the rays of their pictures.
 
 use envers::geometry::Ray;
-use envers::scene::{Camera, Falloff, Instance, Lens, Light, LightKind, Shadow};
+use envers::scene::{Camera, Falloff, Instance, Light, LightKind, Projection, Shadow};
 use envers::scene::{Material, Scene, Sphere};
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -37,7 +37,7 @@ pub fn spheres() -> Scene {
 /// A scene with a camera, which looks at the origin, and the light.
 pub fn finish(mut scene: Scene, eye: DVec3) -> Scene {
     scene.film.size = SIZE;
-    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Lens::FovY(0.9));
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.9));
     scene.cameras.push(camera.expect("the eye is not at the origin"));
     scene.lights.push(Light {
         name: String::new(),
@@ -60,7 +60,7 @@ pub fn primary(scene: &Scene) -> Vec<Ray> {
     for y in (0..height).step_by(4) {
         for x in (0..width).step_by(4) {
             for (j, i) in (0..4).flat_map(|j| (0..4).map(move |i| (j, i))) {
-                rays.push(maker.through(f64::from(x + i) + 0.5, f64::from(y + j) + 0.5));
+                rays.push(maker.ray(f64::from(x + i) + 0.5, f64::from(y + j) + 0.5));
             }
         }
     }

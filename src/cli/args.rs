@@ -110,10 +110,6 @@ pub struct Render {
     /// Write what was counted and timed as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
-    /// Do this kind of work even where the scene has no need of it: to test that leaving it out
-    /// changes nothing; may be given several times
-    #[arg(long, value_name = "NAME", hide = true)]
-    pub no_skip: Vec<String>,
 }
 
 #[derive(Args)]

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::measure::bench::{self, Options, Samples, Setup};
 use crate::scene::check::MAX_SPP;
-use crate::scene::{Scene, detail};
+use crate::scene::{Scene, precision_warnings};
 use crate::write;
 
 /// The longer side of a quick picture, at most.
@@ -178,7 +178,7 @@ fn warnings(scene: &Scene, options: &Options) -> Vec<String> {
         .iter()
         .any(|setup| setup.backend.name() != "rust" && setup.precision == Precision::Fast);
     let mut warnings = scene.warnings.clone();
-    warnings.extend(detail::lost(scene, f32_rays));
+    warnings.extend(precision_warnings::precision_warnings(scene, f32_rays));
     warnings
 }
 

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use crate::cli::args::Info;
 use crate::cli::json::Geometry;
-use crate::cli::loss::{self, Loaded};
+use crate::cli::load_report::{self, Loaded};
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load;
-use crate::scene::animation::{Animation, Mover};
-use crate::scene::{Lens, LightKind, Needs, Scene, Skips, detail};
+use crate::scene::animation::{Animated, Animation};
+use crate::scene::{LightKind, Projection, Scene, SceneFeatures, precision_warnings};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -73,11 +73,11 @@ impl Motion {
         };
         for mover in &animation.movers {
             *match mover {
-                Mover::Sphere { .. } => &mut motion.spheres,
-                Mover::Instance { .. } => &mut motion.instances,
-                Mover::Mesh { .. } => &mut motion.meshes,
-                Mover::Light { .. } => &mut motion.lights,
-                Mover::Camera { .. } => &mut motion.cameras,
+                Animated::Sphere { .. } => &mut motion.spheres,
+                Animated::Instance { .. } => &mut motion.instances,
+                Animated::Mesh { .. } => &mut motion.meshes,
+                Animated::Light { .. } => &mut motion.lights,
+                Animated::Camera { .. } => &mut motion.cameras,
             } += 1;
         }
         motion
@@ -107,8 +107,7 @@ impl fmt::Display for Motion {
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
-    let scene =
-        load::load_with(&arguments.scene, &arguments.loading.options(None, Skips::default()))?;
+    let scene = load::load_with(&arguments.scene, &arguments.loading.options(None))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
     let summary = summarize(&scene.at(0.0)?, motion);
@@ -120,7 +119,7 @@ pub fn run(arguments: &Info) -> Outcome {
         output::write_json(path, &summary)?;
     }
     if arguments.strict {
-        loss::check_strictly(&scene, &arguments.scene)?;
+        load_report::check_strictly(&scene, &arguments.scene)?;
     }
     Ok(Verdict::Good)
 }
@@ -129,8 +128,9 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     let bounds = scene.bounds();
     // As the default of `render`: precision fast, on Embree where it is built in.
     let mut warnings = scene.warnings.clone();
-    warnings.extend(detail::lost(scene, Backend::default() != Backend::Rust));
-    let needs = Needs::of(scene, Skips::default());
+    warnings
+        .extend(precision_warnings::precision_warnings(scene, Backend::default() != Backend::Rust));
+    let needs = SceneFeatures::of(scene);
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
@@ -165,12 +165,12 @@ fn light_kind(kind: &LightKind) -> &'static str {
     }
 }
 
-fn lens(lens: &Lens) -> String {
+fn lens(lens: &Projection) -> String {
     match lens {
-        Lens::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
-        Lens::FovX(angle) => format!("fov_x {:.4}", angle.to_degrees()),
-        Lens::FocalPx { focal, .. } => format!("focal_px {focal}"),
-        Lens::OrthoHeight(height) => format!("ortho_height {height}"),
+        Projection::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
+        Projection::FovX(angle) => format!("fov_x {:.4}", angle.to_degrees()),
+        Projection::FocalPx { focal, .. } => format!("focal_px {focal}"),
+        Projection::OrthoHeight(height) => format!("ortho_height {height}"),
     }
 }
 

@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::cli::loss::Loaded;
+use crate::cli::load_report::Loaded;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
-use crate::intersect::{BuildQuality, Built};
+use crate::intersect::{BuildQuality, BuildStats};
 use crate::render::Statistics;
-use crate::scene::{self, FilmSettings, Needs, Scene, Skips, Work};
+use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
 
 /// `render --stats`.
 #[derive(Serialize)]
@@ -114,7 +114,7 @@ pub struct Build {
 
 impl From<&Statistics> for Build {
     fn from(statistics: &Statistics) -> Self {
-        let Built { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
+        let BuildStats { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
             statistics.built;
         Self {
             meshes,
@@ -172,7 +172,6 @@ impl Stats {
         scene: &Scene,
         frames: usize,
         statistics: &Statistics,
-        skips: Skips,
         layers: u64,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
@@ -192,7 +191,7 @@ impl Stats {
             geometry: Geometry::of(scene),
             build: statistics.into(),
             rays: rays.into(),
-            skipped: skipped(&Needs::of(scene, skips), &work),
+            skipped: skipped(&SceneFeatures::of(scene), &work),
             work,
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },
@@ -214,21 +213,21 @@ fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'stati
     read.sort_by_key(|image| Arc::as_ptr(image));
     read.dedup_by_key(|image| Arc::as_ptr(image));
     [
-        (Work::Spheres.name(), built.sphere_sets),
-        (Work::Instances.name(), built.instanced),
-        (Work::Planes.name(), done.planes),
-        (Work::Pictures.name(), read.len() as u64),
-        (Work::Uv.name(), done.uv),
-        (Work::Mipmaps.name(), done.mipmaps),
-        (Work::NormalMaps.name(), done.normal_maps),
-        (Work::AlphaTests.name(), built.masked),
-        (Work::Checkers.name(), done.checkers),
-        (Work::VertexColors.name(), done.vertex_colors),
-        (Work::SmoothNormals.name(), done.smooth_normals),
-        (Work::Highlights.name(), done.highlights),
-        (Work::Shadows.name(), rays.shadow),
-        (Work::Reflection.name(), rays.reflection),
-        (Work::Refraction.name(), rays.refraction),
+        (Feature::Spheres.name(), built.sphere_sets),
+        (Feature::Instances.name(), built.instanced),
+        (Feature::Planes.name(), done.planes),
+        (Feature::Pictures.name(), read.len() as u64),
+        (Feature::Uv.name(), done.uv),
+        (Feature::Mipmaps.name(), done.mipmaps),
+        (Feature::NormalMaps.name(), done.normal_maps),
+        (Feature::AlphaTests.name(), built.masked),
+        (Feature::Checkers.name(), done.checkers),
+        (Feature::VertexColors.name(), done.vertex_colors),
+        (Feature::SmoothNormals.name(), done.smooth_normals),
+        (Feature::Highlights.name(), done.highlights),
+        (Feature::Shadows.name(), rays.shadow),
+        (Feature::Reflection.name(), rays.reflection),
+        (Feature::Refraction.name(), rays.refraction),
         ("glass-in-shadows", done.glass),
         ("filters", done.filters),
         ("layers", layers),
@@ -237,7 +236,10 @@ fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'stati
 }
 
 /// Why each kind of work could be left out, of which none was done.
-fn skipped(needs: &Needs, work: &BTreeMap<&'static str, u64>) -> BTreeMap<&'static str, String> {
+fn skipped(
+    needs: &SceneFeatures,
+    work: &BTreeMap<&'static str, u64>,
+) -> BTreeMap<&'static str, String> {
     let skipped = needs.skipped().map(|(work, why)| (work.name(), why));
     skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
 }

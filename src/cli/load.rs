@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::values::{PrecisionName, seconds, size};
-use crate::cli::{files, loss};
+use crate::cli::{files, load_report};
 use crate::error::{Error, Result};
 use crate::load::{Limits, NamedLimit, Options};
+use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
-use crate::scene::{Scene, Skips};
 
 /// How the files of a scene are loaded; shared by the commands that load one.
 #[derive(Args, Clone)]
@@ -29,11 +29,11 @@ pub struct Loading {
 
 impl Loading {
     /// The options of a load.
-    pub fn options(&self, size: Option<[u32; 2]>, skips: Skips) -> Options {
+    pub fn options(&self, size: Option<[u32; 2]>) -> Options {
         let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
         let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
-        Options { size, skips, variant, allow_outside, limits }
+        Options { size, variant, allow_outside, limits }
     }
 }
 
@@ -81,23 +81,22 @@ impl Tracing {
     /// # Errors
     /// As there.
     pub fn load(&self) -> Result<(Scene, usize)> {
-        let (scene, camera) = self.load_animated(Skips::default())?;
+        let (scene, camera) = self.load_animated()?;
         Ok((scene.at(0.0)?, camera))
     }
 
     /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
-    /// for a moment the scene is that. What nothing shows is left out as `skips` says.
+    /// for a moment the scene is that.
     ///
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
-    pub fn load_animated(&self, skips: Skips) -> Result<(Scene, usize)> {
+    pub fn load_animated(&self) -> Result<(Scene, usize)> {
         files::check_input(&self.scene)?;
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene =
-            crate::load::load_with(&self.scene, &self.loading.options(self.size, skips))?;
+        let mut scene = crate::load::load_with(&self.scene, &self.loading.options(self.size))?;
         if self.strict {
-            loss::check_strictly(&scene, &self.scene)?;
+            load_report::check_strictly(&scene, &self.scene)?;
         }
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);

@@ -8,7 +8,7 @@ mod frames;
 mod info;
 mod json;
 mod load;
-mod loss;
+mod load_report;
 mod output;
 mod range;
 mod render;

@@ -15,7 +15,7 @@ use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{self, Options, Rendering, Statistics};
 use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, Skips, Tone, detail};
+use crate::scene::{Adaptive, FilmSettings, Scene, Tone, precision_warnings};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -26,8 +26,7 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let skips = Skips::without(&arguments.no_skip)?;
-    let (mut scene, camera) = arguments.tracing.load_animated(skips)?;
+    let (mut scene, camera) = arguments.tracing.load_animated()?;
     if arguments.ground {
         load::add_ground(&mut scene);
     }
@@ -43,7 +42,7 @@ pub fn run(arguments: &Render) -> Outcome {
     let precision = arguments.tracing.precision.into();
     let quality = arguments.bvh.quality();
     let options =
-        Options { backend, precision, quality, threads, camera, view, skips, ..Options::default() };
+        Options { backend, precision, quality, threads, camera, view, ..Options::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,
@@ -60,7 +59,7 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let mut warnings = scene.warnings.clone();
     let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(detail::lost(&first, f32_rays));
+    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
     warnings.extend(oddities(&first, camera, view, &done));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
@@ -72,7 +71,7 @@ pub fn run(arguments: &Render) -> Outcome {
     if let Some(path) = &arguments.stats {
         let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
         let (statistics, layers) = (&done.statistics, done.layers);
-        let stats = Stats::new(&first, times.len(), statistics, skips, layers, seconds, warnings);
+        let stats = Stats::new(&first, times.len(), statistics, layers, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)

@@ -67,7 +67,7 @@ impl Hit {
 
     /// Keeps in `best` whichever of the two counts.
     #[inline]
-    pub fn keep_first(best: &mut Option<Hit>, candidate: Hit) {
+    pub fn keep_closest(best: &mut Option<Hit>, candidate: Hit) {
         if best.is_none_or(|b| candidate.is_before(&b)) {
             *best = Some(candidate);
         }

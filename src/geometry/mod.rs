@@ -5,22 +5,22 @@
 //! compiler vectorised the caller.
 
 mod bounds;
-mod double;
+mod double_double;
 #[cfg(test)]
 mod dyadic;
 mod estimate;
-mod exact;
-mod found;
 mod hit;
+mod hit16;
+mod integer;
 pub mod plane;
 mod ray;
-mod rays;
+mod ray16;
 pub mod sphere;
 pub mod triangle;
 
 pub use bounds::Bounds;
 pub use estimate::Estimate;
-pub use found::{Found, Hits, Ids};
 pub use hit::{Geometry, Hit, PrimitiveId};
-pub use ray::{Departure, Passage, Ray, Side};
-pub use rays::{LANES, Lanes, Left, Lines, Rays};
+pub use hit16::{Hit16, HitBatch, PrimitiveId16};
+pub use ray::{Continuation, Departure, Ray, Side};
+pub use ray16::{Departure16, LANES, Lanes, Ray16, RayBatch};

@@ -42,19 +42,19 @@ pub struct Departure {
 /// It keeps its origin and direction, and so meets what lies beyond at the very `t` at which it
 /// would if nothing had stood there.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passage {
+pub struct Continuation {
     /// The `t` of the last surface that it went through.
     pub t: f64,
     /// That surface.
-    pub through: Departure,
+    pub crossed: Departure,
 }
 
-impl Passage {
+impl Continuation {
     /// Whether a crossing at `t` lies behind, in the order in which hits count: by `t`, then by
     /// what is hit. Of the sphere that was gone into, only the far side lies ahead.
     #[inline]
-    pub fn is_beyond(&self, t: f64, id: PrimitiveId) -> bool {
-        t < self.t || (t == self.t && id <= self.through.id)
+    pub fn excludes(&self, t: f64, id: PrimitiveId) -> bool {
+        t < self.t || (t == self.t && id <= self.crossed.id)
     }
 }
 
@@ -70,32 +70,32 @@ pub struct Ray {
     /// Where it ends, in units of |direction|; infinite for rays that see, 1 for shadow rays.
     pub tmax: f64,
     /// The surface it left, if any.
-    pub from: Option<Departure>,
+    pub departure: Option<Departure>,
     /// How far it has come, if it went straight through a surface: it meets only what lies ahead.
-    pub past: Option<Passage>,
+    pub continuation: Option<Continuation>,
 }
 
 impl Ray {
     /// An unbounded ray that left no surface.
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, tmax: f64::INFINITY, from: None, past: None }
+        Self { origin, direction, tmax: f64::INFINITY, departure: None, continuation: None }
     }
 
     /// The segment from `origin` to `target`, both ends excluded.
-    pub fn between(origin: DVec3, target: DVec3) -> Self {
-        Self { origin, direction: target - origin, tmax: 1.0, from: None, past: None }
+    pub fn segment(origin: DVec3, target: DVec3) -> Self {
+        Self { origin, direction: target - origin, tmax: 1.0, departure: None, continuation: None }
     }
 
     /// The same ray beyond a surface that it met, on whose `side` it goes on.
-    pub fn beyond(&self, hit: &Hit, side: Side) -> Self {
+    pub fn continue_past(&self, hit: &Hit, side: Side) -> Self {
         let through = Departure { id: hit.id, side };
-        Self { past: Some(Passage { t: hit.t, through }), ..*self }
+        Self { continuation: Some(Continuation { t: hit.t, crossed: through }), ..*self }
     }
 
     /// The `t` up to which it has come.
-    pub fn start(&self) -> f64 {
-        self.past.map_or(0.0, |past| past.t)
+    pub fn start_t(&self) -> f64 {
+        self.continuation.map_or(0.0, |past| past.t)
     }
 
     /// The point at `t`.

@@ -10,11 +10,11 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::film::Pixel;
-use crate::geometry::{Ids, LANES, Lanes};
+use crate::geometry::{LANES, Lanes, PrimitiveId16};
 use crate::integrator::radiance::{DARK, Radiance, at, put};
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::scene::Scene;
-use crate::surface::Surfaces;
+use crate::surface::Surface16;
 
 /// How many steps a picture can have: a side of 256 samples has five odd factors, two steps each.
 pub const STEPS: usize = 12;
@@ -30,7 +30,7 @@ const NOTHING: u32 = 0;
 
 /// What the samples of a pixel saw: the first one, and whether any other disagrees with it. 8 bytes.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Seen {
+pub struct PixelRecord {
     /// The sphere, the plane or the instance: its index and two bits for which of them it is.
     thing: u32,
     /// The normal, in units of 1/127.
@@ -40,16 +40,16 @@ pub struct Seen {
 
 /// What the samples of a tile's pixels saw, while they are taken.
 #[derive(Default)]
-pub(super) struct Notes {
+pub(super) struct PixelRecords {
     /// Whether there is anything yet to be compared with.
     has_begun: bool,
-    pub seen: Vec<Seen>,
+    pub seen: Vec<PixelRecord>,
     /// The square roots of the radiance that the samples' are compared with.
     roots: Vec<Vec3>,
-    surfaces: Surfaces,
+    surfaces: Surface16,
 }
 
-impl Notes {
+impl PixelRecords {
     /// Begins with pixels of which no sample was taken.
     pub fn begin(&mut self) {
         self.has_begun = false;
@@ -82,7 +82,7 @@ fn root(radiance: Vec3) -> Vec3 {
 pub(super) struct Note<'a> {
     pub scene: &'a Scene,
     pub wave: &'a Wave,
-    pub notes: &'a mut Notes,
+    pub notes: &'a mut PixelRecords,
 }
 
 impl pulp::WithSimd for Note<'_> {
@@ -90,9 +90,9 @@ impl pulp::WithSimd for Note<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Self { scene, wave, notes: Notes { has_begun, seen, surfaces, .. } } = self;
+        let Self { scene, wave, notes: PixelRecords { has_begun, seen, surfaces, .. } } = self;
         let count = wave.rays.len();
-        for (block, found) in wave.hits.found().iter().enumerate() {
+        for (block, found) in wave.hits.blocks().iter().enumerate() {
             // A scene without smooth normals has none to look up either way.
             surfaces.set::<true>(scene, &wave.rays, block, found);
             let mut things = [NOTHING; LANES];
@@ -114,7 +114,7 @@ impl pulp::WithSimd for Note<'_> {
                     seen.disagrees |= (seen.thing != things[i]) | is_bent(cosine);
                 }
             } else {
-                let new = |i| Seen { thing: things[i], normal: normal(i), disagrees: false };
+                let new = |i| PixelRecord { thing: things[i], normal: normal(i), disagrees: false };
                 seen.extend((0..here).map(new));
             }
         }
@@ -123,10 +123,10 @@ impl pulp::WithSimd for Note<'_> {
 
 /// What is hit in lane `i`; a mesh counts as one thing wherever it stands.
 #[inline(always)]
-fn thing(ids: &Ids, i: usize) -> u32 {
-    let kind = ids.geometry[i].min(Ids::MESHES);
-    let index = if kind == Ids::MESHES { ids.instance[i] } else { ids.primitive[i] };
-    if kind == Ids::NONE { NOTHING } else { index << 2 | kind }
+fn thing(ids: &PrimitiveId16, i: usize) -> u32 {
+    let kind = ids.geometry[i].min(PrimitiveId16::MESHES);
+    let index = if kind == PrimitiveId16::MESHES { ids.instance[i] } else { ids.primitive[i] };
+    if kind == PrimitiveId16::NONE { NOTHING } else { index << 2 | kind }
 }
 
 #[inline(always)]
@@ -151,7 +151,7 @@ struct Row {
 }
 
 impl Row {
-    fn read(&mut self, pixels: &[Pixel], seen: &[Seen], share: f32) {
+    fn read(&mut self, pixels: &[Pixel], seen: &[PixelRecord], share: f32) {
         self.things.clear();
         self.things.extend(seen.iter().map(|seen| seen.thing));
         self.doubtful.clear();
@@ -224,7 +224,7 @@ impl Integrator<'_> {
 
     /// Which pixels of a picture, of which every pixel has its first samples, need more; `pixels`
     /// are the sums of these.
-    pub fn doubtful(&self, pixels: &[Pixel], seen: &[Seen]) -> Vec<bool> {
+    pub fn pixels_to_refine(&self, pixels: &[Pixel], seen: &[PixelRecord]) -> Vec<bool> {
         let width = self.scene.film.size[0] as usize;
         let share = 1.0 / self.series.steps[0] as f32;
         let threshold = self.threshold.unwrap_or(0.0);
@@ -261,7 +261,7 @@ impl Integrator<'_> {
     pub fn refine(
         &self,
         first: usize,
-        (pixels, seen, doubtful): (&mut [Pixel], &[Seen], &[bool]),
+        (pixels, seen, doubtful): (&mut [Pixel], &[PixelRecord], &[bool]),
         scratch: &mut Scratch,
     ) -> Counts {
         let width = self.scene.film.size[0] as usize;
@@ -272,7 +272,7 @@ impl Integrator<'_> {
             pixel.iter_mut().for_each(|value| *value *= shares[0]);
         }
         // Pixels with what their samples saw, in the order in which tiles line up their rays.
-        let mut open: Vec<([usize; 2], Seen)> = Vec::new();
+        let mut open: Vec<([usize; 2], PixelRecord)> = Vec::new();
         for (left, columns) in self.tiles(width) {
             scratch.tile.set([left, first], [columns, pixels.len() / width], self.tiling.block);
             for [x, y, length] in scratch.tile.runs.iter().map(|run| run.map(|n| n as usize)) {

@@ -20,44 +20,44 @@ pub struct Medium {
 const EMPTY_SPACE: Medium = Medium { ior: 1.0, absorption: Vec3::ZERO };
 
 /// A place in the order of the bodies: where two overlap, the one with the lesser rank holds.
-type Rank = u32;
+type PriorityRank = u32;
 
 /// What has no rank: it is no body.
-const NONE: Rank = Rank::MAX;
+const NONE: PriorityRank = PriorityRank::MAX;
 
 /// The bodies that hold a point, in their order; one stands twice where two parts of one mesh
 /// overlap. The first fills the place.
 #[derive(Clone, Debug)]
-pub struct Interiors(Ranks);
+pub struct InteriorList(Ranks);
 
 /// A few ranks in place, which is quick to copy, or many.
 #[derive(Clone, Debug)]
 enum Ranks {
-    Few { len: u8, ranks: [Rank; FEW] },
-    Many(Vec<Rank>),
+    Few { len: u8, ranks: [PriorityRank; FEW] },
+    Many(Vec<PriorityRank>),
 }
 
 /// So many bodies seldom fill one point.
 const FEW: usize = 4;
 
-impl Default for Interiors {
+impl Default for InteriorList {
     fn default() -> Self {
         Self(Ranks::Few { len: 0, ranks: [NONE; FEW] })
     }
 }
 
-impl PartialEq for Interiors {
+impl PartialEq for InteriorList {
     fn eq(&self, other: &Self) -> bool {
         self.ranks() == other.ranks()
     }
 }
 
-impl Eq for Interiors {}
+impl Eq for InteriorList {}
 
-impl Interiors {
+impl InteriorList {
     /// The ranks, in order.
     #[inline]
-    fn ranks(&self) -> &[Rank] {
+    fn ranks(&self) -> &[PriorityRank] {
         match &self.0 {
             Ranks::Few { len, ranks } => &ranks[..usize::from(*len)],
             Ranks::Many(ranks) => ranks,
@@ -65,11 +65,11 @@ impl Interiors {
     }
 
     #[inline]
-    fn first(&self) -> Option<Rank> {
+    fn first(&self) -> Option<PriorityRank> {
         self.ranks().first().copied()
     }
 
-    fn with(&self, rank: Rank) -> Self {
+    fn with(&self, rank: PriorityRank) -> Self {
         let at = self.ranks().partition_point(|&r| r <= rank);
         match &self.0 {
             &Ranks::Few { len, mut ranks } if usize::from(len) < FEW => {
@@ -85,7 +85,7 @@ impl Interiors {
         }
     }
 
-    fn without(&self, rank: Rank) -> Self {
+    fn without(&self, rank: PriorityRank) -> Self {
         let Some(at) = self.ranks().iter().position(|&r| r == rank) else { return self.clone() };
         match &self.0 {
             &Ranks::Few { len, mut ranks } => {
@@ -109,16 +109,16 @@ impl Interiors {
 /// equal ones the one with the smallest bounding box, so that a bubble is in its glass and the
 /// glass in the water; then the first in the scene.
 #[derive(Debug)]
-pub struct Bodies {
+pub struct NestedDielectrics {
     media: Vec<Medium>,
-    spheres: Vec<Rank>,
-    planes: Vec<Rank>,
-    instances: Vec<Rank>,
+    spheres: Vec<PriorityRank>,
+    planes: Vec<PriorityRank>,
+    instances: Vec<PriorityRank>,
     /// Whether the fronts of a body's triangles are inside: it is mirrored, or was made so.
     turned: Vec<bool>,
 }
 
-impl Bodies {
+impl NestedDielectrics {
     /// The bodies of a checked scene.
     pub fn of(scene: &Scene) -> Self {
         let material = |id: MaterialId| &scene.materials[id.0 as usize];
@@ -133,7 +133,7 @@ impl Bodies {
         });
         let all: Vec<(MaterialId, f64)> = spheres.chain(planes).chain(instances).collect();
         let mut order: Vec<usize> =
-            (0..all.len()).filter(|&i| material(all[i].0).is_body()).collect();
+            (0..all.len()).filter(|&i| material(all[i].0).is_dielectric()).collect();
         order.sort_by(|&a, &b| {
             let ((a, size_of_a), (b, size_of_b)) = (all[a], all[b]);
             let priority = material(b).priority.cmp(&material(a).priority);
@@ -146,13 +146,13 @@ impl Bodies {
         let mut ranks = vec![NONE; all.len()];
         let mut media = Vec::with_capacity(order.len());
         for (rank, i) in order.into_iter().enumerate() {
-            ranks[i] = rank as Rank;
+            ranks[i] = rank as PriorityRank;
             let of = material(all[i].0);
             media.push(Medium { ior: of.ior, absorption: of.absorption });
         }
         let instances = ranks.split_off(scene.spheres.len() + scene.planes.len());
         let planes = ranks.split_off(scene.spheres.len());
-        let is_turned = |(&rank, instance): (&Rank, &Instance)| {
+        let is_turned = |(&rank, instance): (&PriorityRank, &Instance)| {
             if rank == NONE {
                 return false;
             }
@@ -177,11 +177,11 @@ impl Bodies {
 
     /// What fills a point that these bodies hold.
     #[inline]
-    pub fn medium(&self, inside: &Interiors) -> Medium {
+    pub fn medium(&self, inside: &InteriorList) -> Medium {
         inside.first().map_or(EMPTY_SPACE, |rank| self.media[rank as usize])
     }
 
-    fn rank(&self, id: PrimitiveId) -> Option<Rank> {
+    fn rank(&self, id: PrimitiveId) -> Option<PriorityRank> {
         let ranks = match id.geometry {
             Geometry::Spheres => self.spheres.get(id.primitive as usize),
             Geometry::Planes => self.planes.get(id.primitive as usize),
@@ -201,9 +201,13 @@ impl Bodies {
     ///
     /// A ray that comes out of a body that it never went into, through a hole in its mesh or from
     /// the very surface of another, was in it.
-    pub fn around(&self, id: PrimitiveId, side: Side, inside: &Interiors) -> Around {
+    pub fn around(&self, id: PrimitiveId, side: Side, inside: &InteriorList) -> InterfaceMedia {
         let Some(rank) = self.rank(id) else {
-            return Around { before: inside.clone(), behind: inside.clone(), is_hidden: false };
+            return InterfaceMedia {
+                before: inside.clone(),
+                behind: inside.clone(),
+                is_hidden: false,
+            };
         };
         let (before, behind) = match self.outer(id, side) {
             Side::Front => (inside.clone(), inside.with(rank)),
@@ -211,15 +215,20 @@ impl Bodies {
             Side::Back => (inside.with(rank), inside.clone()),
         };
         let is_hidden = before.first() == behind.first();
-        Around { before, behind, is_hidden }
+        InterfaceMedia { before, behind, is_hidden }
     }
 
     /// The bodies that hold a point.
     ///
     /// Spheres and half-spaces are known by their equations; of meshes, those that a ray from the
     /// point comes out of more often than it goes in.
-    pub fn holding(&self, point: DVec3, scene: &Scene, intersector: &dyn Intersector) -> Interiors {
-        let mut inside = Interiors::default();
+    pub fn holding(
+        &self,
+        point: DVec3,
+        scene: &Scene,
+        intersector: &dyn Intersector,
+    ) -> InteriorList {
+        let mut inside = InteriorList::default();
         for (sphere, &rank) in scene.spheres.iter().zip(&self.spheres) {
             if rank != NONE
                 && (point - sphere.center).length_squared() < sphere.radius * sphere.radius
@@ -249,7 +258,7 @@ impl Bodies {
                     Side::Back => 1,
                 };
             }
-            ray = ray.beyond(hit, surface.side.opposite());
+            ray = ray.continue_past(hit, surface.side.opposite());
         }
         for (&rank, depth) in self.instances.iter().zip(depth) {
             for _ in 0..depth.max(0) {
@@ -264,11 +273,11 @@ impl Bodies {
 
 /// What lies on the two sides of a surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Around {
+pub struct InterfaceMedia {
     /// The bodies on the side that the ray comes from.
-    pub before: Interiors,
+    pub before: InteriorList,
     /// Those on the other side.
-    pub behind: Interiors,
+    pub behind: InteriorList,
     /// Whether the same body fills both, so that the surface is none: it lies within a body that
     /// goes before its own.
     pub is_hidden: bool,

@@ -1,6 +1,6 @@
 //! Where light may go through anything on its way to a surface.
 
-use crate::geometry::{Bounds, LANES, Lanes, Lines, Rays};
+use crate::geometry::{Bounds, LANES, Lanes, Ray16, RayBatch};
 use crate::scene::{MaterialId, Scene};
 
 /// More boxes than these are taken as one.
@@ -8,13 +8,13 @@ const MOST: usize = 64;
 
 /// The boxes of what lets light through: a ray that comes into none need not look for it.
 #[derive(Debug)]
-pub(super) struct Clearance {
+pub(super) struct TransmissiveBounds {
     boxes: Vec<Bounds>,
     /// Whether a plane lets light through, which is everywhere.
     everywhere: bool,
 }
 
-impl Clearance {
+impl TransmissiveBounds {
     pub fn of(scene: &Scene) -> Self {
         let transmits =
             |id: MaterialId| scene.materials.get(id.0 as usize).is_some_and(|m| m.may_transmit());
@@ -33,7 +33,7 @@ impl Clearance {
 
     /// Whether each ray certainly comes into none of the boxes before it ends; the last sixteen may
     /// be filled up with any answers.
-    pub fn of_all(&self, rays: &Rays, arch: pulp::Arch, clear: &mut Vec<bool>) {
+    pub fn of_all(&self, rays: &RayBatch, arch: pulp::Arch, clear: &mut Vec<bool>) {
         clear.clear();
         arch.dispatch(Ask { clearance: self, rays, clear });
     }
@@ -41,12 +41,12 @@ impl Clearance {
     /// Each quotient is right to a few ulp, and so, along the ray, is the place where it enters or
     /// leaves: the boxes are widened by a thousand times that.
     #[inline(always)]
-    fn of_sixteen(&self, lines: &Lines) -> Lanes<bool> {
+    fn of_sixteen(&self, lines: &Ray16) -> Lanes<bool> {
         let mut clear = [!self.everywhere; LANES];
         for bounds in &self.boxes {
             let reach = bounds.max_abs();
             for i in 0..LANES {
-                let (origin, direction) = lines.line(i);
+                let (origin, direction) = lines.origin_and_direction(i);
                 let pad = 1e-12 * (reach + origin.abs().max_element());
                 let a = (bounds.lower - pad - origin) / direction;
                 let b = (bounds.upper + pad - origin) / direction;
@@ -60,10 +60,10 @@ impl Clearance {
     }
 }
 
-/// [`Clearance::of_all`], compiled for what the processor can do at once.
+/// [`TransmissiveBounds::of_all`], compiled for what the processor can do at once.
 struct Ask<'a> {
-    clearance: &'a Clearance,
-    rays: &'a Rays,
+    clearance: &'a TransmissiveBounds,
+    rays: &'a RayBatch,
     clear: &'a mut Vec<bool>,
 }
 
@@ -72,7 +72,7 @@ impl pulp::WithSimd for Ask<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        for lines in self.rays.lines() {
+        for lines in self.rays.blocks() {
             self.clear.extend_from_slice(&self.clearance.of_sixteen(lines));
         }
     }
@@ -86,8 +86,8 @@ mod tests {
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
 
-    fn is_clear(clearance: &Clearance, ray: &Ray) -> bool {
-        let (mut rays, mut clear) = (Rays::default(), Vec::new());
+    fn is_clear(clearance: &TransmissiveBounds, ray: &Ray) -> bool {
+        let (mut rays, mut clear) = (RayBatch::default(), Vec::new());
         rays.push(ray);
         clearance.of_all(&rays, pulp::Arch::new(), &mut clear);
         clear[0]
@@ -110,9 +110,9 @@ mod tests {
             let centers = centers.into_iter().map(DVec3::from);
             scene.spheres.extend(centers.map(|center| Sphere::new(center, 1.0, glass)));
             let target = scene.spheres[0].center + DVec3::from(inside);
-            let ray = Ray::between(DVec3::from(origin), target);
+            let ray = Ray::segment(DVec3::from(origin), target);
             let ray = Ray { direction: ray.direction * ends, ..ray };
-            prop_assert!(!is_clear(&Clearance::of(&scene), &ray));
+            prop_assert!(!is_clear(&TransmissiveBounds::of(&scene), &ray));
         }
     }
 
@@ -121,8 +121,8 @@ mod tests {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glass));
-        let clearance = Clearance::of(&scene);
-        let clear = |from: DVec3, to: DVec3| is_clear(&clearance, &Ray::between(from, to));
+        let clearance = TransmissiveBounds::of(&scene);
+        let clear = |from: DVec3, to: DVec3| is_clear(&clearance, &Ray::segment(from, to));
         assert!(clear(DVec3::new(2.0, -5.0, 0.0), DVec3::new(2.0, 5.0, 0.0)));
         assert!(clear(DVec3::Y * 5.0, DVec3::Y * 1.5));
         assert!(!clear(DVec3::Y * 5.0, DVec3::Y * 0.5));
@@ -133,7 +133,7 @@ mod tests {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
-        let ray = Ray::between(DVec3::Y, DVec3::Y * 2.0);
-        assert!(!is_clear(&Clearance::of(&scene), &ray));
+        let ray = Ray::segment(DVec3::Y, DVec3::Y * 2.0);
+        assert!(!is_clear(&TransmissiveBounds::of(&scene), &ray));
     }
 }

@@ -1,8 +1,8 @@
 //! What is counted while a picture is made.
 
 use super::adaptive::STEPS;
-use crate::geometry::Rays;
-use crate::intersect::Extras;
+use crate::geometry::RayBatch;
+use crate::intersect::ExtraTests;
 
 /// How many rays were traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,7 +27,7 @@ impl RayCounts {
 /// How much was done of the work that not every picture needs. Exactly 0 means that the code for it
 /// did not run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WorkCounts {
+pub struct FeatureCounts {
     /// Points that were shaded whose texture coordinates were worked out.
     pub uv: u64,
     /// Points for which it was worked out how much of a picture one sample sees.
@@ -50,10 +50,10 @@ pub struct WorkCounts {
     pub filters: u64,
 }
 
-impl WorkCounts {
+impl FeatureCounts {
     /// Counts what an intersector did with rays besides walking its trees.
-    pub(super) fn extras(&mut self, what: Extras, rays: &Rays) {
-        let sixteens = rays.lines().len() as u64;
+    pub(super) fn extras(&mut self, what: ExtraTests, rays: &RayBatch) {
+        let sixteens = rays.blocks().len() as u64;
         self.planes += sixteens * u64::from(what.planes);
         self.filters += sixteens * u64::from(what.filters);
     }
@@ -69,7 +69,7 @@ pub struct Counts {
     /// Pixels that got more samples, at each step of an adaptive picture.
     pub refined: [u64; STEPS],
     /// Work that not every picture needs.
-    pub work: WorkCounts,
+    pub work: FeatureCounts,
     /// Samples whose radiance was not finite and was left out.
     pub not_finite: NotFinite,
 }
@@ -97,19 +97,19 @@ impl NotFinite {
 
 /// What made a sample's radiance not finite; see [`NotFinite`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Cause {
+pub(super) enum NotFiniteCause {
     Light,
     Surface,
     Sum,
 }
 
-impl Cause {
+impl NotFiniteCause {
     pub(super) fn count(self, counts: &mut Counts) {
         let to = &mut counts.not_finite;
         *match self {
-            Cause::Light => &mut to.light,
-            Cause::Surface => &mut to.surface,
-            Cause::Sum => &mut to.sum,
+            NotFiniteCause::Light => &mut to.light,
+            NotFiniteCause::Surface => &mut to.surface,
+            NotFiniteCause::Sum => &mut to.sum,
         } += 1;
     }
 }
@@ -129,7 +129,7 @@ impl std::ops::AddAssign for Counts {
     }
 }
 
-impl std::ops::AddAssign for WorkCounts {
+impl std::ops::AddAssign for FeatureCounts {
     fn add_assign(&mut self, other: Self) {
         self.uv += other.uv;
         self.mipmaps += other.mipmaps;

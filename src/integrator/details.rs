@@ -1,21 +1,21 @@
 //! What the rays of a wave see of the pictures on surfaces.
 
 use crate::geometry::{Hit, Ray};
-use crate::integrator::counts::WorkCounts;
+use crate::integrator::counts::FeatureCounts;
 use crate::integrator::{Integrator, Wave};
-use crate::scene::{FilmSettings, Finish, RayMaker};
-use crate::surface::{self, Cone, Detail, Footprint, Surface};
+use crate::scene::{FilmSettings, RayGenerator, ShadingParams};
+use crate::surface::{self, Footprint, RayCone, Surface, TextureContext};
 
 /// How wide the rays from the eye are.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EyeCone {
+pub(super) struct PixelCone {
     /// The width of a sample on a plane one unit of the ray's t away, and where it starts.
     width: [f64; 2],
 }
 
-impl EyeCone {
+impl PixelCone {
     /// Of the rays of a film. A pixel's samples share its square.
-    pub fn of(rays: &RayMaker, film: &FilmSettings) -> Self {
+    pub fn of(rays: &RayGenerator, film: &FilmSettings) -> Self {
         let most = film.adaptive.map_or(film.spp, |adaptive| adaptive.max);
         let share = 1.0 / f64::from(most).sqrt();
         Self { width: rays.pixel().map(|width| width * share) }
@@ -24,8 +24,8 @@ impl EyeCone {
 
 impl Integrator<'_> {
     /// The cone of a ray from the eye.
-    pub(super) fn cone(&self, ray: &Ray) -> Cone {
-        self.lens.map_or(Cone::default(), |EyeCone { width: [slope, width] }| Cone {
+    pub(super) fn cone(&self, ray: &Ray) -> RayCone {
+        self.lens.map_or(RayCone::default(), |PixelCone { width: [slope, width] }| RayCone {
             width: width as f32,
             spread: (slope / ray.direction.length()) as f32,
         })
@@ -35,11 +35,11 @@ impl Integrator<'_> {
     /// wider or narrower is left out.
     pub(super) fn cone_onward(
         &self,
-        cone: &Cone,
+        cone: &RayCone,
         length: f64,
         surface: &Surface,
         is_refracted: bool,
-    ) -> Cone {
+    ) -> RayCone {
         if self.lens.is_none() {
             return *cone;
         }
@@ -48,15 +48,25 @@ impl Integrator<'_> {
     }
 
     /// What the material that `ray` hit does with light there.
-    pub(super) fn finish_at(&self, ray: &Ray, hit: &Hit, surface: &Surface, cone: &Cone) -> Finish {
+    pub(super) fn finish_at(
+        &self,
+        ray: &Ray,
+        hit: &Hit,
+        surface: &Surface,
+        cone: &RayCone,
+    ) -> ShadingParams {
         let look = &self.looks[surface.material.0 as usize];
         if !self.has_details || !self.details.are_asked(look, hit) {
             return look.finish;
         }
         let area = self.lens.map(|_| footprint(ray, hit, surface, cone));
         let place = [surface.position, surface.geometric_normal];
-        let detail = Detail::new(self.scene, hit, place, look.is_textured, area.as_ref());
-        surface::finish(self.scene, &self.scene.materials[surface.material.0 as usize], &detail)
+        let detail = TextureContext::new(self.scene, hit, place, look.is_textured, area.as_ref());
+        surface::shading_params(
+            self.scene,
+            &self.scene.materials[surface.material.0 as usize],
+            &detail,
+        )
     }
 
     /// The detail of what ray `i` of a wave hit.
@@ -66,8 +76,8 @@ impl Integrator<'_> {
         i: usize,
         hit: &Hit,
         surface: &Surface,
-        work: &mut WorkCounts,
-    ) -> Detail {
+        work: &mut FeatureCounts,
+    ) -> TextureContext {
         let look = &self.looks[surface.material.0 as usize];
         let area = self.lens.filter(|_| look.is_textured).map(|_| {
             work.mipmaps += 1;
@@ -76,12 +86,12 @@ impl Integrator<'_> {
             footprint(&ray, hit, surface, &cone)
         });
         let place = [surface.position, surface.geometric_normal];
-        Detail::new(self.scene, hit, place, look.is_textured, area.as_ref())
+        TextureContext::new(self.scene, hit, place, look.is_textured, area.as_ref())
     }
 }
 
 /// How much of a surface a ray with this cone sees.
-fn footprint(ray: &Ray, hit: &Hit, surface: &Surface, cone: &Cone) -> Footprint {
+fn footprint(ray: &Ray, hit: &Hit, surface: &Surface, cone: &RayCone) -> Footprint {
     let length = ray.direction.length();
     let width = cone.at(hit.t * length);
     Footprint::new(ray.direction / length, surface.geometric_normal, width)

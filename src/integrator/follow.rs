@@ -2,18 +2,18 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Departure, Hit, Hits, LANES, Ray, Rays, Side};
-use crate::integrator::bodies::{Around, Interiors};
+use crate::geometry::{Departure, Hit, HitBatch, LANES, Ray, RayBatch, Side};
+use crate::integrator::bodies::{InterfaceMedia, InteriorList};
 use crate::integrator::radiance::{DARK, at, put};
-use crate::integrator::shade::Bounce;
+use crate::integrator::shade::SpecularHit;
 use crate::integrator::{Counts, Integrator, Scratch, Wave};
 use crate::intersect::Coherence;
-use crate::scene::{Finish, Material, Scene};
-use crate::surface::{Cone, Surface};
+use crate::scene::{Material, Scene, ShadingParams};
+use crate::surface::{RayCone, Surface};
 
 /// Where a ray comes from, and what it is worth.
 #[derive(Clone, Debug)]
-pub(super) struct Path {
+pub(super) struct PathState {
     /// The sample that it adds to.
     pub sample: u32,
     /// How many surfaces sent it on.
@@ -21,20 +21,20 @@ pub(super) struct Path {
     /// The share that what it brings back has of the sample.
     pub throughput: DVec3,
     /// The bodies that it is in.
-    pub inside: Interiors,
+    pub inside: InteriorList,
     /// What of a surface it sees, where any picture is averaged.
-    pub cone: Cone,
+    pub cone: RayCone,
 }
 
 /// A ray that a surface sent on.
 #[derive(Clone, Debug)]
-pub(super) struct Next {
+pub(super) struct SpawnedRay {
     /// The ray.
     pub ray: Ray,
     /// Whether it went through.
     pub is_refracted: bool,
     /// Its path.
-    pub path: Path,
+    pub path: PathState,
 }
 
 /// The most rays that are traced together; so many more wait at most for each level of depth.
@@ -55,7 +55,7 @@ impl Integrator<'_> {
         if self.may_pass_first {
             wave.paths = (0..wave.rays.len()).map(|i| self.path(wave, i)).collect();
             sample.clear();
-            sample.resize(wave.rays.lines().len(), DARK);
+            sample.resize(wave.rays.blocks().len(), DARK);
         }
         self.finish(scratch, counts);
         let mut waiting = vec![std::mem::take(&mut scratch.next)];
@@ -78,7 +78,7 @@ impl Integrator<'_> {
     }
 
     /// Where ray `i` of a wave comes from, and what it is worth.
-    pub(super) fn path(&self, wave: &Wave, i: usize) -> Path {
+    pub(super) fn path(&self, wave: &Wave, i: usize) -> PathState {
         if let Some(path) = wave.paths.get(i) {
             return path.clone();
         }
@@ -90,7 +90,7 @@ impl Integrator<'_> {
             }
         };
         let cone = self.cone(&wave.rays.ray(i));
-        Path { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside, cone }
+        PathState { sample: i as u32, depth: 0, throughput: DVec3::ONE, inside, cone }
     }
 
     /// Adds what the rays of a wave bring back to their samples, and sends on what goes on from
@@ -141,7 +141,8 @@ impl Integrator<'_> {
     /// way. They go on in the same wave, so that nothing tells that something was there.
     fn pass_clear(&self, wave: &mut Wave, counts: &mut Counts) {
         let Wave { rays, hits, paths } = wave;
-        let (mut passed, mut ahead, mut found) = (Vec::new(), Rays::default(), Hits::default());
+        let (mut passed, mut ahead, mut found) =
+            (Vec::new(), RayBatch::default(), HitBatch::default());
         let mut open: Vec<u32> = (0..rays.len() as u32).collect();
         while !open.is_empty() {
             passed.clear();
@@ -160,7 +161,7 @@ impl Integrator<'_> {
                 let around = self.bodies.around(hit.id, surface.side, &path.inside);
                 let finish = self.finish_at(&ray, hit, &surface, &path.cone);
                 if self.is_clear(material, &finish, &around) {
-                    let beyond = ray.beyond(hit, surface.side.opposite());
+                    let beyond = ray.continue_past(hit, surface.side.opposite());
                     rays.set(at, &beyond);
                     path.inside = around.behind;
                     passed.push(i);
@@ -178,7 +179,12 @@ impl Integrator<'_> {
 
     /// Whether a surface is none: hidden in another body, or clear and with the same index of
     /// refraction on both sides.
-    pub(super) fn is_clear(&self, material: &Material, finish: &Finish, around: &Around) -> bool {
+    pub(super) fn is_clear(
+        &self,
+        material: &Material,
+        finish: &ShadingParams,
+        around: &InterfaceMedia,
+    ) -> bool {
         let ior = |inside| self.bodies.medium(inside).ior;
         let behind = if material.thin { material.ior } else { ior(&around.behind) };
         let clear = finish.transmit == Vec3::ONE && finish.emission == Vec3::ZERO;
@@ -190,31 +196,31 @@ impl Integrator<'_> {
         &self,
         ray: &Ray,
         hit: &Hit,
-        bounce: &Bounce,
-        path: &Path,
-        next: &mut impl FnMut(Next),
+        bounce: &SpecularHit,
+        path: &PathState,
+        next: &mut impl FnMut(SpawnedRay),
     ) {
         if path.depth >= self.scene.film.max_depth {
             return;
         }
-        let Bounce { surface, finish, .. } = bounce;
+        let SpecularHit { surface, finish, .. } = bounce;
         let length = hit.t * ray.direction.length();
         let around = self.bodies.around(surface.id, surface.side, &path.inside);
         let scattered = self.scatter(finish, surface, &around, ray.direction.normalize());
-        let mut send = |ray: Ray, share: DVec3, is_refracted: bool, inside: Interiors| {
+        let mut send = |ray: Ray, share: DVec3, is_refracted: bool, inside: InteriorList| {
             let throughput = path.throughput * share;
             if throughput.max_element() > self.scene.film.cutoff.max(NOTHING) {
                 let (sample, depth) = (path.sample, path.depth + 1);
-                let cone = match ray.past {
+                let cone = match ray.continuation {
                     Some(_) => path.cone,
                     None => self.cone_onward(&path.cone, length, surface, is_refracted),
                 };
-                let path = Path { sample, depth, throughput, inside, cone };
-                next(Next { ray, is_refracted, path });
+                let path = PathState { sample, depth, throughput, inside, cone };
+                next(SpawnedRay { ray, is_refracted, path });
             }
         };
         let spawn = |direction: DVec3, side: Side| Ray {
-            from: Some(Departure { id: surface.id, side }),
+            departure: Some(Departure { id: surface.id, side }),
             ..Ray::new(surface.position, direction)
         };
         let [back, through] = scattered.shares;
@@ -222,7 +228,7 @@ impl Integrator<'_> {
         let onward = surface.side.opposite();
         let ray = match scattered.refracted {
             Some(direction) => spawn(direction, onward),
-            None => ray.beyond(hit, onward),
+            None => ray.continue_past(hit, onward),
         };
         send(ray, through, true, around.behind);
     }
@@ -232,18 +238,18 @@ impl Integrator<'_> {
 /// of refraction are the same on both sides.
 pub(super) fn may_be_clear(scene: &Scene) -> bool {
     let around = || {
-        let bodies = scene.materials_in_use().filter(|material| material.is_body());
+        let bodies = scene.materials_in_use().filter(|material| material.is_dielectric());
         std::iter::once(1.0).chain(bodies.map(|material| material.ior))
     };
     scene.materials_in_use().any(|material| {
         // Its own index is among them once, and counts where another one is the same.
         let same = around().filter(|&ior| material.is_clear_in(ior)).count();
-        same > usize::from(material.is_body())
+        same > usize::from(material.is_dielectric())
     })
 }
 
 /// Where to cut a wave: between two samples near its middle, or, if it is all of one, there.
-fn middle(paths: &[Path]) -> usize {
+fn middle(paths: &[PathState]) -> usize {
     let sample = |i: usize| paths[i].sample;
     let half = paths.len() / 2;
     let changes = |&i: &usize| sample(i - 1) != sample(i);
@@ -261,13 +267,13 @@ fn middle(paths: &[Path]) -> usize {
 mod tests {
     use super::*;
 
-    fn wave(samples: &[u32]) -> Vec<Path> {
-        let path = |&sample: &u32| Path {
+    fn wave(samples: &[u32]) -> Vec<PathState> {
+        let path = |&sample: &u32| PathState {
             sample,
             depth: 1,
             throughput: DVec3::ONE,
-            inside: Interiors::default(),
-            cone: Cone::default(),
+            inside: InteriorList::default(),
+            cone: RayCone::default(),
         };
         samples.iter().map(path).collect()
     }

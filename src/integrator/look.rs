@@ -3,16 +3,16 @@
 use glam::Vec3;
 
 use crate::geometry::{Geometry, Hit};
-use crate::integrator::counts::WorkCounts;
-use crate::scene::{Finish, Material, Mesh, Scene, Skips, Work};
+use crate::integrator::counts::FeatureCounts;
+use crate::scene::{Material, Mesh, Scene, ShadingParams};
 use crate::shading::Reflectance;
-use crate::surface::{self, Detail};
+use crate::surface::{self, TextureContext};
 
 /// A material as it looks where no texture, checker or vertex colour tells otherwise.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct CachedMaterial {
     /// What it does with light.
-    pub finish: Finish,
+    pub finish: ShadingParams,
     /// What of the light it scatters, less what is seen in it and through it.
     pub reflectance: Reflectance,
     /// Whether all of it is finite.
@@ -27,29 +27,28 @@ pub(super) struct Look {
     pub is_followed: bool,
 }
 
-impl Look {
-    pub fn of(scene: &Scene, material: &Material, skips: Skips) -> Self {
+impl CachedMaterial {
+    pub fn of(scene: &Scene, material: &Material) -> Self {
         // A material that nothing is made of may have pictures that were not read.
         let finish = match material.is_textured() {
-            true => material.finish(),
-            false => surface::finish(scene, material, &Detail::default()),
+            true => material.shading_params(),
+            false => surface::shading_params(scene, material, &TextureContext::default()),
         };
         let reflectance = scattered(&finish);
-        let highlight = reflectance.specular != Vec3::ZERO || material.metallic.is_some();
         Self {
             finish,
             reflectance,
             is_finite: finish.emission.is_finite() && reflectance.diffuse.is_finite(),
-            shines: skips.does(Work::Highlights, highlight),
-            is_textured: skips.does(Work::Uv, material.is_textured()),
-            has_normals: skips.does(Work::NormalMaps, material.normal_map.is_some()),
-            is_followed: skips.does(Work::Reflection, material.is_followed()),
+            shines: reflectance.specular != Vec3::ZERO || material.metallic.is_some(),
+            is_textured: material.is_textured(),
+            has_normals: material.normal_map.is_some(),
+            is_followed: material.spawns_rays(),
         }
     }
 }
 
 /// What of the light a surface scatters: of the share that is neither reflected nor let through.
-pub(super) fn scattered(finish: &Finish) -> Reflectance {
+pub(super) fn scattered(finish: &ShadingParams) -> Reflectance {
     let rest = (Vec3::ONE - finish.reflect - finish.transmit).max(Vec3::ZERO);
     Reflectance {
         diffuse: finish.diffuse * rest,
@@ -59,27 +58,24 @@ pub(super) fn scattered(finish: &Finish) -> Reflectance {
 }
 
 /// Which planes and meshes are asked for details of their points.
-pub(super) struct Details {
+pub(super) struct GeometryDetails {
     /// For a checker, each plane.
     planes: Vec<bool>,
     /// For colours of their vertices, each mesh.
     meshes: Vec<bool>,
 }
 
-impl Details {
-    pub fn of(scene: &Scene, skips: Skips) -> Self {
+impl GeometryDetails {
+    pub fn of(scene: &Scene) -> Self {
         let checkers = scene.planes.iter().map(|plane| plane.checker.is_some());
         let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
         let colors = scene.meshes.iter().map(|mesh| has(mesh));
-        Self {
-            planes: checkers.map(|has| skips.does(Work::Checkers, has)).collect(),
-            meshes: colors.map(|has| skips.does(Work::VertexColors, has)).collect(),
-        }
+        Self { planes: checkers.collect(), meshes: colors.collect() }
     }
 
     /// Whether what was hit, whose material looks like this, is asked for any.
     #[inline(always)]
-    pub fn are_asked(&self, look: &Look, hit: &Hit) -> bool {
+    pub fn are_asked(&self, look: &CachedMaterial, hit: &Hit) -> bool {
         look.is_textured || look.has_normals || self.of_geometry(hit)
     }
 
@@ -93,7 +89,7 @@ impl Details {
     }
 
     /// Counts what is asked for.
-    pub fn count(&self, look: &Look, hit: &Hit, work: &mut WorkCounts) {
+    pub fn count(&self, look: &CachedMaterial, hit: &Hit, work: &mut FeatureCounts) {
         work.uv += u64::from(look.is_textured);
         let of_kind = match hit.id.geometry {
             Geometry::Planes => &mut work.checkers,

@@ -26,22 +26,22 @@ mod tiling;
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{Geometry, Hit, Hits, LANES, Ray, Rays};
+use crate::geometry::{Geometry, Hit, HitBatch, LANES, Ray, RayBatch};
 use crate::intersect::{Coherence, Intersector};
-use crate::scene::{Camera, FilmSettings, Material, Needs, RayMaker, Scene, Skips, Work};
+use crate::scene::{Camera, Feature, FilmSettings, Material, RayGenerator, Scene, SceneFeatures};
 use crate::surface::Surface;
-use adaptive::{Note, Notes};
-pub use adaptive::{STEPS, Seen};
-use bodies::{Bodies, Interiors};
-use clearance::Clearance;
-pub use counts::{Counts, NotFinite, RayCounts, WorkCounts};
-use details::EyeCone;
-use follow::Path;
-use look::{Details, Look};
+use adaptive::{Note, PixelRecords};
+pub use adaptive::{PixelRecord, STEPS};
+use bodies::{InteriorList, NestedDielectrics};
+use clearance::TransmissiveBounds;
+pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
+use details::PixelCone;
+use follow::PathState;
+use look::{CachedMaterial, GeometryDetails};
 use radiance::{Add, DARK, Develop, Radiance, put};
-use samples::Series;
+use samples::SamplePattern;
 pub use samples::{sample_positions, sample_steps};
-use shade::Light;
+use shade::WaveLighting;
 use tiling::Tile;
 pub use tiling::Tiling;
 
@@ -49,11 +49,11 @@ pub use tiling::Tiling;
 pub struct Integrator<'a> {
     scene: &'a Scene,
     intersector: &'a dyn Intersector,
-    rays: RayMaker,
+    rays: RayGenerator,
     view: View,
     tiling: Tiling,
     /// Where in a pixel its samples lie.
-    series: Series,
+    series: SamplePattern,
     /// From which difference on colours disagree, if any pixels get more samples than others.
     threshold: Option<f32>,
     /// Whether any surface is a mirror or lets light through: only then are rays followed.
@@ -63,27 +63,27 @@ pub struct Integrator<'a> {
     /// Whether textures, checkers or vertex colours are asked for anywhere.
     has_details: bool,
     /// How wide a ray from the eye is, where it is asked how much of a picture it sees.
-    lens: Option<EyeCone>,
+    lens: Option<PixelCone>,
     /// Whether meshes are asked for normals of their vertices.
     has_smooth_normals: bool,
     /// Whether materials are asked for highlights.
     has_highlights: bool,
     /// Whether shadow rays go out, to each light.
     asks: Vec<bool>,
-    details: Details,
+    details: GeometryDetails,
     /// How each material looks.
-    looks: Vec<Look>,
+    looks: Vec<CachedMaterial>,
     /// What the processor can do at once.
     arch: pulp::Arch,
-    bodies: Bodies,
+    bodies: NestedDielectrics,
     /// The bodies that the eye is in, if it is one point.
-    eye: Option<Interiors>,
+    eye: Option<InteriorList>,
     /// Whether rays may be absorbed, or meet what is no surface for them.
     may_pass: bool,
     /// Whether those from the eye may.
     may_pass_first: bool,
     /// Where light may go through anything on its way to a surface.
-    clearance: Clearance,
+    clearance: TransmissiveBounds,
 }
 
 /// Memory that a thread uses again and again.
@@ -91,34 +91,32 @@ pub struct Integrator<'a> {
 pub struct Scratch {
     tile: Tile,
     wave: Wave,
-    light: Light,
+    light: WaveLighting,
     next: Wave,
     /// The radiance of the tile's pixels: of one sample, and the sum of all.
     sample: Vec<Radiance>,
     sum: Vec<Radiance>,
-    notes: Notes,
+    notes: PixelRecords,
 }
 
 /// Rays that go through the intersector together, and what they hit.
 #[derive(Default)]
 struct Wave {
-    rays: Rays,
-    hits: Hits,
+    rays: RayBatch,
+    hits: HitBatch,
     /// Where each ray comes from and what it is worth; empty where all are whole samples, from an
     /// eye that is one point.
-    paths: Vec<Path>,
+    paths: Vec<PathState>,
 }
 
 impl<'a> Integrator<'a> {
-    /// An integrator for the scene's film settings, which looks through `camera`. It leaves out
-    /// only `skips` of what the scene has no need of.
+    /// An integrator for the scene's film settings, which looks through `camera`.
     pub fn new(
         scene: &'a Scene,
         intersector: &'a dyn Intersector,
         camera: &Camera,
         view: View,
         tiling: Tiling,
-        skips: Skips,
     ) -> Self {
         // Debug views are not averages: one sample.
         let film = match view {
@@ -126,12 +124,11 @@ impl<'a> Integrator<'a> {
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
         let rays = camera.rays(scene.film.size);
-        let needs = Needs::of(scene, skips);
-        let must = |work| needs.must(work);
-        let casts = scene.lights.iter().map(|light| light.casts_shadow());
-        let bodies = Bodies::of(scene);
+        let needs = SceneFeatures::of(scene);
+        let must = |work| needs.uses(work);
+        let bodies = NestedDielectrics::of(scene);
         let eye = match bodies.is_empty() {
-            true => Some(Interiors::default()),
+            true => Some(InteriorList::default()),
             false => rays.eye().map(|eye| bodies.holding(eye, scene, intersector)),
         };
         Self {
@@ -140,36 +137,41 @@ impl<'a> Integrator<'a> {
             rays,
             view,
             tiling,
-            series: Series::of(&film),
+            series: SamplePattern::of(&film),
             threshold: film.adaptive.map(|adaptive| adaptive.threshold),
-            follows: must(Work::Reflection) || must(Work::Refraction),
-            transmits: must(Work::Refraction),
-            has_details: [Work::Uv, Work::Checkers, Work::VertexColors, Work::NormalMaps]
-                .into_iter()
-                .any(must),
-            lens: must(Work::Mipmaps).then(|| EyeCone::of(&rays, &film)),
-            has_smooth_normals: must(Work::SmoothNormals),
-            has_highlights: must(Work::Highlights),
-            asks: casts.map(|casts| skips.does(Work::Shadows, casts)).collect(),
-            details: Details::of(scene, skips),
+            follows: must(Feature::Reflection) || must(Feature::Refraction),
+            transmits: must(Feature::Refraction),
+            has_details: [
+                Feature::Uv,
+                Feature::Checkers,
+                Feature::VertexColors,
+                Feature::NormalMaps,
+            ]
+            .into_iter()
+            .any(must),
+            lens: must(Feature::Mipmaps).then(|| PixelCone::of(&rays, &film)),
+            has_smooth_normals: must(Feature::SmoothNormals),
+            has_highlights: must(Feature::Highlights),
+            asks: scene.lights.iter().map(|light| light.casts_shadow()).collect(),
+            details: GeometryDetails::of(scene),
             looks: scene
                 .materials
                 .iter()
-                .map(|material| Look::of(scene, material, skips))
+                .map(|material| CachedMaterial::of(scene, material))
                 .collect(),
             arch: pulp::Arch::new(),
-            may_pass: eye.as_ref() != Some(&Interiors::default())
+            may_pass: eye.as_ref() != Some(&InteriorList::default())
                 || bodies.may_hide()
                 || follow::may_be_clear(scene),
             may_pass_first: match &eye {
                 Some(eye) => {
                     // In empty space nothing hides a surface.
                     let is_clear = |m: &Material| m.is_clear_in(1.0);
-                    *eye != Interiors::default() || scene.materials_in_use().any(is_clear)
+                    *eye != InteriorList::default() || scene.materials_in_use().any(is_clear)
                 }
                 None => true,
             },
-            clearance: Clearance::of(scene),
+            clearance: TransmissiveBounds::of(scene),
             bodies,
             eye,
         }
@@ -182,7 +184,7 @@ impl<'a> Integrator<'a> {
         &self,
         first: usize,
         pixels: &mut [Pixel],
-        seen: &mut [Seen],
+        seen: &mut [PixelRecord],
         scratch: &mut Scratch,
     ) -> Counts {
         let width = self.scene.film.size[0] as usize;
@@ -261,14 +263,20 @@ impl<'a> Integrator<'a> {
     }
 
     /// Finds what rays hit.
-    fn closest(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits, counts: &mut Counts) {
-        self.intersector.closest_of(rays, coherence, hits);
+    fn closest(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        hits: &mut HitBatch,
+        counts: &mut Counts,
+    ) {
+        self.intersector.closest_batch(rays, coherence, hits);
         counts.work.extras(self.intersector.closest_extras(rays), rays);
     }
 
     /// Finds which shadow rays are kept from their ends.
-    fn occluded(&self, rays: &Rays, blocked: &mut Vec<bool>, counts: &mut Counts) {
-        self.intersector.occluded_of(rays, Coherence::Coherent, blocked);
+    fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>, counts: &mut Counts) {
+        self.intersector.occluded_batch(rays, Coherence::Coherent, blocked);
         counts.work.extras(self.intersector.occluded_extras(), rays);
     }
 
@@ -296,11 +304,11 @@ impl<'a> Integrator<'a> {
 
 /// The rays from the eye through some pixels.
 struct Aim<'a> {
-    at: &'a RayMaker,
+    at: &'a RayGenerator,
     tile: &'a Tile,
     /// Where in each pixel.
     offset: [f64; 2],
-    rays: &'a mut Rays,
+    rays: &'a mut RayBatch,
 }
 
 impl pulp::WithSimd for Aim<'_> {
@@ -309,7 +317,7 @@ impl pulp::WithSimd for Aim<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let ([dx, dy], [left, top]) = (self.offset, self.tile.place);
-        let all = self.rays.fill(self.tile.places.len());
+        let all = self.rays.resize_blocks(self.tile.places.len());
         for (lines, [columns, rows]) in all.iter_mut().zip(&self.tile.places) {
             let (mut x, mut y) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
@@ -317,7 +325,7 @@ impl pulp::WithSimd for Aim<'_> {
                 x[i] = (columns[i] + left) + dx;
                 y[i] = (rows[i] + top) + dy;
             }
-            self.at.through_all(&x, &y, lines);
+            self.at.ray16(&x, &y, lines);
         }
     }
 }

@@ -4,15 +4,15 @@
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
-use super::bodies::Interiors;
-use super::follow::{Next, Path};
-use super::shade::Bounce;
+use super::bodies::InteriorList;
+use super::follow::{PathState, SpawnedRay};
+use super::shade::SpecularHit;
 use super::{Integrator, Tiling};
 use crate::film::View;
 use crate::geometry::{PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
-use crate::scene::{Camera, Lens, Material, Plane, Scene, Skips, Sphere};
-use crate::surface::{Cone, Surface};
+use crate::scene::{Camera, Material, Plane, Projection, Scene, Sphere};
+use crate::surface::{RayCone, Surface};
 
 /// A path: the surfaces that it met, whether it went through each, its share of the light, and
 /// where it came out.
@@ -23,7 +23,7 @@ struct Walk {
     position: DVec3,
     direction: DVec3,
     /// The bodies at its end.
-    inside: Interiors,
+    inside: InteriorList,
     /// A point farther on, with nothing in between.
     end: DVec3,
 }
@@ -34,12 +34,12 @@ fn walk(
     integrator: &Integrator<'_>,
     origin: DVec3,
     direction: DVec3,
-    inside: Interiors,
+    inside: InteriorList,
     choices: &[bool],
 ) -> Option<Walk> {
     let mut ray = Ray::new(origin, direction);
     let mut path =
-        Path { sample: 0, depth: 0, throughput: DVec3::ONE, inside, cone: Cone::default() };
+        PathState { sample: 0, depth: 0, throughput: DVec3::ONE, inside, cone: RayCone::default() };
     let mut met = Vec::new();
     let mut position = origin;
     for &through in choices {
@@ -51,16 +51,16 @@ fn walk(
             let surface = Surface::new(integrator.scene, &ray, &hit);
             let around = integrator.bodies.around(hit.id, surface.side, &path.inside);
             let material = &integrator.scene.materials[surface.material.0 as usize];
-            if !integrator.is_clear(material, &material.finish(), &around) {
+            if !integrator.is_clear(material, &material.shading_params(), &around) {
                 break (surface, hit);
             }
-            ray = ray.beyond(&hit, surface.side.opposite());
+            ray = ray.continue_past(&hit, surface.side.opposite());
             path.inside = around.behind;
         };
         // Of the two rays at most: the share that goes the chosen way, of all that goes there.
-        let mut sent: Vec<Next> = Vec::new();
+        let mut sent: Vec<SpawnedRay> = Vec::new();
         let finish = integrator.finish_at(&ray, &hit, &surface, &path.cone);
-        let bounce = Bounce { ray: 0, surface, finish };
+        let bounce = SpecularHit { ray: 0, surface, finish };
         integrator.send_on(&ray, &hit, &bounce, &path, &mut |next| sent.push(next));
         let chosen = sent.iter().position(|next| next.is_refracted == through).unwrap_or(0);
         let next = (!sent.is_empty()).then(|| sent.swap_remove(chosen))?;
@@ -70,7 +70,7 @@ fn walk(
     }
     let mut next = [None];
     integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut next);
-    let end = ray.at((ray.start() + next[0]?.t) * 0.5);
+    let end = ray.at((ray.start_t() + next[0]?.t) * 0.5);
     let (direction, throughput, inside) = (ray.direction.normalize(), path.throughput, path.inside);
     Some(Walk { met, throughput, position, direction, inside, end })
 }
@@ -106,7 +106,7 @@ fn scene() -> Scene {
     }
     scene.planes.push(Plane::new(DVec3::NEG_Y * 1.1, DVec3::new(0.1, 1.0, 0.0), water));
     scene.planes.push(Plane::new(DVec3::X * -2.9, DVec3::new(1.0, 0.1, 0.2), pane));
-    let lens = Lens::FovY(1.0);
+    let lens = Projection::FovY(1.0);
     scene.cameras.push(Camera::look_at(DVec3::Z * 4.0, DVec3::ZERO, DVec3::Y, lens).unwrap());
     scene
 }
@@ -139,7 +139,7 @@ proptest! {
         let intersector = BruteForce::new(&scene, Precision::Certified);
         let camera = &scene.cameras[0];
         let integrator =
-            Integrator::new(&scene, &intersector, camera, View::Beauty, Tiling::default(), Skips::default());
+            Integrator::new(&scene, &intersector, camera, View::Beauty, Tiling::default());
         let origin = DVec3::from(origin);
         let to = DVec3::from(target) - origin;
         prop_assume!(to.length() > 0.1);
@@ -156,7 +156,7 @@ proptest! {
         // Back from a point beyond the last surface, within the same bodies.
         let end = there.end;
         prop_assume!(holding(end) == there.inside);
-        let beyond = integrator.absorbed(&Ray::between(there.position, end), 1.0, &there.inside);
+        let beyond = integrator.absorbed(&Ray::segment(there.position, end), 1.0, &there.inside);
         let ways: Vec<bool> = there.met.iter().rev().map(|(_, through)| *through).collect();
         let back = walk(&integrator, end, -there.direction, holding(end), &ways).unwrap();
         let condition = condition(&integrator, &back, end, -there.direction);
@@ -165,7 +165,7 @@ proptest! {
         met.reverse();
         prop_assert_eq!(&met, &there.met);
         // From its last surface the way back goes on to the origin.
-        let rest = integrator.absorbed(&Ray::between(back.position, origin), 1.0, &back.inside);
+        let rest = integrator.absorbed(&Ray::segment(back.position, origin), 1.0, &back.inside);
         let ratio = (back.throughput * rest) / (there.throughput * beyond);
         let off = (ratio - 1.0).abs().max_element();
         prop_assert!(off < 1e-12, "{off:e} over {:?}", there.met);

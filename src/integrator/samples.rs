@@ -14,7 +14,7 @@ pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
 /// How many samples a pixel can have, ascending: the first number is that of every pixel; at each of
 /// the others it is seen whether there is need of more.
 pub fn sample_steps(film: &FilmSettings) -> Vec<usize> {
-    Series::of(film).steps
+    SamplePattern::of(film).steps
 }
 
 fn placed(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
@@ -24,14 +24,14 @@ fn placed(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 }
 
 /// The samples of a pixel in the order in which they are taken.
-pub(super) struct Series {
+pub(super) struct SamplePattern {
     /// Where they lie: at first relative to the pixel's sample position, then to its corner.
     pub offsets: Vec<[f64; 2]>,
     /// How many there are after each step, ascending: where one may stop.
     pub steps: Vec<usize>,
 }
 
-impl Series {
+impl SamplePattern {
     /// The samples of a film. The first step is those that every pixel has.
     pub fn of(film: &FilmSettings) -> Self {
         let series = match film.adaptive {
@@ -44,12 +44,15 @@ impl Series {
 
 /// Regular samples: their mean is 0, and they stay within the pixel's square. Of a grid the coarser
 /// grids within it come first.
-fn regular(spp: u32) -> Series {
+fn regular(spp: u32) -> SamplePattern {
     let side = spp.isqrt();
     if side * side == spp {
         let (cells, steps) = grid(side);
         let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
-        return Series { offsets: cells.into_iter().map(|cell| cell.map(place)).collect(), steps };
+        return SamplePattern {
+            offsets: cells.into_iter().map(|cell| cell.map(place)).collect(),
+            steps,
+        };
     }
     let n = f64::from(spp);
     let golden = (5f64.sqrt() - 1.0) / 2.0;
@@ -59,7 +62,7 @@ fn regular(spp: u32) -> Series {
     let mean = (0..spp).map(lattice).sum::<f64>() / n;
     let reach = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
     let place = |i| [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / reach)];
-    Series { offsets: (0..spp).map(place).collect(), steps: vec![spp as usize] }
+    SamplePattern { offsets: (0..spp).map(place).collect(), steps: vec![spp as usize] }
 }
 
 /// The cells of a square grid, in an order that begins with the coarser grids within it, and how
@@ -94,11 +97,11 @@ fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
 /// Where the regular ones of `max` begin with those of `min`, it is exactly these. Otherwise, of
 /// `max` regular ones, those nearest to the `min` are replaced by them, and the next to be taken are
 /// four around each, far from it.
-fn progressive(min: u32, max: u32) -> Series {
+fn progressive(min: u32, max: u32) -> SamplePattern {
     let (first, all) = (regular(min).offsets, regular(max));
     if all.offsets.starts_with(&first) {
         let steps = all.steps.into_iter().filter(|&step| step >= first.len()).collect();
-        return Series { offsets: all.offsets, steps };
+        return SamplePattern { offsets: all.offsets, steps };
     }
     let mut rest = all.offsets;
     let mut take = |[x, y]: [f64; 2]| {
@@ -120,7 +123,7 @@ fn progressive(min: u32, max: u32) -> Series {
     }
     offsets.append(&mut rest);
     steps.push(offsets.len());
-    Series { offsets, steps }
+    SamplePattern { offsets, steps }
 }
 
 #[cfg(test)]
@@ -177,7 +180,7 @@ mod tests {
     #[test]
     fn adaptive_samples_begin_with_the_regular_ones_and_are_as_many_as_asked_for() {
         for (min, max) in [(1, 1), (1, 2), (1, 16), (2, 9), (3, 17), (4, 64), (4, 5), (5, 100)] {
-            let Series { offsets, steps } = progressive(min, max);
+            let SamplePattern { offsets, steps } = progressive(min, max);
             assert!(offsets.starts_with(&regular(min).offsets), "{min} {max}");
             assert_eq!((offsets.len(), steps[0]), (max as usize, min as usize));
             assert_eq!(steps.last(), Some(&offsets.len()));
@@ -189,7 +192,7 @@ mod tests {
     #[test]
     fn where_a_sample_may_stop_the_mean_is_the_sample_position() {
         for spp in [9, 25, 36, 49, 81, 100, 225] {
-            let Series { offsets, steps } = regular(spp);
+            let SamplePattern { offsets, steps } = regular(spp);
             for step in steps {
                 for axis in 0..2 {
                     let sum: f64 = offsets[..step].iter().map(|s| s[axis]).sum();

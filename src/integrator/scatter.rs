@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use crate::integrator::Integrator;
-use crate::integrator::bodies::Around;
-use crate::scene::Finish;
-use crate::shading::{Interface, reflect};
+use crate::integrator::bodies::InterfaceMedia;
+use crate::scene::ShadingParams;
+use crate::shading::{DielectricInterface, reflect};
 use crate::surface::Surface;
 
 /// Where a surface sends light, and how much of it.
@@ -21,9 +21,9 @@ impl Integrator<'_> {
     /// What becomes of light that comes along `incoming`, of length 1.
     pub(super) fn scatter(
         &self,
-        finish: &Finish,
+        finish: &ShadingParams,
         surface: &Surface,
-        around: &Around,
+        around: &InterfaceMedia,
         incoming: DVec3,
     ) -> Scattered {
         let material = &self.scene.materials[surface.material.0 as usize];
@@ -33,11 +33,11 @@ impl Integrator<'_> {
         let by = |normal: DVec3| {
             let cosine = -normal.dot(incoming);
             let interface = if finish.transmit == Vec3::ZERO {
-                Interface::new(cosine, 1.0, 1.0)
+                DielectricInterface::new(cosine, 1.0, 1.0)
             } else if material.thin {
-                Interface::sheet(cosine, ior(&around.before), material.ior)
+                DielectricInterface::sheet(cosine, ior(&around.before), material.ior)
             } else {
-                Interface::new(cosine, ior(&around.before), ior(&around.behind))
+                DielectricInterface::new(cosine, ior(&around.before), ior(&around.behind))
             };
             let refracted = match interface.is_straight() {
                 true => None,

@@ -6,47 +6,47 @@ mod sums;
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{LANES, Lanes, Rays};
-use crate::integrator::counts::Cause;
+use crate::geometry::{LANES, Lanes, RayBatch};
+use crate::integrator::counts::NotFiniteCause;
 use crate::integrator::radiance::{Radiance, at};
-use crate::integrator::shadow::Through;
+use crate::integrator::shadow::TransmissiveShadows;
 use crate::integrator::{Counts, Integrator, Wave};
-use crate::scene::{Finish, LightKind};
-use crate::surface::{Surface, Surfaces};
+use crate::scene::{LightKind, ShadingParams};
+use crate::surface::{Surface, Surface16};
 use meet::Meet;
 use reach::Reach;
-use sums::{Settle, Sums};
+use sums::{RadianceSums, Settle};
 
 /// The light that a wave's rays bring back, and what it takes to work it out.
 #[derive(Default)]
-pub(super) struct Light {
+pub(super) struct WaveLighting {
     /// The radiance along each ray, but for what mirrors and glass show.
     pub radiance: Vec<Radiance>,
     /// Rays of which the radiance is not finite, and is NaN here, with what made it so.
-    pub spoilt: Vec<(u32, Cause)>,
+    pub spoilt: Vec<(u32, NotFiniteCause)>,
     /// The mirrors and the glass that were hit, by ray.
-    pub bounces: Vec<Bounce>,
+    pub bounces: Vec<SpecularHit>,
     /// Room for surfaces, and how many of them are in use.
-    lit: (Vec<Lit>, usize),
-    shadow: Shadows,
+    lit: (Vec<LitSurface16>, usize),
+    shadow: ShadowQueue,
 }
 
 /// A mirror or a glass that a ray of the wave hit.
-pub(super) struct Bounce {
+pub(super) struct SpecularHit {
     /// The ray.
     pub ray: u32,
     /// The surface, its normal as a normal map bends it.
     pub surface: Surface,
     /// What it does with light there.
-    pub finish: Finish,
+    pub finish: ShadingParams,
 }
 
 /// Sixteen surfaces that wait for light.
 #[repr(C, align(64))]
-struct Lit {
+struct LitSurface16 {
     /// Which sixteen of the wave.
     block: usize,
-    surfaces: Surfaces,
+    surfaces: Surface16,
     /// Those that scatter any light.
     here: Lanes<bool>,
     diffuse: [Lanes<f32>; 3],
@@ -64,22 +64,22 @@ struct Lit {
 
 /// Shadow rays, side by side with what waits on them.
 #[derive(Default)]
-pub(super) struct Shadows {
+pub(super) struct ShadowQueue {
     /// From the surfaces to one light, in the lanes of the rays that met them.
-    pub rays: Rays,
+    pub rays: RayBatch,
     /// What waits on each sixteen.
-    pub waiting: Vec<Waiting>,
+    pub waiting: Vec<PendingLight>,
     /// Whether anything stands in the way, or may: what goes through glass is in `left`.
     pub blocked: Vec<bool>,
     /// The shadow rays that go through glass, and what is left of the light there.
     pub left: Vec<(usize, DVec3)>,
     /// Room for those that go through glass.
-    pub through: Through,
+    pub through: TransmissiveShadows,
 }
 
 /// The radiance that waits on sixteen shadow rays.
 #[repr(C, align(64))]
-pub(super) struct Waiting {
+pub(super) struct PendingLight {
     /// Which sixteen of the wave.
     pub block: usize,
     with: Radiance,
@@ -89,7 +89,7 @@ pub(super) struct Waiting {
 
 impl Integrator<'_> {
     /// Works out the radiance along each ray of a wave.
-    pub(super) fn shade(&self, wave: &Wave, light: &mut Light, counts: &mut Counts) {
+    pub(super) fn shade(&self, wave: &Wave, light: &mut WaveLighting, counts: &mut Counts) {
         let meet = Meet { integrator: self, wave, light, work: &mut counts.work };
         match (self.has_details, self.has_smooth_normals) {
             (false, false) => self.arch.dispatch(For::<_, false, false>(meet)),
@@ -97,10 +97,10 @@ impl Integrator<'_> {
             (true, false) => self.arch.dispatch(For::<_, true, false>(meet)),
             (true, true) => self.arch.dispatch(For::<_, true, true>(meet)),
         }
-        let Light { radiance, spoilt, lit: (lit, filled), shadow, .. } = light;
+        let WaveLighting { radiance, spoilt, lit: (lit, filled), shadow, .. } = light;
         let lit = &lit[..*filled];
         for (light, &asks) in self.scene.lights.iter().zip(&self.asks) {
-            let to = &mut Sums { radiance, spoilt };
+            let to = &mut RadianceSums { radiance, spoilt };
             if light.kind == LightKind::Ambient {
                 for lit in lit {
                     let mut with = lit.diffuse;
@@ -125,7 +125,7 @@ impl Integrator<'_> {
                 continue;
             }
             self.occluded(&shadow.rays, &mut shadow.blocked, counts);
-            let asked = |waiting: &Waiting| waiting.here.iter().filter(|&&here| here).count();
+            let asked = |waiting: &PendingLight| waiting.here.iter().filter(|&&here| here).count();
             counts.rays.shadow += shadow.waiting.iter().map(asked).sum::<usize>() as u64;
             if !light.casts_shadow() {
                 shadow.blocked.fill(false);
@@ -134,7 +134,7 @@ impl Integrator<'_> {
             }
             self.arch.dispatch(Settle { shadow, to });
             for &(i, left) in shadow.left.iter().filter(|(_, left)| *left != DVec3::ZERO) {
-                let Waiting { block, with, .. } = &shadow.waiting[i / LANES];
+                let PendingLight { block, with, .. } = &shadow.waiting[i / LANES];
                 let with = (at(with, i % LANES).as_dvec3() * left).as_vec3();
                 to.add(*block, i % LANES, with);
             }
@@ -146,11 +146,11 @@ impl Integrator<'_> {
 /// A kernel, compiled for what a scene has: so much of it as these constants say.
 struct For<K, const A: bool, const B: bool = false>(K);
 
-impl Default for Lit {
+impl Default for LitSurface16 {
     fn default() -> Self {
         Self {
             block: 0,
-            surfaces: Surfaces::default(),
+            surfaces: Surface16::default(),
             here: [false; LANES],
             diffuse: [[0.0; LANES]; 3],
             specular: [[0.0; LANES]; 3],
@@ -163,7 +163,7 @@ impl Default for Lit {
     }
 }
 
-impl Light {
+impl WaveLighting {
     /// The radiance along ray `i`.
     #[inline(always)]
     pub fn radiance(&self, i: usize) -> Vec3 {

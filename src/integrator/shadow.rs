@@ -6,39 +6,39 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Hit, Hits, LANES, Ray, Rays, Side};
-use crate::integrator::bodies::Interiors;
-use crate::integrator::shade::Shadows;
+use crate::geometry::{Hit, HitBatch, LANES, Ray, RayBatch, Side};
+use crate::integrator::bodies::InteriorList;
+use crate::integrator::shade::ShadowQueue;
 use crate::integrator::{Counts, Integrator, Wave};
 use crate::intersect::Coherence;
 use crate::scene::Shadow;
-use crate::shading::{Interface, transmittance};
-use crate::surface::{Cone, Surface};
+use crate::shading::{DielectricInterface, transmittance};
+use crate::surface::{RayCone, Surface};
 
 /// Room for shadow rays that may go through glass.
 #[derive(Default)]
-pub(super) struct Through {
+pub(super) struct TransmissiveShadows {
     /// Whether each certainly meets none.
     clear: Vec<bool>,
     beams: Vec<Beam>,
-    ahead: Rays,
-    traced: Rays,
-    hits: Hits,
+    ahead: RayBatch,
+    traced: RayBatch,
+    hits: HitBatch,
 }
 
 /// A shadow ray that nothing blocks, on its way.
 struct Beam {
     /// Which of the shadow rays it is.
     at: usize,
-    inside: Interiors,
+    inside: InteriorList,
     left: DVec3,
 }
 
 impl Integrator<'_> {
     /// The bodies in which a shadow ray begins that leaves the surface that ray `i` of a wave hit.
-    fn starts_in(&self, shadow: &Ray, wave: &Wave, i: usize) -> Interiors {
+    fn starts_in(&self, shadow: &Ray, wave: &Wave, i: usize) -> InteriorList {
         let (ray, hit, path) = (wave.rays.ray(i), wave.hits.get(i), self.path(wave, i));
-        let (Some(hit), Some(from)) = (hit, shadow.from) else { return path.inside };
+        let (Some(hit), Some(from)) = (hit, shadow.departure) else { return path.inside };
         let seen = Surface::new(self.scene, &ray, &hit).side;
         let around = self.bodies.around(hit.id, seen, &path.inside);
         if from.side == seen { around.before } else { around.behind }
@@ -50,11 +50,11 @@ impl Integrator<'_> {
         &self,
         shadow: Shadow,
         wave: &Wave,
-        shadows: &mut Shadows,
+        shadows: &mut ShadowQueue,
         counts: &mut Counts,
     ) {
-        let Shadows { rays, waiting, blocked, left, through } = shadows;
-        let Through { clear, beams, ahead, traced, hits } = through;
+        let ShadowQueue { rays, waiting, blocked, left, through } = shadows;
+        let TransmissiveShadows { clear, beams, ahead, traced, hits } = through;
         self.clearance.of_all(rays, self.arch, clear);
         left.clear();
         beams.clear();
@@ -93,7 +93,7 @@ impl Integrator<'_> {
                     Shadow::Opaque => beam.left == DVec3::ONE,
                 };
                 if goes_on {
-                    ahead.push(&ray.beyond(&hit, side));
+                    ahead.push(&ray.continue_past(&hit, side));
                 }
                 goes_on
             });
@@ -104,12 +104,12 @@ impl Integrator<'_> {
     }
 
     /// What is left of light after the way of a ray, from where it starts to `end`.
-    pub(super) fn absorbed(&self, ray: &Ray, end: f64, inside: &Interiors) -> DVec3 {
+    pub(super) fn absorbed(&self, ray: &Ray, end: f64, inside: &InteriorList) -> DVec3 {
         let absorption = self.bodies.medium(inside).absorption;
         if absorption == glam::Vec3::ZERO {
             return DVec3::ONE;
         }
-        transmittance(absorption, (end - ray.start()) * ray.direction.length())
+        transmittance(absorption, (end - ray.start_t()) * ray.direction.length())
     }
 
     /// Takes a beam through the surface that it met; says on which side it goes on.
@@ -129,12 +129,12 @@ impl Integrator<'_> {
             let cosine = surface.normal.dot(ray.direction).abs() / ray.direction.length();
             let ior = self.bodies.medium(&beam.inside).ior;
             let interface = if material.thin {
-                Interface::sheet(cosine, ior.min(material.ior), ior.max(material.ior))
+                DielectricInterface::sheet(cosine, ior.min(material.ior), ior.max(material.ior))
             } else {
                 let [a, b] = [&around.before, &around.behind].map(|i| self.bodies.medium(i).ior);
-                Interface::new(cosine, a.min(b), a.max(b))
+                DielectricInterface::new(cosine, a.min(b), a.max(b))
             };
-            let finish = self.finish_at(ray, hit, &surface, &Cone::default());
+            let finish = self.finish_at(ray, hit, &surface, &RayCone::default());
             beam.left *= finish.transmit.as_dvec3() * (1.0 - interface.reflected);
         }
         beam.inside = around.behind;

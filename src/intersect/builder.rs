@@ -3,16 +3,16 @@
 
 use crate::error::Result;
 use crate::geometry::Bounds;
+use crate::intersect::blas_cache::meshes_in_use;
 #[cfg(feature = "embree")]
 use crate::intersect::embree::{self, Embree};
-use crate::intersect::kept::used;
-use crate::intersect::standing::Standing;
+use crate::intersect::frame_diff::PreviousFrame;
 use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
-use crate::scene::{MeshId, Scene, Skips, Work};
+use crate::scene::{MeshId, Scene};
 
 /// What building took, and what was kept of a frame before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Built {
+pub struct BuildStats {
     /// Meshes whose trees were built.
     pub meshes: u64,
     /// Meshes that were there already, from another frame.
@@ -36,7 +36,7 @@ pub struct Built {
     pub masked: u64,
 }
 
-impl Built {
+impl BuildStats {
     /// Each count, of this and another.
     fn with(self, other: Self, each: impl Fn(u64, u64) -> u64) -> Self {
         Self {
@@ -59,13 +59,13 @@ impl Built {
     }
 }
 
-impl std::ops::AddAssign for Built {
+impl std::ops::AddAssign for BuildStats {
     fn add_assign(&mut self, other: Self) {
         *self = self.with(other, |a, b| a + b);
     }
 }
 
-impl std::ops::Sub for Built {
+impl std::ops::Sub for BuildStats {
     type Output = Self;
 
     /// What was built since there was only `before`.
@@ -75,35 +75,35 @@ impl std::ops::Sub for Built {
 }
 
 /// Builds intersectors of checked scenes.
-pub struct Builder {
+pub struct IntersectorBuilder {
     backend: Backend,
     precision: Precision,
     threads: usize,
     quality: BuildQuality,
-    skips: Skips,
     /// What frames share; nothing for one picture.
-    shared: Option<Shared>,
-    built: Built,
+    shared: Option<FrameCache>,
+    built: BuildStats,
 }
 
 /// What frames share, for whichever backend it was built.
-struct Shared {
-    standing: Standing,
-    trees: bvh::Shared,
+struct FrameCache {
+    standing: PreviousFrame,
+    trees: bvh::FrameCache,
     #[cfg(feature = "embree")]
-    embree: embree::Shared,
+    embree: embree::FrameCache,
 }
 
-impl Builder {
+impl IntersectorBuilder {
     /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
-        let (quality, skips, built) = Default::default();
-        Self { backend, precision, threads, quality, skips, shared: None, built }
-    }
-
-    /// The same builder, which leaves out only `skips` of what a scene has no need of.
-    pub fn skipping(self, skips: Skips) -> Self {
-        Self { skips, ..self }
+        Self {
+            backend,
+            precision,
+            threads,
+            quality: BuildQuality::default(),
+            shared: None,
+            built: BuildStats::default(),
+        }
     }
 
     /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
@@ -122,11 +122,11 @@ impl Builder {
     ) -> Self {
         // The BVH is in f64.
         let _ = stage;
-        let shared = Shared {
-            standing: Standing::default(),
-            trees: bvh::Shared::default(),
+        let shared = FrameCache {
+            standing: PreviousFrame::default(),
+            trees: bvh::FrameCache::default(),
             #[cfg(feature = "embree")]
-            embree: embree::Shared::new(stage),
+            embree: embree::FrameCache::new(stage),
         };
         Self { shared: Some(shared), ..Self::new(backend, precision, threads) }
     }
@@ -143,23 +143,22 @@ impl Builder {
     pub fn build<'s>(&mut self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
         let is_there = |mesh: MeshId| !scene.meshes[mesh.0 as usize].triangles.is_empty();
         let stand = scene.instances.iter().filter(|i| is_there(i.mesh)).count() as u64;
-        let used = used(scene).into_iter().filter(|&used| used).count() as u64;
-        let before = self.shared.as_ref().map_or(Built::default(), Shared::built);
+        let used = meshes_in_use(scene).into_iter().filter(|&used| used).count() as u64;
+        let before = self.shared.as_ref().map_or(BuildStats::default(), FrameCache::built);
         let shared = self.shared.as_mut();
         let (intersector, moved, work): (Box<dyn Intersector + 's>, _, _) = match self.backend {
             #[cfg(feature = "embree")]
             Backend::Embree => {
-                let asked = embree::Asked {
+                let asked = embree::BuildOptions {
                     precision: self.precision,
                     threads: self.threads,
                     quality: self.quality,
-                    skips: self.skips,
                     width: None,
                 };
                 let (built, moved) = match shared {
                     None => (Embree::build_as(scene, asked)?, None),
                     Some(shared) => {
-                        let moved = shared.standing.follow(scene);
+                        let moved = shared.standing.advance(scene);
                         let (boxes, kept) = (shared.standing.boxes(), &mut shared.embree);
                         (Embree::build_sharing(scene, asked, boxes, kept, moved.as_ref())?, moved)
                     }
@@ -170,34 +169,33 @@ impl Builder {
             Backend::Rust => {
                 // The BVH is built on the caller's rayon pool, and always has all its levels.
                 let _ = self.threads;
-                let (mut built, moved) = match shared {
+                let (built, moved) = match shared {
                     None => (Bvh::build(scene, self.precision), None),
                     Some(shared) => {
-                        let moved = shared.standing.follow(scene);
+                        let moved = shared.standing.advance(scene);
                         let trees = &mut shared.trees;
                         (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
                     }
                 };
-                built.planes = self.skips.does(Work::Planes, built.planes);
                 (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
             }
         };
         let built = match &self.shared {
-            None => Built { meshes: used, tops: 1, ..Built::default() },
+            None => BuildStats { meshes: used, tops: 1, ..BuildStats::default() },
             Some(shared) => shared.built() - before,
         };
         let moved = moved.unwrap_or_default();
         let (sphere_sets, instanced) = work;
-        let is_tested = |&i: &u32| self.skips.does(Work::AlphaTests, scene.is_masked(i));
-        let masked = (0..scene.instances.len() as u32).filter(is_tested).count() as u64;
+        let masked =
+            (0..scene.instances.len() as u32).filter(|&i| scene.is_masked(i)).count() as u64;
         self.built += match built.tops {
-            0 => Built {
+            0 => BuildStats {
                 tops_kept: 1,
                 moved: moved.instances.len() as u64,
                 spheres_moved: moved.spheres.len() as u64,
                 ..built
             },
-            _ => Built { placed: stand, sphere_sets, instanced, masked, ..built },
+            _ => BuildStats { placed: stand, sphere_sets, instanced, masked, ..built },
         };
         self.built.reused += used.saturating_sub(built.meshes);
         Ok(intersector)
@@ -209,22 +207,22 @@ impl Builder {
     }
 
     /// What all intersectors so far took.
-    pub fn built(&self) -> Built {
+    pub fn stats(&self) -> BuildStats {
         self.built
     }
 }
 
-impl Shared {
+impl FrameCache {
     /// How many meshes, and levels above them, were built.
-    fn built(&self) -> Built {
+    fn built(&self) -> BuildStats {
         let (meshes, tops) = (self.trees.built(), self.trees.tops());
         #[cfg(feature = "embree")]
         let (meshes, tops) = (meshes + self.embree.built(), tops + self.embree.tops());
-        Built { meshes, tops, ..Built::default() }
+        BuildStats { meshes, tops, ..BuildStats::default() }
     }
 }
 
-impl std::fmt::Debug for Builder {
+impl std::fmt::Debug for IntersectorBuilder {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Builder").field("built", &self.built).finish_non_exhaustive()
     }

@@ -4,27 +4,27 @@
 //! feature `embree`), [`Bvh`], the pure-Rust fallback and judge, and [`BruteForce`], for tests.
 //! They share the primitives' tests in [`primitive`]; what differs is which primitives they try.
 
-mod brute;
+mod blas_cache;
+mod brute_force;
+mod build_quality;
 mod builder;
 mod bvh;
 #[cfg(feature = "embree")]
 mod embree;
-mod entry;
-mod kept;
-mod leaving;
+mod frame_diff;
+mod object_space;
 pub mod primitive;
-mod quality;
-mod standing;
+mod self_intersection;
 
-pub use brute::BruteForce;
-pub use builder::{Builder, Built};
+pub use brute_force::BruteForce;
+pub use build_quality::BuildQuality;
+pub use builder::{BuildStats, IntersectorBuilder};
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
-pub use quality::BuildQuality;
 
 use crate::error::Result;
-use crate::geometry::{Hit, Hits, Ray, Rays};
+use crate::geometry::{Hit, HitBatch, Ray, RayBatch};
 use crate::scene::Scene;
 
 /// Whether the rays of a batch go much the same way, which a packet tracer can use.
@@ -38,7 +38,7 @@ pub enum Coherence {
 
 /// What an intersector does with the rays of a batch besides walking its trees.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Extras {
+pub struct ExtraTests {
     /// It tries each ray against planes.
     pub planes: bool,
     /// It looks at each hit that Embree finds, before Embree goes on.
@@ -70,27 +70,27 @@ pub trait Intersector: Send + Sync {
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
 
     /// What it does besides, when it looks for the closest hits of these rays.
-    fn closest_extras(&self, _: &Rays) -> Extras {
-        Extras::default()
+    fn closest_extras(&self, _: &RayBatch) -> ExtraTests {
+        ExtraTests::default()
     }
 
     /// What it does besides, when it looks for what stands in the way of any rays.
-    fn occluded_extras(&self) -> Extras {
-        Extras::default()
+    fn occluded_extras(&self) -> ExtraTests {
+        ExtraTests::default()
     }
 
     /// As [`Intersector::closest`], of rays that stand side by side.
-    fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
-        let (places, all) = in_use(rays);
+    fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
+        let (places, all) = active_rays(rays);
         let mut found = vec![None; all.len()];
         self.closest(&all, coherence, &mut found);
-        hits.reset(rays.len());
+        hits.reset_to_misses(rays.len());
         places.into_iter().zip(found).for_each(|(i, hit)| hits.set(i, hit));
     }
 
     /// As [`Intersector::occluded`], of rays that stand side by side.
-    fn occluded_of(&self, rays: &Rays, coherence: Coherence, blocked: &mut Vec<bool>) {
-        let (places, all) = in_use(rays);
+    fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, blocked: &mut Vec<bool>) {
+        let (places, all) = active_rays(rays);
         let mut found = vec![false; all.len()];
         self.occluded(&all, coherence, &mut found);
         blocked.clear();
@@ -100,7 +100,7 @@ pub trait Intersector: Send + Sync {
 }
 
 /// The rays of a batch that may meet anything, and their places.
-fn in_use(rays: &Rays) -> (Vec<usize>, Vec<Ray>) {
+fn active_rays(rays: &RayBatch) -> (Vec<usize>, Vec<Ray>) {
     rays.iter().enumerate().filter(|(_, ray)| ray.tmax > 0.0).unzip()
 }
 
@@ -164,6 +164,6 @@ impl Backend {
         precision: Precision,
         threads: usize,
     ) -> Result<Box<dyn Intersector + '_>> {
-        Builder::new(self, precision, threads).build(scene)
+        IntersectorBuilder::new(self, precision, threads).build(scene)
     }
 }

@@ -1,11 +1,13 @@
 //! One ray against one primitive, in f64 and in world space: what every backend means by a hit.
 //!
-//! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`leaving`],
-//! [`starts_in_plane`] and [`starts_on`] say which those are.
+//! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`sphere_departure`],
+//! [`starts_on_plane`] and [`starts_on_triangle`] say which those are.
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
 use crate::intersect::Precision;
-pub use crate::intersect::leaving::{Leaving, leaving, starts_in_plane, starts_on};
+pub use crate::intersect::self_intersection::{
+    SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
+};
 use crate::scene::Scene;
 
 /// The primitives of a scene, as a precision tests them.
@@ -28,19 +30,19 @@ impl Primitives<'_> {
         inverse_length_squared: f64,
         limit: f64,
     ) -> Option<Hit> {
-        let Some(past) = ray.past else {
+        let Some(past) = ray.continuation else {
             return self.sphere_root(index, ray, inverse_length_squared, limit, false);
         };
         let id = PrimitiveId::sphere(index);
-        if past.through.id == id {
+        if past.crossed.id == id {
             // Gone into, it is met at its far side, which rounding may put at the same t.
-            return (past.through.side == Side::Back)
+            return (past.crossed.side == Side::Back)
                 .then(|| self.sphere_root(index, ray, inverse_length_squared, limit, true))?
                 .filter(|hit| hit.t >= past.t);
         }
         [false, true].into_iter().find_map(|far| {
             self.sphere_root(index, ray, inverse_length_squared, limit, far)
-                .filter(|hit| !past.is_beyond(hit.t, id))
+                .filter(|hit| !past.excludes(hit.t, id))
         })
     }
 
@@ -61,9 +63,9 @@ impl Primitives<'_> {
             Precision::Fast => {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
                 let t = sphere::first_root(roots, ray.tmax, false)?;
-                match leaving(self.scene, index, ray) {
-                    Leaving::Outward => return None,
-                    Leaving::No if !far => t,
+                match sphere_departure(self.scene, index, ray) {
+                    SphereDeparture::Outward => return None,
+                    SphereDeparture::No if !far => t,
                     _ => sphere::first_root(roots, ray.tmax, true)?,
                 }
             }
@@ -73,10 +75,10 @@ impl Primitives<'_> {
                 if estimate(s.center, s.radius, origin, direction, inverse).is_outside(limit) {
                     return None;
                 }
-                let inward = match leaving(self.scene, index, ray) {
-                    Leaving::Outward => return None,
-                    Leaving::No => far,
-                    Leaving::Inward => true,
+                let inward = match sphere_departure(self.scene, index, ray) {
+                    SphereDeparture::Outward => return None,
+                    SphereDeparture::No => far,
+                    SphereDeparture::Inward => true,
                 };
                 first_root(s.center, s.radius, origin, direction, ray.tmax, inward)?
             }
@@ -96,7 +98,7 @@ impl Primitives<'_> {
                 use plane::certified::{certainly_misses, crossing};
                 // A ray that leaves the plane nearly meets it, which is dear to decide.
                 if certainly_misses(p.point, p.normal, ray.origin, ray.direction, ray.tmax)
-                    || starts_in_plane(self.scene, index, ray)
+                    || starts_on_plane(self.scene, index, ray)
                 {
                     return None;
                 }
@@ -104,7 +106,7 @@ impl Primitives<'_> {
             }
         };
         let id = PrimitiveId::plane(index);
-        if starts_in_plane(self.scene, index, ray) || lies_behind(ray, t, id) {
+        if starts_on_plane(self.scene, index, ray) || lies_behind(ray, t, id) {
             return None;
         }
         Some(Hit { t, u: 0.0, v: 0.0, id })
@@ -113,10 +115,10 @@ impl Primitives<'_> {
     /// Where `ray` meets the triangle `id`. A hit beyond `limit` may be left out.
     #[inline]
     pub fn triangle(&self, id: PrimitiveId, ray: &Ray, limit: f64) -> Option<Hit> {
-        if ray.from.is_some_and(|from| from.id == id) {
+        if ray.departure.is_some_and(|from| from.id == id) {
             return None;
         }
-        let corners = self.scene.triangle(id);
+        let corners = self.scene.triangle_vertices(id);
         let crossing = match self.precision {
             Precision::Fast => triangle::intersect(corners, ray.origin, ray.direction)
                 .filter(|hit| hit.t > 0.0 && hit.t < ray.tmax)?,
@@ -129,7 +131,7 @@ impl Primitives<'_> {
             }
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
-        let left = starts_on(self.scene, corners, ray) || lies_behind(ray, hit.t, id);
+        let left = starts_on_triangle(self.scene, corners, ray) || lies_behind(ray, hit.t, id);
         (!left && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
     }
 
@@ -151,7 +153,7 @@ impl Primitives<'_> {
     pub fn merge_planes(&self, ray: &Ray, best: &mut Option<Hit>) {
         for index in 0..self.scene.planes.len() as u32 {
             if let Some(hit) = self.plane(index, ray) {
-                Hit::keep_first(best, hit);
+                Hit::keep_closest(best, hit);
             }
         }
     }
@@ -167,7 +169,7 @@ impl Primitives<'_> {
 /// Whether a surface that a line crosses once, at `t`, lies behind a ray that went through others.
 #[inline(always)]
 fn lies_behind(ray: &Ray, t: f64, id: PrimitiveId) -> bool {
-    ray.past.is_some_and(|past| past.through.id == id || past.is_beyond(t, id))
+    ray.continuation.is_some_and(|past| past.crossed.id == id || past.excludes(t, id))
 }
 
 #[cfg(test)]
@@ -194,7 +196,7 @@ mod tests {
     }
 
     fn spawned(origin: DVec3, direction: DVec3, id: PrimitiveId, side: Side) -> Ray {
-        Ray { from: Some(Departure { id, side }), ..Ray::new(origin, direction) }
+        Ray { departure: Some(Departure { id, side }), ..Ray::new(origin, direction) }
     }
 
     #[test]
@@ -268,7 +270,7 @@ mod tests {
     fn end_of_a_segment_is_not_met() {
         let mut scene = Scene::default();
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0)));
-        assert!(!fast(&scene).planes_occlude(&Ray::between(DVec3::Y, DVec3::ZERO)));
-        assert!(fast(&scene).planes_occlude(&Ray::between(DVec3::Y, -DVec3::Y)));
+        assert!(!fast(&scene).planes_occlude(&Ray::segment(DVec3::Y, DVec3::ZERO)));
+        assert!(fast(&scene).planes_occlude(&Ray::segment(DVec3::Y, -DVec3::Y)));
     }
 }

@@ -4,33 +4,28 @@
 //! places such scenes within another one. What leaves this module is resolved and checked:
 //! nothing downstream parses, guesses or repairs.
 
-mod framing;
+mod defaults;
+mod diagnostics;
 mod gltf;
-mod guard;
-mod ktx;
+mod images;
 mod limits;
+mod merge;
+mod mesh_repair;
 mod obj;
-mod picture;
-mod place;
-mod repair;
+mod sandbox;
 mod scene_file;
-mod settle;
-mod stand_in;
-mod studio;
-mod suggest;
-mod tally;
-mod tangents;
+mod spelling;
 mod uri;
 
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{Report, Scene, Skips, Work, closed};
+use crate::scene::{LoadReport, Scene, watertight};
 
-use guard::{Guard, Opened};
+pub use defaults::auto_lighting::add_ground;
 pub use limits::{Limit, Limits, NamedLimit};
+use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;
-pub use studio::add_ground;
 
 /// Samples per pixel of a bare model file, which has no setting of its own.
 pub const BARE_MODEL_SPP: u32 = 16;
@@ -41,9 +36,6 @@ pub struct Options {
     /// The size of the picture in pixels, in place of the file's; a camera that frames the scene is
     /// placed for it.
     pub size: Option<[u32; 2]>,
-    /// Unless these are without [`Work::Pictures`], pictures are only named that no material in use
-    /// shows.
-    pub skips: Skips,
     /// Which variant of its materials a glTF file shows (KHR_materials_variants), in place of the
     /// default ones; in a scene file, each model that has one of this name and names none itself.
     pub variant: Option<String>,
@@ -80,7 +72,7 @@ pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
 /// As [`load`]; and when a file names another one outside, or more than a limit allows, unless
 /// the options say otherwise; when no file has the variant that they name.
 pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
-    let guard = Guard::new(path, options.allow_outside, options.limits)?;
+    let guard = Sandbox::new(path, options.allow_outside, options.limits)?;
     let file = guard.open_named(path)?;
     let from_file = extension(path) == "toml";
     let mut scene = match from_file {
@@ -96,23 +88,16 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     if let Some(size) = options.size {
         scene.film.size = size;
     }
-    framing::frame(&mut scene);
+    defaults::auto_camera::frame(&mut scene);
     if !from_file {
         scene.film.spp = BARE_MODEL_SPP;
-        studio::light(&mut scene);
+        defaults::auto_lighting::light(&mut scene);
     }
-    settle::settle(&mut scene);
+    defaults::materials::settle(&mut scene);
     scene.check().map_err(|e| e.at(path))?;
-    let open = closed::open_bodies(&scene);
+    let open = watertight::warn_of_open_dielectrics(&scene);
     scene.warnings.extend(open);
     Ok(scene)
-}
-
-impl Options {
-    /// Whether pictures are read that nothing shows.
-    fn reads_all_pictures(&self) -> bool {
-        !self.skips.has(Work::Pictures)
-    }
 }
 
 /// What of a model file is to be loaded.
@@ -126,7 +111,7 @@ struct Choice<'a> {
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.
-fn model(file: Opened, guard: &Guard, choice: &Choice) -> Result<Scene> {
+fn model(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Scene> {
     match extension(&file.path).as_str() {
         "gltf" | "glb" | "vrm" => gltf::load(file, guard, choice),
         "obj" if choice.animation.is_some() => Err(Error::input("an OBJ file has no animations")
@@ -143,14 +128,14 @@ fn model(file: Opened, guard: &Guard, choice: &Choice) -> Result<Scene> {
 }
 
 /// Checks that files have a variant of this name.
-fn check_variant(name: &str, of: &Report) -> Result<()> {
+fn check_variant(name: &str, of: &LoadReport) -> Result<()> {
     if of.variants.contains(name) {
         return Ok(());
     }
     let names: Vec<&str> = of.variants.iter().map(String::as_str).collect();
     let help = match &names[..] {
         [] => "no model has variants of its materials: leave it out".to_owned(),
-        names => suggest::choice(name, names, "variants"),
+        names => spelling::choice(name, names, "variants"),
     };
     Err(Error::input(format!("there is no variant `{name}`")).help(help))
 }

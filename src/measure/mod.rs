@@ -3,15 +3,15 @@
 //! every hit against exact integers ([`oracle`], [`stress`]), and run time against error ([`mod@bench`]).
 
 pub mod bench;
-mod dispute;
 pub mod flip;
+mod mismatch;
 pub mod oracle;
 mod picture;
 mod replay;
 pub mod stress;
 mod validate;
 
-pub use dispute::{Cause, Disputes};
+pub use mismatch::{MismatchCause, MismatchClassifier};
 pub use picture::{Comparison, Picture, compare};
 pub use replay::{Answer, Hidden, Met, Replay, ray_from_text, ray_to_text, replay};
 pub use validate::{Causes, Validation, Worst, validate};

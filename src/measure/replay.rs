@@ -124,7 +124,7 @@ fn ask(scene: &Scene, ray: &Ray, asked: &[(&'static str, &dyn Intersector)]) -> 
         .filter(|(_, light)| light.casts_shadow())
         .filter_map(|(i, light)| {
             let surface = surface.as_ref()?;
-            Some((i, surface.shadow_ray(&light.arrival(surface.position)?)))
+            Some((i, surface.shadow_ray(&light.incident(surface.position)?)))
         })
         .collect();
     let answers = asked.iter().zip(&hits).map(|((name, intersector), hit)| {

@@ -3,11 +3,11 @@
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
-use crate::geometry::{LANES, Lanes, Lines, Ray};
+use crate::geometry::{LANES, Lanes, Ray, Ray16};
 
 /// How much a camera sees; exactly one of the ways to say it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lens {
+pub enum Projection {
     /// The angle between the lower and the upper edge, in radians, in (0, π).
     FovY(f64),
     /// The angle between the left and the right edge, in radians, in (0, π).
@@ -24,14 +24,14 @@ pub enum Lens {
     OrthoHeight(f64),
 }
 
-impl Lens {
+impl Projection {
     /// The same kind of lens with another angle, in radians, distance or height.
     pub fn with(self, value: f64) -> Self {
         match self {
-            Lens::FovY(_) => Lens::FovY(value),
-            Lens::FovX(_) => Lens::FovX(value),
-            Lens::FocalPx { width, .. } => Lens::FocalPx { focal: value, width },
-            Lens::OrthoHeight(_) => Lens::OrthoHeight(value),
+            Projection::FovY(_) => Projection::FovY(value),
+            Projection::FovX(_) => Projection::FovX(value),
+            Projection::FocalPx { width, .. } => Projection::FocalPx { focal: value, width },
+            Projection::OrthoHeight(_) => Projection::OrthoHeight(value),
         }
     }
 }
@@ -50,7 +50,7 @@ pub struct Camera {
     /// The picture's up, `right × forward`.
     pub up: DVec3,
     /// How much it sees.
-    pub lens: Lens,
+    pub lens: Projection,
 }
 
 impl Camera {
@@ -58,7 +58,7 @@ impl Camera {
     ///
     /// # Errors
     /// When `target` is the position, or `up` is zero or points along the view.
-    pub fn look_at(position: DVec3, target: DVec3, up: DVec3, lens: Lens) -> Result<Self> {
+    pub fn look_at(position: DVec3, target: DVec3, up: DVec3, lens: Projection) -> Result<Self> {
         let forward = (target - position).try_normalize().ok_or_else(|| {
             Error::input("the camera looks at the point where it stands")
                 .help("`look_at` must differ from `position`")
@@ -80,7 +80,7 @@ impl Camera {
         let forward = transform.transform_vector3(self.forward).try_normalize()?;
         let up = transform.transform_vector3(self.up);
         let lens = match self.lens {
-            Lens::OrthoHeight(height) => Lens::OrthoHeight(height * up.length()),
+            Projection::OrthoHeight(height) => Projection::OrthoHeight(height * up.length()),
             lens => lens,
         };
         let placed = Self::look_at(DVec3::ZERO, forward, up, lens).ok()?;
@@ -89,14 +89,14 @@ impl Camera {
     }
 
     /// The rays of a picture of `size` pixels.
-    pub fn rays(&self, size: [u32; 2]) -> RayMaker {
+    pub fn rays(&self, size: [u32; 2]) -> RayGenerator {
         let [width, height] = size.map(f64::from);
         let focal = match self.lens {
-            Lens::FovY(angle) => height * 0.5 / (angle * 0.5).tan(),
-            Lens::FovX(angle) => width * 0.5 / (angle * 0.5).tan(),
-            Lens::FocalPx { focal, width: of } => focal * width / f64::from(of),
-            Lens::OrthoHeight(world) => {
-                return RayMaker {
+            Projection::FovY(angle) => height * 0.5 / (angle * 0.5).tan(),
+            Projection::FovX(angle) => width * 0.5 / (angle * 0.5).tan(),
+            Projection::FocalPx { focal, width: of } => focal * width / f64::from(of),
+            Projection::OrthoHeight(world) => {
+                return RayGenerator {
                     origin: self.position,
                     per_pixel: [self.right, -self.up].map(|axis| axis * (world / height)),
                     forward: self.forward,
@@ -105,7 +105,7 @@ impl Camera {
                 };
             }
         };
-        RayMaker {
+        RayGenerator {
             origin: self.position,
             per_pixel: [self.right, -self.up],
             forward: self.forward * focal,
@@ -120,7 +120,7 @@ impl Camera {
 /// The direction of a perspective ray is measured in pixels, as the tutorial's `direction(x, y)`:
 /// (x − width/2, y − height/2, D) in the camera's own axes, and not of length 1.
 #[derive(Clone, Copy, Debug)]
-pub struct RayMaker {
+pub struct RayGenerator {
     origin: DVec3,
     per_pixel: [DVec3; 2],
     forward: DVec3,
@@ -128,7 +128,7 @@ pub struct RayMaker {
     parallel: bool,
 }
 
-impl RayMaker {
+impl RayGenerator {
     /// The one point that all rays start from, if there is one.
     pub fn eye(&self) -> Option<DVec3> {
         (!self.parallel).then_some(self.origin)
@@ -142,7 +142,7 @@ impl RayMaker {
 
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
     #[inline(always)]
-    pub fn through(&self, x: f64, y: f64) -> Ray {
+    pub fn ray(&self, x: f64, y: f64) -> Ray {
         let offset =
             self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
         let (moved, turned) = match self.parallel {
@@ -152,11 +152,11 @@ impl RayMaker {
         Ray::new(self.origin + moved, turned + self.forward)
     }
 
-    /// The rays through sixteen points of the picture, as [`RayMaker::through`].
+    /// The rays through sixteen points of the picture, as [`RayGenerator::ray`].
     #[inline(always)]
-    pub fn through_all(&self, x: &Lanes<f64>, y: &Lanes<f64>, lines: &mut Lines) {
+    pub fn ray16(&self, x: &Lanes<f64>, y: &Lanes<f64>, lines: &mut Ray16) {
         for i in 0..LANES {
-            let ray = self.through(x[i], y[i]);
+            let ray = self.ray(x[i], y[i]);
             for axis in 0..3 {
                 lines.origin[axis][i] = ray.origin[axis];
                 lines.direction[axis][i] = ray.direction[axis];
@@ -173,48 +173,49 @@ mod tests {
 
     #[test]
     fn tutorial_camera_gives_the_tutorials_directions() {
-        let lens = Lens::FocalPx { focal: 500.0, width: 1000 };
+        let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, lens).unwrap();
-        let ray = camera.rays([1000, 500]).through(3.0, 7.0);
+        let ray = camera.rays([1000, 500]).ray(3.0, 7.0);
         assert_eq!(ray.direction, DVec3::new(3.0 - 500.0, 7.0 - 250.0, 500.0));
     }
 
     #[test]
     fn right_of_the_picture_is_plus_x_when_looking_down_minus_z() {
         let camera =
-            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::FovY(FRAC_PI_2)).unwrap();
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::FovY(FRAC_PI_2)).unwrap();
         assert_eq!((camera.right, camera.up), (DVec3::X, DVec3::Y));
     }
 
     #[test]
     fn ninety_degrees_see_as_far_up_as_ahead() {
         let camera =
-            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::FovY(FRAC_PI_2)).unwrap();
-        let top = camera.rays([200, 100]).through(100.0, 0.0).direction.normalize();
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::FovY(FRAC_PI_2)).unwrap();
+        let top = camera.rays([200, 100]).ray(100.0, 0.0).direction.normalize();
         assert!((top.y + top.z).abs() < 1e-15, "{top}");
     }
 
     #[test]
     fn focal_length_scales_with_the_width() {
-        let lens = Lens::FocalPx { focal: 500.0, width: 1000 };
+        let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::Y, lens).unwrap();
-        let corner = |w: u32| camera.rays([w, w / 2]).through(0.0, 0.0).direction.normalize();
+        let corner = |w: u32| camera.rays([w, w / 2]).ray(0.0, 0.0).direction.normalize();
         assert!((corner(1000) - corner(250)).length() < 1e-15);
     }
 
     #[test]
     fn orthographic_rays_are_parallel() {
         let camera =
-            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Lens::OrthoHeight(2.0)).unwrap();
+            Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::OrthoHeight(2.0))
+                .unwrap();
         let rays = camera.rays([100, 100]);
-        let (a, b) = (rays.through(0.0, 0.0), rays.through(100.0, 50.0));
+        let (a, b) = (rays.ray(0.0, 0.0), rays.ray(100.0, 50.0));
         assert_eq!(a.direction, b.direction);
         assert_eq!((a.origin, b.origin), (DVec3::new(-1.0, 1.0, 0.0), DVec3::X));
     }
 
     #[test]
     fn up_along_the_view_is_an_error() {
-        let camera = Camera::look_at(DVec3::ZERO, DVec3::Y, DVec3::Y, Lens::FovY(1.0));
+        let camera = Camera::look_at(DVec3::ZERO, DVec3::Y, DVec3::Y, Projection::FovY(1.0));
         assert!(camera.unwrap_err().message().contains("up"));
     }
 }

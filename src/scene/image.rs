@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::pyramid::Pyramid;
+use super::mipmap::Mipmap;
 use super::texels::{Texel, Texels};
 use crate::scene::Transfer;
 
@@ -18,7 +18,7 @@ pub struct Image {
     /// `width · height` pixels.
     pub texels: Texels,
     /// The reduced pictures, by how colours are encoded: sRGB, linear. Made when first asked for.
-    reduced: [OnceLock<Pyramid>; 2],
+    reduced: [OnceLock<Mipmap>; 2],
 }
 
 impl Image {
@@ -55,12 +55,12 @@ impl Image {
     }
 
     /// Ever smaller copies of it, for colours that are encoded so.
-    pub fn reduced(&self, transfer: Transfer) -> &Pyramid {
+    pub fn reduced(&self, transfer: Transfer) -> &Mipmap {
         let of = match transfer {
             Transfer::Srgb => &self.reduced[0],
             Transfer::None => &self.reduced[1],
         };
-        of.get_or_init(|| Pyramid::of(&self.texels, [self.width, self.height], transfer))
+        of.get_or_init(|| Mipmap::of(&self.texels, [self.width, self.height], transfer))
     }
 }
 

@@ -80,7 +80,7 @@ pub struct Light {
 
 /// The light that reaches a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrival {
+pub struct IncidentLight {
     /// From the point to the light; its end is the light's position, or far away for a
     /// directional light, whose shadow rays have no end.
     pub toward: DVec3,
@@ -105,7 +105,7 @@ impl Light {
 
     /// Whether it is a point that sends the same light everywhere: without falloff, range or cone.
     #[inline]
-    pub fn is_steady(&self) -> bool {
+    pub fn has_constant_intensity(&self) -> bool {
         matches!(self.kind, LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. })
     }
 
@@ -128,11 +128,11 @@ impl Light {
 
     /// What arrives at `point`, shadows aside; `None` when nothing does, and for ambient light,
     /// which comes from no direction.
-    pub fn arrival(&self, point: DVec3) -> Option<Arrival> {
+    pub fn incident(&self, point: DVec3) -> Option<IncidentLight> {
         let (position, falloff, range) = match self.kind {
             LightKind::Ambient => return None,
             LightKind::Directional { direction } => {
-                return Some(Arrival {
+                return Some(IncidentLight {
                     toward: -direction,
                     bounded: false,
                     intensity: self.intensity,
@@ -155,7 +155,7 @@ impl Light {
             share *=
                 cone(-direction.dot(toward) / distance_squared.sqrt(), inner_angle, outer_angle);
         }
-        (share > 0.0).then(|| Arrival {
+        (share > 0.0).then(|| IncidentLight {
             toward,
             bounded: true,
             intensity: self.intensity * share as f32,
@@ -193,23 +193,23 @@ mod tests {
     #[test]
     fn inverse_square_at_distance_two_is_a_quarter() {
         let light = point_light(Falloff::InverseSquare, f64::INFINITY);
-        assert_eq!(light.arrival(DVec3::X * 2.0).unwrap().intensity, Vec3::splat(2.0));
+        assert_eq!(light.incident(DVec3::X * 2.0).unwrap().intensity, Vec3::splat(2.0));
     }
 
     #[test]
     fn no_falloff_at_any_distance() {
         let light = point_light(Falloff::None, f64::INFINITY);
-        assert_eq!(light.arrival(DVec3::X * 2e6).unwrap().intensity, Vec3::splat(8.0));
+        assert_eq!(light.incident(DVec3::X * 2e6).unwrap().intensity, Vec3::splat(8.0));
     }
 
     #[test]
     fn nothing_arrives_beyond_the_range() {
-        assert_eq!(point_light(Falloff::None, 3.0).arrival(DVec3::X * 3.5), None);
+        assert_eq!(point_light(Falloff::None, 3.0).incident(DVec3::X * 3.5), None);
     }
 
     #[test]
     fn nothing_arrives_at_the_light_itself() {
-        assert_eq!(point_light(Falloff::InverseSquare, 3.0).arrival(DVec3::ZERO), None);
+        assert_eq!(point_light(Falloff::InverseSquare, 3.0).incident(DVec3::ZERO), None);
     }
 
     #[test]
@@ -226,8 +226,8 @@ mod tests {
             ..point_light(Falloff::None, f64::INFINITY)
         };
         let at = |angle: f64| DVec3::new(angle.sin(), 0.0, angle.cos()) * 5.0;
-        assert_eq!(spot.arrival(at(0.09)).unwrap().intensity, Vec3::splat(8.0));
-        assert!(spot.arrival(at(0.15)).unwrap().intensity.x < 8.0);
-        assert_eq!(spot.arrival(at(0.21)), None);
+        assert_eq!(spot.incident(at(0.09)).unwrap().intensity, Vec3::splat(8.0));
+        assert!(spot.incident(at(0.15)).unwrap().intensity.x < 8.0);
+        assert_eq!(spot.incident(at(0.21)), None);
     }
 }

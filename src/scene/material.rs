@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::scene::{Channel, Finish, MetallicMaps, TextureId};
+use crate::scene::{Channel, MetallicMaps, ShadingParams, TextureId};
 
 /// The index of a material in `Scene::materials`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -145,15 +145,16 @@ impl Default for Material {
 
 impl Material {
     /// What it does with light where nothing changes it.
-    pub fn finish(&self) -> Finish {
+    pub fn shading_params(&self) -> ShadingParams {
         let Self { diffuse, specular, shininess, emission, reflect, transmit, .. } = *self;
-        Finish { diffuse, specular, shininess, emission, reflect, transmit }
+        ShadingParams { diffuse, specular, shininess, emission, reflect, transmit }
     }
 
     /// Makes it a metallic-roughness material: a plain one where its base colour is just the
     /// diffuse one.
     pub fn set_metallic(&mut self, maps: MetallicMaps) {
-        let Finish { diffuse, specular, shininess, reflect, transmit, .. } = maps.factors.finish();
+        let ShadingParams { diffuse, specular, shininess, reflect, transmit, .. } =
+            maps.factors.finish();
         (self.diffuse, self.specular, self.shininess) = (diffuse, specular, shininess);
         (self.reflect, self.transmit) = (reflect, transmit);
         let is_plain = MetallicMaps { base: None, ..maps.clone() }
@@ -179,12 +180,12 @@ impl Material {
     }
 
     /// Whether light goes on from it, off it or through it, anywhere.
-    pub fn is_followed(&self) -> bool {
+    pub fn spawns_rays(&self) -> bool {
         self.may_reflect() || self.may_transmit()
     }
 
     /// Whether what it covers is a body that light goes through, with an inside.
-    pub fn is_body(&self) -> bool {
+    pub fn is_dielectric(&self) -> bool {
         self.may_transmit() && !self.thin
     }
 

@@ -49,7 +49,7 @@ impl Mesh {
     /// # Panics
     /// When there is no such triangle.
     #[inline(always)]
-    pub fn corners(&self, triangle: u32) -> [[f32; 3]; 3] {
+    pub fn triangle_vertices(&self, triangle: u32) -> [[f32; 3]; 3] {
         self.triangles[triangle as usize].map(|i| self.positions[i as usize])
     }
 

@@ -13,7 +13,7 @@ const ROUGH: f32 = 0.4;
 /// What becomes of light at one point of a surface, linear Rec. 709; the fields are those of
 /// [`Material`](crate::scene::Material).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finish {
+pub struct ShadingParams {
     /// Share scattered to all sides.
     pub diffuse: Vec3,
     /// Share in the highlight.
@@ -28,7 +28,7 @@ pub struct Finish {
     pub transmit: Vec3,
 }
 
-impl Finish {
+impl ShadingParams {
     /// Of a surface that covers only `alpha` of what lies behind it, and lets nothing through by
     /// itself: the rest is seen straight through.
     pub fn covering(self, alpha: f32) -> Self {
@@ -41,7 +41,7 @@ impl Finish {
     }
 
     /// Whether light goes on from it, off it or through it.
-    pub fn is_followed(&self) -> bool {
+    pub fn spawns_rays(&self) -> bool {
         self.reflect != Vec3::ZERO || self.transmit != Vec3::ZERO
     }
 }
@@ -67,7 +67,7 @@ pub struct Metallic {
 
 impl Metallic {
     /// What it does with light.
-    pub fn finish(&self) -> Finish {
+    pub fn finish(&self) -> ShadingParams {
         let head_on = (self.specular_color * head_on(self.ior)).min(Vec3::ONE) * self.specular;
         let tint = self.base.min(Vec3::ONE);
         let mut reflect = tint * (self.metallic * sharpness(self.roughness));
@@ -80,7 +80,7 @@ impl Metallic {
         let rest = Vec3::ONE - reflect - transmit;
         let scattered = (1.0 - self.metallic) * (1.0 - self.transmission);
         let share = rest.map(|x| if x > 0.0 { (scattered / x).min(1.0) } else { 0.0 });
-        Finish {
+        ShadingParams {
             diffuse: self.base * share,
             specular: head_on.lerp(self.base, self.metallic),
             shininess: shininess(self.roughness),

@@ -3,42 +3,42 @@
 pub mod animation;
 mod camera;
 pub mod check;
-pub mod closed;
 mod coverage;
-pub mod detail;
-mod faces;
+mod features;
 mod film;
 mod image;
 mod light;
 mod material;
 mod mesh;
 mod metallic;
-mod needs;
-mod object;
-mod pyramid;
+mod mipmap;
+pub mod precision_warnings;
 mod report;
+mod shapes;
 mod texels;
 mod texture;
 mod tone;
+mod triangles;
+pub mod watertight;
 
-pub use camera::{Camera, Lens, RayMaker};
-pub use faces::Faces;
+pub use camera::{Camera, Projection, RayGenerator};
+pub use features::{Feature, SceneFeatures};
 pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
-pub use light::{Arrival, Falloff, Light, LightKind, Shadow};
+pub use light::{Falloff, IncidentLight, Light, LightKind, Shadow};
 pub use material::{
     AlphaMode, Coverage, Material, MaterialId, NormalMap, OcclusionMap, ShininessMap,
 };
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
-pub use metallic::{Finish, Metallic, MetallicMaps, sharpness, shininess};
-pub use needs::{Needs, Skips, Work};
-pub use object::{Checker, Instance, Plane, Sphere};
-pub use pyramid::{Level, Pyramid};
-pub use report::{DropReason, Report};
+pub use metallic::{Metallic, MetallicMaps, ShadingParams, sharpness, shininess};
+pub use mipmap::{MipLevel, Mipmap};
+pub use report::{DropReason, LoadReport};
+pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
 pub use tone::Tone;
+pub use triangles::Triangles;
 
 use std::sync::Arc;
 
@@ -75,7 +75,7 @@ pub struct Scene {
     /// What the loader could not do as the files ask, or found odd; one sentence each.
     pub warnings: Vec<String>,
     /// What became of its files: what was read, dropped, and not supported.
-    pub report: Report,
+    pub report: LoadReport,
 }
 
 impl Scene {
@@ -154,10 +154,10 @@ impl Scene {
     /// # Panics
     /// When `id` is not a triangle of this scene.
     #[inline]
-    pub fn triangle(&self, id: PrimitiveId) -> [glam::DVec3; 3] {
+    pub fn triangle_vertices(&self, id: PrimitiveId) -> [glam::DVec3; 3] {
         let instance = &self.instances[id.instance as usize];
         let mesh = &self.meshes[instance.mesh.0 as usize];
-        mesh.corners(id.primitive).map(|p| instance.bake(p))
+        mesh.triangle_vertices(id.primitive).map(|p| instance.to_world(p))
     }
 
     /// The box around all that is finite: spheres and instances, not planes.

@@ -7,9 +7,9 @@ use std::fmt;
 ///
 /// A face is a triangle; a polygon of n corners counts as the n − 2 triangles that it is cut into,
 /// and each point, line or curve counts as one. A mesh is read once, however often it stands in the
-/// scene. Of what is read, [`Report::balances`] holds.
+/// scene. Of what is read, [`LoadReport::balances`] holds.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Report {
+pub struct LoadReport {
     /// Faces of all meshes that were read.
     pub read: u64,
     /// Faces that stand in the scene, for rays to meet.
@@ -75,15 +75,15 @@ impl DropReason {
     }
 }
 
-impl Report {
+impl LoadReport {
     /// How many faces were dropped, for any reason.
-    pub fn dropped_in_all(&self) -> u64 {
+    pub fn dropped_total(&self) -> u64 {
         self.dropped.values().sum()
     }
 
     /// Whether every face that was read was either dropped for a reason or handed over.
     pub fn balances(&self) -> bool {
-        self.read == self.handed_over + self.dropped_in_all()
+        self.read == self.handed_over + self.dropped_total()
     }
 
     /// Whether nothing was lost: no face dropped, every feature supported, every picture there.
@@ -92,7 +92,7 @@ impl Report {
     }
 
     /// Adds what became of another file.
-    pub fn add(&mut self, other: Report) {
+    pub fn add(&mut self, other: LoadReport) {
         self.read += other.read;
         self.handed_over += other.handed_over;
         for (reason, count) in other.dropped {
@@ -105,7 +105,7 @@ impl Report {
 }
 
 /// The faces alone: `14 read = 12 handed over + 2 degenerate`.
-impl fmt::Display for Report {
+impl fmt::Display for LoadReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} read = {} handed over", self.read, self.handed_over)?;
         self.dropped.iter().try_for_each(|(why, count)| write!(f, " + {count} {}", why.name()))
@@ -116,8 +116,13 @@ impl fmt::Display for Report {
 mod tests {
     use super::*;
 
-    fn report(reason: DropReason) -> Report {
-        Report { read: 3, handed_over: 1, dropped: [(reason, 2)].into(), ..Report::default() }
+    fn report(reason: DropReason) -> LoadReport {
+        LoadReport {
+            read: 3,
+            handed_over: 1,
+            dropped: [(reason, 2)].into(),
+            ..LoadReport::default()
+        }
     }
 
     #[test]
@@ -131,6 +136,6 @@ mod tests {
 
     #[test]
     fn a_face_that_nobody_accounts_for_unbalances_it() {
-        assert!(!Report { read: 4, ..report(DropReason::Flat) }.balances());
+        assert!(!LoadReport { read: 4, ..report(DropReason::Flat) }.balances());
     }
 }

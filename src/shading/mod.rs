@@ -1,15 +1,15 @@
 //! How much light a surface sends to the eye: Lambert and Phong, and what it sends on. Traces
 //! nothing.
 
-mod interface;
+mod dielectric;
+mod normalize;
 mod power;
-mod unit;
 
 use glam::{DVec3, Vec3};
 
-pub use interface::{Interface, transmittance};
-pub use power::{power, power_of_all, whole};
-pub use unit::{unit, unit_of_all};
+pub use dielectric::{DielectricInterface, transmittance};
+pub use normalize::{normalize, normalize16};
+pub use power::{integer_exponent, power, power16};
 
 /// Colours of a surface at one point, with its textures applied.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Reflectance {
 /// *Illumination for Computer Generated Pictures*, 1975). Nothing when the surface faces away
 /// from the light.
 pub fn direct(reflectance: &Reflectance, normal: DVec3, view: DVec3, light: DVec3) -> Vec3 {
-    let (view, light) = (unit(view), unit(light));
+    let (view, light) = (normalize(view), normalize(light));
     let cosine = lambert(normal, light);
     if cosine <= 0.0 {
         return Vec3::ZERO;

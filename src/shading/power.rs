@@ -9,21 +9,21 @@ const GREATEST: f32 = 1024.0;
 /// error of at most half an ulp each, the error is less than n ulp, which is below 1e-12 relative.
 #[inline]
 pub fn power(x: f64, exponent: f32) -> f64 {
-    match whole(exponent) {
-        Some(exponent) => power_of_all([x], exponent)[0],
+    match integer_exponent(exponent) {
+        Some(exponent) => power16([x], exponent)[0],
         None => x.powf(f64::from(exponent)),
     }
 }
 
 /// The exponent as a number of factors, if it is whole and not too great.
 #[inline(always)]
-pub fn whole(exponent: f32) -> Option<u32> {
+pub fn integer_exponent(exponent: f32) -> Option<u32> {
     ((0.0..=GREATEST).contains(&exponent) && exponent.fract() == 0.0).then_some(exponent as u32)
 }
 
 /// Many numbers to one whole power.
 #[inline(always)]
-pub fn power_of_all<const N: usize>(mut x: [f64; N], mut exponent: u32) -> [f64; N] {
+pub fn power16<const N: usize>(mut x: [f64; N], mut exponent: u32) -> [f64; N] {
     let mut product = [1.0; N];
     loop {
         if exponent & 1 != 0 {
@@ -57,7 +57,7 @@ mod tests {
 
         #[test]
         fn other_powers_are_the_librarys(x in 0.0..=1.0f64, exponent in 0.0f32..2000.0) {
-            prop_assume!(whole(exponent).is_none());
+            prop_assume!(integer_exponent(exponent).is_none());
             prop_assert_eq!(power(x, exponent), x.powf(f64::from(exponent)));
         }
     }

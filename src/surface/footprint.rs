@@ -10,14 +10,14 @@ use crate::scene::Scene;
 /// with Cones*, SIGGRAPH 1984; T. Akenine-Möller et al., *Texture Level of Detail Strategies for
 /// Real-Time Ray Tracing*, Ray Tracing Gems, 2019, chapter 20).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Cone {
+pub struct RayCone {
     /// Its width where the ray starts, in world units.
     pub width: f32,
     /// How much it widens for each unit of length; less than 0 for one that narrows.
     pub spread: f32,
 }
 
-impl Cone {
+impl RayCone {
     /// Its width after a length.
     #[inline]
     pub fn at(&self, length: f64) -> f32 {
@@ -68,7 +68,7 @@ impl Footprint {
             }
             Geometry::Mesh(mesh) => {
                 let mesh = &scene.meshes[mesh as usize];
-                let Some(weights) = change_of_weights(scene.triangle(hit.id)) else {
+                let Some(weights) = change_of_weights(scene.triangle_vertices(hit.id)) else {
                     return [[Vec2::ZERO; 2]; 2];
                 };
                 let corners = mesh.triangles[hit.id.primitive as usize];
@@ -116,7 +116,7 @@ pub fn curvature(scene: &Scene, surface: &Surface) -> f64 {
             if mesh.normals.is_empty() {
                 return 0.0;
             }
-            let corners = scene.triangle(surface.id);
+            let corners = scene.triangle_vertices(surface.id);
             let m = &scene.instances[surface.id.instance as usize].transform.matrix3;
             let cofactor = super::cofactor(m);
             let normals = mesh.triangles[surface.id.primitive as usize].map(|i| {
@@ -144,14 +144,14 @@ mod tests {
 
     #[test]
     fn a_cone_widens_with_its_length() {
-        let cone = Cone { width: 0.5, spread: 0.25 };
+        let cone = RayCone { width: 0.5, spread: 0.25 };
         assert_eq!(cone.at(2.0), 1.0);
-        assert_eq!(cone.onward(2.0, 0.0), Cone { width: 1.0, spread: 0.25 });
+        assert_eq!(cone.onward(2.0, 0.0), RayCone { width: 1.0, spread: 0.25 });
     }
 
     #[test]
     fn a_mirror_that_bulges_widens_a_cone_by_twice_what_its_normal_turns() {
-        let cone = Cone { width: 0.1, spread: 0.0 };
+        let cone = RayCone { width: 0.1, spread: 0.0 };
         // On a sphere of radius 2, 0.1 is 0.05 of a radian.
         assert!((cone.onward(1.0, 0.5).spread - 0.1).abs() < 1e-7);
     }

@@ -121,7 +121,7 @@ fn gradients(scene: &Scene, hit: &Hit, texture: &Texture) -> Option<[DVec3; 2]> 
     let [a, b, c] = corners.map(|i| {
         texture.transform.transform_point2(Vec2::from(uvs[i as usize])).to_array().map(f64::from)
     });
-    let weights = change_of_weights(scene.triangle(hit.id))?;
+    let weights = change_of_weights(scene.triangle_vertices(hit.id))?;
     let gradient = |k: usize| weights[0] * (b[k] - a[k]) + weights[1] * (c[k] - a[k]);
     Some([gradient(0), gradient(1)])
 }

@@ -32,10 +32,10 @@ fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
     Hit { t, u, v, id }
 }
 
-fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> Detail {
+fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> TextureContext {
     let surface = Surface::new(scene, ray, hit);
     let textured = scene.materials[surface.material.0 as usize].is_textured();
-    Detail::of(scene, hit, &surface, textured)
+    TextureContext::of(scene, hit, &surface, textured)
 }
 
 #[test]
@@ -123,8 +123,8 @@ fn normal_of_a_stretched_mesh_stays_across_its_surface() {
 fn shadow_ray_leaves_on_the_lights_side() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
     let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-    let toward = |toward: DVec3| Arrival { toward, bounded: true, intensity: Vec3::ONE };
-    let side = |d: DVec3| surface.shadow_ray(&toward(d)).from.unwrap().side;
+    let toward = |toward: DVec3| IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+    let side = |d: DVec3| surface.shadow_ray(&toward(d)).departure.unwrap().side;
     assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
 }
 
@@ -142,22 +142,23 @@ fn sixteen_surfaces_are_those_of_one_at_a_time() {
     ];
     // Of the sixteens the first three have one kind each, and the last a part only.
     for of in [[0; 5], [1; 5], [3; 5], [0, 1, 2, 3, 4]] {
-        let (mut rays, mut hits) = (crate::geometry::Rays::default(), Default::default());
+        let (mut rays, mut hits) = (crate::geometry::RayBatch::default(), Default::default());
         let count = 13;
         for i in 0..count {
             let x = i as f64 / 7.0 - 0.9;
             let mut ray = Ray::new(DVec3::new(x, 0.1, -1.0), DVec3::new(0.3, x, 2.0 - x));
             let through = Departure { id: PrimitiveId::sphere(0), side: Side::Back };
-            ray.past = (i == 5).then_some(crate::geometry::Passage { t: 0.1, through });
+            ray.continuation =
+                (i == 5).then_some(crate::geometry::Continuation { t: 0.1, crossed: through });
             rays.push(&ray);
         }
-        crate::geometry::Hits::reset(&mut hits, count);
+        crate::geometry::HitBatch::reset_to_misses(&mut hits, count);
         for i in 0..count {
             let t = 2.0 + i as f64;
             hits.set(i, ids[of[i % 5]].map(|id| hit(t, 0.1, 0.02 * t, id)));
         }
-        let mut surfaces = Surfaces::default();
-        surfaces.set::<true>(&scene, &rays, 0, &hits.found()[0]);
+        let mut surfaces = Surface16::default();
+        surfaces.set::<true>(&scene, &rays, 0, &hits.blocks()[0]);
         for i in 0..count {
             let Some(hit) = hits.get(i) else { continue };
             let one = Surface::new(&scene, &rays.ray(i), &hit);

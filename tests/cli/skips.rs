@@ -1,7 +1,7 @@
 //! What a scene does not need is not done, and the picture is the same as if it were.
 
 use super::*;
-use envers::scene::Work;
+use envers::scene::Feature;
 
 /// A mesh that stands once, and a material with a picture that nothing is made of.
 const PLAIN: &str = r##"
@@ -48,7 +48,7 @@ fn assert_same(folder: &Folder, scene: &str) {
     for backend in backends {
         let render = format!("render {scene} --precision certified --backend {backend} --spp 1");
         folder.run(&format!("{render} -o skips.exr")).good();
-        for name in Work::ALL.map(Work::name).into_iter().chain(["all"]) {
+        for name in Feature::ALL.map(Feature::name).into_iter().chain(["all"]) {
             folder.run(&format!("{render} -o all.exr --no-skip {name}")).good();
             assert!(folder.read("skips.exr") == folder.read("all.exr"), "{name} on {backend}");
         }

@@ -1,7 +1,7 @@
 //! How much is done of each kind of work: exactly none where nothing needs it.
 
 use super::*;
-use envers::scene::Work;
+use envers::scene::Feature;
 
 /// A triangle that needs none of the work that is counted.
 const BARE: &str = r##"
@@ -82,7 +82,7 @@ fn assert_done(folder: &Folder, expected: &[&str]) {
     }
     for flags in flags {
         let work = work(folder, flags);
-        let counts = Work::ALL.map(|work| work.name());
+        let counts = Feature::ALL.map(|work| work.name());
         // The BVH always has a level of instances.
         let counted = |name: &&str| !(*name == "instances" && flags == "--backend rust");
         let done = counts.into_iter().filter(counted).filter(|&name| {

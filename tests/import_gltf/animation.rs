@@ -39,7 +39,7 @@ fn channel(
 
 /// Where the point of the first instance's mesh is at a time.
 fn at(scene: &Scene, time: f64, point: [f32; 3]) -> DVec3 {
-    scene.at(time).unwrap().instances[0].bake(point)
+    scene.at(time).unwrap().instances[0].to_world(point)
 }
 
 fn near(a: DVec3, b: [f64; 3]) -> bool {

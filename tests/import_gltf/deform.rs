@@ -1,7 +1,7 @@
 //! Morph targets, skins, and instances of one node.
 
 use super::*;
-use envers::scene::animation::Mover;
+use envers::scene::animation::Animated;
 use serde_json::Value;
 
 /// A triangle that can be morphed: by 1 along z, and by 2 along x.
@@ -152,7 +152,7 @@ fn skinned(places: [[f32; 3]; 3]) -> Model {
 fn standing(scene: &Scene) -> [[f64; 3]; 3] {
     let instance = &scene.instances[0];
     let mesh = &scene.meshes[instance.mesh.0 as usize];
-    std::array::from_fn(|i| instance.bake(mesh.positions[i]).to_array())
+    std::array::from_fn(|i| instance.to_world(mesh.positions[i]).to_array())
 }
 
 #[test]
@@ -218,12 +218,12 @@ fn a_skin_moves_where_a_scene_places_it() {
     "#;
     let scene = folder.load("s.toml", scene).unwrap();
     let movers = scene.animation.as_ref().unwrap().movers.iter();
-    assert_eq!(movers.filter(|m| matches!(m, Mover::Mesh { .. })).count(), 1);
+    assert_eq!(movers.filter(|m| matches!(m, Animated::Mesh { .. })).count(), 1);
     let posed = scene.at(0.5).unwrap();
     assert_eq!(standing(&posed)[1], [12., 0., 8.]);
     let second = &posed.instances[1];
     let corner = posed.meshes[second.mesh.0 as usize].positions[1];
-    assert_eq!(second.bake(corner).to_array(), [1., 0., 7.]);
+    assert_eq!(second.to_world(corner).to_array(), [1., 0., 7.]);
 }
 
 #[test]
@@ -284,7 +284,7 @@ fn one_node_has_many_instances() {
     model.json["nodes"][0]["translation"] = json!([0, 0, 1]);
     let scene = model.load().unwrap();
     assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 2));
-    let corner = |i: usize| scene.instances[i].bake([1.0, 0.0, 0.0]).to_array();
+    let corner = |i: usize| scene.instances[i].to_world([1.0, 0.0, 0.0]).to_array();
     assert_eq!((corner(0), corner(1)), ([2., 0., 1.], [3., 2., 1.]));
 }
 

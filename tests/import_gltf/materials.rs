@@ -1,8 +1,8 @@
 //! Materials on a Phong shader.
 
 use super::*;
-use envers::scene::{Finish, Transfer};
-use envers::surface::{self, Detail};
+use envers::scene::{ShadingParams, Transfer};
+use envers::surface::{self, TextureContext};
 
 #[test]
 fn primitive_without_material_is_a_neutral_grey() {
@@ -39,12 +39,16 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Scene {
 }
 
 /// What the material does with light, at a point of this vertex colour.
-fn tinted(scene: &Scene, tint: Vec3) -> Finish {
+fn tinted(scene: &Scene, tint: Vec3) -> ShadingParams {
     assert_eq!(scene.warnings, [""; 0]);
-    surface::finish(scene, material(scene), &Detail { tint, ..Detail::default() })
+    surface::shading_params(
+        scene,
+        material(scene),
+        &TextureContext { tint, ..TextureContext::default() },
+    )
 }
 
-fn finish(scene: &Scene) -> Finish {
+fn finish(scene: &Scene) -> ShadingParams {
     tinted(scene, Vec3::ONE)
 }
 
@@ -116,7 +120,7 @@ fn occlusion_is_red_by_its_strength() {
             "occlusionTexture": {"index": 0, "strength": 0.5},
         }),
     );
-    let share = surface::occlusion(&scene, material(&scene), &Detail::default());
+    let share = surface::occlusion(&scene, material(&scene), &TextureContext::default());
     // 1 + 0.5 · (0.2 − 1).
     assert!((share - 0.6).abs() < 1e-6, "{share}");
 }

@@ -16,7 +16,7 @@ fn child_transform_stands_within_its_parents() {
     ]);
     let scene = model.load().unwrap();
     // The second corner: scaled to (2, 0, 0), moved to (3, 0, 0), turned to (0, 3, 0), moved.
-    let corner = scene.instances[0].bake([1., 0., 0.]);
+    let corner = scene.instances[0].to_world([1., 0., 0.]);
     assert!((corner - DVec3::new(10., 3., 0.)).length() < 1e-7, "{corner}");
 }
 
@@ -24,7 +24,7 @@ fn child_transform_stands_within_its_parents() {
 fn matrix_is_read_by_columns() {
     let mut model = Model::triangle();
     model.json["nodes"][0]["matrix"] = json!([0, 2, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]);
-    let corner = model.load().unwrap().instances[0].bake([1., 0., 0.]);
+    let corner = model.load().unwrap().instances[0].to_world([1., 0., 0.]);
     assert_eq!(corner, DVec3::new(7., 10., 9.));
 }
 

@@ -2,8 +2,8 @@
 
 use super::*;
 use envers::geometry::PrimitiveId;
-use envers::scene::Finish;
-use envers::surface::Detail;
+use envers::scene::ShadingParams;
+use envers::surface::TextureContext;
 use serde_json::Value;
 
 /// What a material becomes, of which there is nothing to say.
@@ -226,8 +226,8 @@ fn transmission_and_volume_can_be_required() {
 }
 
 /// What the material does with light.
-fn finish(scene: &Scene) -> Finish {
-    envers::surface::finish(scene, material(scene), &Detail::default())
+fn finish(scene: &Scene) -> ShadingParams {
+    envers::surface::shading_params(scene, material(scene), &TextureContext::default())
 }
 
 #[test]

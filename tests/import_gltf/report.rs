@@ -1,9 +1,9 @@
 //! What a file's report counts.
 
 use super::*;
-use envers::scene::{DropReason, Report};
+use envers::scene::{DropReason, LoadReport};
 
-fn report(model: &Model) -> Report {
+fn report(model: &Model) -> LoadReport {
     let report = model.load().unwrap().report;
     assert!(report.balances(), "{report}");
     report

@@ -102,10 +102,10 @@ fn an_eye_in_a_medium_without_end_sees_nothing_through_it() {
 
 #[test]
 fn parallel_rays_that_begin_on_both_sides_of_a_surface_each_begin_in_their_own_medium() {
-    use envers::scene::{Camera, Lens};
+    use envers::scene::{Camera, Projection};
     let mut scene = seen_from(DVec3::ZERO, DVec3::NEG_Z);
     scene.cameras[0] =
-        Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Lens::OrthoHeight(2.0)).unwrap();
+        Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::OrthoHeight(2.0)).unwrap();
     scene.film.size = [1, 2];
     scene.film.background = Vec3::ONE;
     let absorption = Vec3::splat(1.0);

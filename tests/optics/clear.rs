@@ -3,7 +3,7 @@
 use envers::intersect::{Backend, Precision};
 use envers::render::{Options, render};
 use envers::scene::{
-    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, Mesh, Plane, Scene,
+    Camera, Checker, Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Projection, Scene,
     Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
@@ -17,7 +17,9 @@ fn scene() -> Scene {
     scene.film.background = Vec3::new(0.2, 0.4, 0.8);
     scene.film.max_depth = 6;
     let eye = DVec3::new(0.3, 1.7, 7.0);
-    scene.cameras.push(Camera::look_at(eye, DVec3::Y * 0.7, DVec3::Y, Lens::FovY(0.8)).unwrap());
+    scene
+        .cameras
+        .push(Camera::look_at(eye, DVec3::Y * 0.7, DVec3::Y, Projection::FovY(0.8)).unwrap());
     let matt = scene.add_material(Material { specular: Vec3::splat(0.5), ..Material::default() });
     let mut ground = Plane::new(DVec3::ZERO, DVec3::Y, matt);
     ground.checker = Some(Checker { colors: [Vec3::splat(0.9), Vec3::splat(0.1)], size: 0.7 });

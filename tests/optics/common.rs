@@ -3,7 +3,7 @@
 use envers::integrator::Counts;
 use envers::intersect::{Backend, Precision};
 use envers::render::{Options, render};
-use envers::scene::{Camera, Lens, Material, MaterialId, Scene, Sphere};
+use envers::scene::{Camera, Material, MaterialId, Projection, Scene, Sphere};
 use glam::{DVec3, Vec3};
 
 /// A scene that is seen through one pixel, whose one ray goes from `eye` to `target`.
@@ -11,7 +11,7 @@ pub fn seen_from(eye: DVec3, target: DVec3) -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [1, 1];
     let up = if (target - eye).normalize().y.abs() > 0.9 { DVec3::Z } else { DVec3::Y };
-    scene.cameras.push(Camera::look_at(eye, target, up, Lens::FovY(0.01)).unwrap());
+    scene.cameras.push(Camera::look_at(eye, target, up, Projection::FovY(0.01)).unwrap());
     scene
 }
 

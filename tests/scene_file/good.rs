@@ -1,8 +1,8 @@
 //! What scene files mean.
 
 use envers::scene::{
-    Adaptive, AlphaMode, Camera, Falloff, FilmSettings, Filter, Lens, Light, LightKind, Material,
-    SamplePosition, Shadow, Sphere, Tone, Transfer,
+    Adaptive, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,
+    Projection, SamplePosition, Shadow, Sphere, Tone, Transfer,
 };
 use glam::{DVec3, Vec3};
 
@@ -88,23 +88,23 @@ fn the_tutorials_camera_is_read() {
         "[film]\nsize = [1000, 500]\n[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, 1]\n\
          up = [0, -1, 0]\nfocal_px = 500\n",
     );
-    let lens = Lens::FocalPx { focal: 500.0, width: 1000 };
+    let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
     let expected = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, lens).unwrap();
     assert_eq!(scene.cameras, [expected]);
 }
 
 #[test]
 fn a_camera_sees_45_degrees_from_bottom_to_top_by_default() {
-    assert_eq!(seen("").cameras[0].lens, Lens::FovY(45f64.to_radians()));
+    assert_eq!(seen("").cameras[0].lens, Projection::FovY(45f64.to_radians()));
 }
 
 #[test]
 fn each_lens_is_read() {
     let lens = |key: &str| seen(&format!("camera.{key}")).cameras[0].lens;
-    assert_eq!(lens("fov_y = 30"), Lens::FovY(30f64.to_radians()));
-    assert_eq!(lens("fov_x = 30"), Lens::FovX(30f64.to_radians()));
-    assert_eq!(lens("focal_px = 30"), Lens::FocalPx { focal: 30.0, width: 1280 });
-    assert_eq!(lens("ortho_height = 30"), Lens::OrthoHeight(30.0));
+    assert_eq!(lens("fov_y = 30"), Projection::FovY(30f64.to_radians()));
+    assert_eq!(lens("fov_x = 30"), Projection::FovX(30f64.to_radians()));
+    assert_eq!(lens("focal_px = 30"), Projection::FocalPx { focal: 30.0, width: 1280 });
+    assert_eq!(lens("ortho_height = 30"), Projection::OrthoHeight(30.0));
 }
 
 #[test]

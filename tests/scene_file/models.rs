@@ -50,7 +50,7 @@ fn a_model_is_placed_by_translate_rotate_scale() {
         "[[model]]\nfile = \"two.obj\"\nscale = 2\nrotate = [0, 0, 90]\ntranslate = [5, 0, 0]\n",
     );
     // x is doubled, turned to y, moved.
-    let corner = scene.instances[0].bake([1.0, 0.0, 0.0]);
+    let corner = scene.instances[0].to_world([1.0, 0.0, 0.0]);
     assert_eq!(corner, DVec3::new(5.0, 2.0, 0.0));
 }
 

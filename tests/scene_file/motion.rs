@@ -2,7 +2,7 @@
 
 use super::{CAMERA, File, refused, scene, seen};
 use envers::error::Error;
-use envers::scene::{Lens, LightKind, Scene};
+use envers::scene::{LightKind, Projection, Scene};
 use glam::{DVec3, Vec3};
 
 /// Two seconds in four frames a second.
@@ -160,7 +160,7 @@ fn tracks_change_a_cameras_view_and_lens() {
     let keys = "times = [0, 1]\nlook_at = [[0, 0, 0], [10, 0, 5]]\nfov_x = [20, 60]";
     let posed = scene(&format!("{camera}{FRAMES}{}", track("eye", keys))).at(1.0).unwrap();
     assert!(near(posed.cameras[0].forward, [1., 0., 0.]));
-    assert_eq!(posed.cameras[0].lens, Lens::FovX(60f64.to_radians()));
+    assert_eq!(posed.cameras[0].lens, Projection::FovX(60f64.to_radians()));
 }
 
 /// A file with a model in it, one triangle from the origin along x and y.
@@ -176,14 +176,14 @@ fn tracks_turn_and_scale_a_model_about_its_own_origin() {
     let keys = "times = [0, 2]\nrotate = [[0, 0, 0], [0, 0, 720]]\nscale = [2, 2]";
     let scene = with_model(&format!("{model}{}", track("m", keys))).at(0.25).unwrap();
     // An eighth of two turns.
-    assert!(near(scene.instances[0].bake([1., 0., 0.]), [5., 2., 0.]));
+    assert!(near(scene.instances[0].to_world([1., 0., 0.]), [5., 2., 0.]));
 }
 
 #[test]
 fn a_model_that_turns_with_its_orbit_faces_the_centre() {
     let model = "[[model]]\nname = \"m\"\nfile = \"m.obj\"\ntranslate = [5, 0, 0]\n";
     let orbit = "[[animation.orbit]]\nobject = \"m\"\naround = [0, 0, 0]\nperiod = 4\n";
-    let tip = |text: &str| with_model(text).at(1.0).unwrap().instances[0].bake([1., 0., 0.]);
+    let tip = |text: &str| with_model(text).at(1.0).unwrap().instances[0].to_world([1., 0., 0.]);
     assert!(near(tip(&format!("{model}{orbit}")), [1., 0., -5.]));
     assert!(near(tip(&format!("{model}{orbit}turn = true\n")), [0., 0., -6.]));
 }

@@ -5,8 +5,8 @@ use std::cmp::Ordering::Equal;
 use glam::DVec3;
 use num_bigint::BigInt;
 
-use crate::geometry::double::{Double, OMEGA, difference, dot, in_range};
-use crate::geometry::exact::{self, Rounded, Scale, minus, sign};
+use crate::geometry::double_double::{DoubleDouble, OMEGA, difference, dot, in_range};
+use crate::geometry::integer::{self, Rounded, Scale, minus, sign};
 
 /// Where the ray meets the plane with 0 < t < `tmax`, exactly, correctly rounded.
 ///
@@ -38,7 +38,7 @@ pub fn round(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> (f
     let size = x.max(y).max(z);
     let (height, way) = (normal.abs().max_element(), direction.abs().max_element());
     let n = normal.to_array();
-    let d = direction.to_array().map(|hi| Double { hi, lo: 0.0 });
+    let d = direction.to_array().map(|hi| DoubleDouble { hi, lo: 0.0 });
     let (divisor, bound) = (dot(d, n), 16.0 * OMEGA * height);
     let (t, error) = dot(between, n).quotient(bound * size, divisor, bound * way);
     let certain = (2.0 * bound * way <= divisor.hi.abs())
@@ -84,8 +84,8 @@ fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Opti
     let place = Scale::of(point.to_array().into_iter().chain(origin.to_array()));
     let (way, up) = (Scale::of(direction.to_array()), Scale::of(normal.to_array()));
     let n = up.vector::<BigInt>(normal);
-    let numerator = exact::dot(&n, &minus(&place.vector(point), &place.vector(origin)));
-    let divisor = exact::dot(&n, &way.vector(direction));
+    let numerator = integer::dot(&n, &minus(&place.vector(point), &place.vector(origin)));
+    let divisor = integer::dot(&n, &way.vector(direction));
     if sign(&numerator) == Equal || sign(&numerator) != sign(&divisor) {
         return None;
     }

@@ -23,11 +23,11 @@ pub fn roots(
     direction: DVec3,
     inverse_length_squared: f64,
 ) -> Option<(f64, f64)> {
-    let line = Line::new(center, radius, origin, direction, inverse_length_squared);
+    let line = Quadratic::new(center, radius, origin, direction, inverse_length_squared);
     line.crosses().then(|| line.roots())
 }
 
-/// 1 / |direction|², which [`Line`] and its certified counterpart want, computed once per ray.
+/// 1 / |direction|², which [`Quadratic`] and its certified counterpart want, computed once per ray.
 ///
 /// NaN where |direction|² is beyond f64, since 0 would be the direction's loss: nothing is certain
 /// of such a ray, and the plain formulas say that it misses.
@@ -39,9 +39,9 @@ pub fn inverse_length_squared(direction: DVec3) -> f64 {
 
 /// A line beside a sphere: what decides whether they meet, before any square root.
 ///
-/// Split from [`Line::roots`] so that a packet can stop early when no ray of it meets the sphere.
+/// Split from [`Quadratic::roots`] so that a packet can stop early when no ray of it meets the sphere.
 #[derive(Clone, Copy)]
-pub struct Line {
+pub struct Quadratic {
     /// −f·d, with f from the centre to the origin.
     half_b: f64,
     /// |f|² − r².
@@ -53,7 +53,7 @@ pub struct Line {
     discriminant: f64,
 }
 
-impl Line {
+impl Quadratic {
     /// Sets the line beside the sphere; see [`roots`] for the arguments.
     #[inline(always)]
     pub fn new(
@@ -87,7 +87,7 @@ impl Line {
         self.c
     }
 
-    /// The two roots, lesser first; not meaningful unless [`Line::crosses`].
+    /// The two roots, lesser first; not meaningful unless [`Quadratic::crosses`].
     #[inline(always)]
     pub fn roots(&self) -> (f64, f64) {
         // With m = half_b / a and s = √discriminant the roots are m ∓ s. The one that is farther

@@ -14,7 +14,7 @@ use glam::DVec3;
 /// Where a line crosses a triangle: `t` in units of the direction, `u` and `v` the weights of the
 /// second and third vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct TriangleHit {
     /// Distance in units of |direction|, of either sign.
     pub t: f64,
     /// Weight of the second vertex.
@@ -83,7 +83,7 @@ impl Edges {
 ///
 /// A line in the triangle's own plane does not cross it, nor is a degenerate triangle crossed.
 #[inline(always)]
-pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<Crossing> {
+pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<TriangleHit> {
     let edges = Edges::new(triangle, origin, direction);
     if !edges.crosses() {
         return None;
@@ -93,7 +93,7 @@ pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Optio
         true => certified::round(triangle, origin, direction).t,
         false => edges.t,
     };
-    Some(Crossing { t, u, v })
+    Some(TriangleHit { t, u, v })
 }
 
 /// The point with weights `u` and `v`.

@@ -24,7 +24,7 @@ fn pond(priority_of_water: i32) -> Scene {
 }
 
 fn ior_at(scene: &Scene, point: DVec3) -> f64 {
-    let bodies = Bodies::of(scene);
+    let bodies = NestedDielectrics::of(scene);
     let intersector = BruteForce::new(scene, Precision::Fast);
     bodies.medium(&bodies.holding(point, scene, &intersector)).ior
 }
@@ -47,8 +47,8 @@ fn a_greater_priority_goes_before_size() {
 #[test]
 fn a_surface_within_a_body_that_goes_before_it_is_hidden() {
     let scene = pond(0);
-    let bodies = Bodies::of(&scene);
-    let ball = bodies.around(PrimitiveId::sphere(0), Side::Front, &Interiors::default());
+    let bodies = NestedDielectrics::of(&scene);
+    let ball = bodies.around(PrimitiveId::sphere(0), Side::Front, &InteriorList::default());
     assert!(!ball.is_hidden);
     let water = bodies.around(PrimitiveId::plane(0), Side::Front, &ball.behind);
     assert!(water.is_hidden);
@@ -60,8 +60,8 @@ fn a_surface_within_a_body_that_goes_before_it_is_hidden() {
 #[test]
 fn what_is_no_body_changes_nothing() {
     let scene = pond(0);
-    let bodies = Bodies::of(&scene);
-    let inside = Interiors::default().with(1);
+    let bodies = NestedDielectrics::of(&scene);
+    let inside = InteriorList::default().with(1);
     let around = bodies.around(PrimitiveId::sphere(2), Side::Front, &inside);
     assert_eq!((&around.before, &around.behind), (&inside, &inside));
     assert!(!around.is_hidden);
@@ -70,8 +70,8 @@ fn what_is_no_body_changes_nothing() {
 #[test]
 fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
     let scene = pond(0);
-    let bodies = Bodies::of(&scene);
-    let around = bodies.around(PrimitiveId::sphere(0), Side::Back, &Interiors::default());
+    let bodies = NestedDielectrics::of(&scene);
+    let around = bodies.around(PrimitiveId::sphere(0), Side::Back, &InteriorList::default());
     assert_eq!([&around.before, &around.behind].map(|i| bodies.medium(i).ior), [1.5, 1.0]);
 }
 
@@ -98,14 +98,14 @@ fn eye_within_a_closed_mesh_is_in_it_and_eye_beside_it_is_not() {
 
 /// What a ray into the corner at (½, ½, ½) finds behind the first surface that it meets.
 fn ior_behind(scene: &Scene, origin: DVec3) -> f64 {
-    let bodies = Bodies::of(scene);
+    let bodies = NestedDielectrics::of(scene);
     let intersector = BruteForce::new(scene, Precision::Fast);
     let ray = Ray::new(origin, DVec3::splat(0.5) - origin);
     let mut hit = [None];
     intersector.closest(&[ray], Coherence::Incoherent, &mut hit);
     let hit = hit[0].expect("the ray meets the corner");
     let side = Surface::new(scene, &ray, &hit).side;
-    bodies.medium(&bodies.around(hit.id, side, &Interiors::default()).behind).ior
+    bodies.medium(&bodies.around(hit.id, side, &InteriorList::default()).behind).ior
 }
 
 #[test]

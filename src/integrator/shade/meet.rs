@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 
-use crate::geometry::{Found, Ids, LANES};
-use crate::integrator::counts::{Cause, WorkCounts};
+use crate::geometry::{Hit16, LANES, PrimitiveId16};
+use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::look::scattered;
 use crate::integrator::radiance::{Radiance, put};
-use crate::integrator::shade::sums::Sums;
-use crate::integrator::shade::{Bounce, For, Light, Lit};
+use crate::integrator::shade::sums::RadianceSums;
+use crate::integrator::shade::{For, LitSurface16, SpecularHit, WaveLighting};
 use crate::integrator::{Integrator, Wave};
 use crate::shading::{self, Reflectance};
 use crate::surface;
@@ -16,8 +16,8 @@ use crate::surface;
 pub(super) struct Meet<'a> {
     pub integrator: &'a Integrator<'a>,
     pub wave: &'a Wave,
-    pub light: &'a mut Light,
-    pub work: &'a mut WorkCounts,
+    pub light: &'a mut WaveLighting,
+    pub work: &'a mut FeatureCounts,
 }
 
 impl<const DETAILS: bool, const SMOOTH: bool> pulp::WithSimd for For<Meet<'_>, DETAILS, SMOOTH> {
@@ -35,18 +35,18 @@ impl Integrator<'_> {
     fn meet<const DETAILS: bool, const SMOOTH: bool>(
         &self,
         wave: &Wave,
-        light: &mut Light,
-        work: &mut WorkCounts,
+        light: &mut WaveLighting,
+        work: &mut FeatureCounts,
     ) {
-        let Light { radiance, spoilt, bounces, lit: (lit, filled), .. } = light;
+        let WaveLighting { radiance, spoilt, bounces, lit: (lit, filled), .. } = light;
         let background = self.scene.film.background;
-        radiance.resize(wave.hits.found().len(), [[0.0; LANES]; 3]);
+        radiance.resize(wave.hits.blocks().len(), [[0.0; LANES]; 3]);
         spoilt.clear();
         bounces.clear();
         *filled = 0;
-        for (block, found) in wave.hits.found().iter().enumerate() {
+        for (block, found) in wave.hits.blocks().iter().enumerate() {
             if *filled == lit.len() {
-                lit.push(Lit::default());
+                lit.push(LitSurface16::default());
             }
             let lit = &mut lit[*filled];
             lit.surfaces.set::<SMOOTH>(self.scene, &wave.rays, block, found);
@@ -56,10 +56,10 @@ impl Integrator<'_> {
             if lit.surfaces.kinds.any() {
                 lit.block = block;
                 if SMOOTH {
-                    let is_face = |&&geometry: &&u32| geometry >= Ids::MESHES;
+                    let is_face = |&&geometry: &&u32| geometry >= PrimitiveId16::MESHES;
                     work.smooth_normals += found.id.geometry.iter().filter(is_face).count() as u64;
                 }
-                let to = &mut Sums { radiance, spoilt };
+                let to = &mut RadianceSums { radiance, spoilt };
                 self.look::<DETAILS>(wave, found, lit, to, bounces, work);
                 *filled += usize::from(lit.here.contains(&true));
             }
@@ -71,11 +71,11 @@ impl Integrator<'_> {
     fn look<const DETAILS: bool>(
         &self,
         wave: &Wave,
-        found: &Found,
-        lit: &mut Lit,
-        to: &mut Sums<'_>,
-        bounces: &mut Vec<Bounce>,
-        work: &mut WorkCounts,
+        found: &Hit16,
+        lit: &mut LitSurface16,
+        to: &mut RadianceSums<'_>,
+        bounces: &mut Vec<SpecularHit>,
+        work: &mut FeatureCounts,
     ) {
         if !DETAILS && self.look_alike(found, lit, &mut to.radiance[lit.block]) {
             return;
@@ -98,10 +98,10 @@ impl Integrator<'_> {
                 let detail = self.detail(wave, ray, &hit, &surface, work);
                 self.details.count(look, &hit, work);
                 let material = &self.scene.materials[material];
-                finish = surface::finish(self.scene, material, &detail);
+                finish = surface::shading_params(self.scene, material, &detail);
                 reflectance = scattered(&finish);
                 is_finite = finish.emission.is_finite() && reflectance.diffuse.is_finite();
-                is_followed &= finish.is_followed() || !material.is_followed();
+                is_followed &= finish.spawns_rays() || !material.spawns_rays();
                 lit.ambient[i] = surface::occlusion(self.scene, material, &detail);
                 if look.has_normals {
                     work.normal_maps += 1;
@@ -112,7 +112,7 @@ impl Integrator<'_> {
             }
             let Reflectance { diffuse, specular, shininess } = reflectance;
             if !(is_finite && lit.surfaces.position(i).is_finite()) {
-                to.spoil(lit.block, i, Cause::Surface);
+                to.spoil(lit.block, i, NotFiniteCause::Surface);
                 continue;
             }
             put(&mut to.radiance[lit.block], i, finish.emission);
@@ -126,16 +126,16 @@ impl Integrator<'_> {
             }
             if is_followed {
                 let surface = lit.surfaces.surface(i, hit.id);
-                bounces.push(Bounce { ray: ray as u32, surface, finish });
+                bounces.push(SpecularHit { ray: ray as u32, surface, finish });
             }
         }
-        lit.exponent = exponent.filter(|_| one_exponent).and_then(shading::whole);
+        lit.exponent = exponent.filter(|_| one_exponent).and_then(shading::integer_exponent);
     }
 
     /// As `look`, where sixteen rays hit one material without detail that sends nothing on; says
     /// whether they do.
     #[inline(always)]
-    fn look_alike(&self, found: &Found, lit: &mut Lit, radiance: &mut Radiance) -> bool {
+    fn look_alike(&self, found: &Hit16, lit: &mut LitSurface16, radiance: &mut Radiance) -> bool {
         let first = lit.surfaces.material[0];
         let mut alike = true;
         for i in 0..LANES {
@@ -161,7 +161,7 @@ impl Integrator<'_> {
         lit.ambient = [1.0; LANES];
         lit.is_bent = false;
         lit.shines = look.shines;
-        lit.exponent = shading::whole(shininess);
+        lit.exponent = shading::integer_exponent(shininess);
         *radiance = look.finish.emission.to_array().map(|x| [x; LANES]);
         true
     }

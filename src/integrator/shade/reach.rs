@@ -3,12 +3,12 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Found, Ids, LANES, Lanes, Rays};
+use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId16, RayBatch};
 use crate::integrator::Wave;
-use crate::integrator::counts::WorkCounts;
+use crate::integrator::counts::FeatureCounts;
 use crate::integrator::radiance::{all_finite, any, at, put};
-use crate::integrator::shade::sums::Sums;
-use crate::integrator::shade::{For, Lit, Shadows, Waiting};
+use crate::integrator::shade::sums::RadianceSums;
+use crate::integrator::shade::{For, LitSurface16, PendingLight, ShadowQueue};
 use crate::scene::LightKind;
 use crate::shading;
 
@@ -20,11 +20,11 @@ pub(super) struct Reach<'a, 'b> {
     pub light: &'a crate::scene::Light,
     /// Whether shadow rays go out to it.
     pub asks: bool,
-    pub lit: &'a [Lit],
+    pub lit: &'a [LitSurface16],
     pub wave: &'a Wave,
-    pub to: &'a mut Sums<'b>,
-    pub shadow: &'a mut Shadows,
-    pub work: &'a mut WorkCounts,
+    pub to: &'a mut RadianceSums<'b>,
+    pub shadow: &'a mut ShadowQueue,
+    pub work: &'a mut FeatureCounts,
 }
 
 impl<const HIGHLIGHTS: bool> pulp::WithSimd for For<Reach<'_, '_>, HIGHLIGHTS> {
@@ -40,10 +40,10 @@ impl Reach<'_, '_> {
     #[inline(always)]
     fn reach<const HIGHLIGHTS: bool>(self) {
         let Self { light, asks, lit: all, wave, to, shadow, work } = self;
-        let (mut arrivals, mut shares) = (Arrivals::default(), Shares::default());
+        let (mut arrivals, mut shares) = (IncidentLight16::default(), Reflected16::default());
         let tmax = if light.is_bounded() { 1.0 } else { f64::INFINITY };
         for lit in all {
-            let found = &wave.hits.found()[lit.block];
+            let found = &wave.hits.blocks()[lit.block];
             arrivals.set(light, lit);
             shares.set::<HIGHLIGHTS>(lit, &arrivals, &wave.rays, found, work);
             if !any(&shares.here) {
@@ -69,7 +69,7 @@ impl Reach<'_, '_> {
                 to.add_all(lit.block, &with, &bright);
                 continue;
             }
-            let (lines, left) = shadow.rays.push_sixteen();
+            let (lines, left) = shadow.rays.push_block();
             for axis in 0..3 {
                 lines.origin[axis] = lit.surfaces.position[axis];
                 lines.direction[axis] = arrivals.toward[axis];
@@ -81,7 +81,7 @@ impl Reach<'_, '_> {
             left.id.geometry = found.id.geometry;
             left.id.primitive = found.id.primitive;
             left.id.instance = found.id.instance;
-            shadow.waiting.push(Waiting { block: lit.block, with, here: bright });
+            shadow.waiting.push(PendingLight { block: lit.block, with, here: bright });
         }
     }
 }
@@ -91,8 +91,8 @@ impl Reach<'_, '_> {
 /// is infinite by itself.
 #[cold]
 fn mark_odd(
-    arrivals: &Arrivals,
-    shares: &Shares,
+    arrivals: &IncidentLight16,
+    shares: &Reflected16,
     with: &mut [Lanes<f32>; 3],
     bright: &mut Lanes<bool>,
 ) {
@@ -113,23 +113,23 @@ fn mark_odd(
 /// The light that arrives at sixteen points.
 #[derive(Default)]
 #[repr(C, align(64))]
-struct Arrivals {
+struct IncidentLight16 {
     toward: [Lanes<f64>; 3],
     intensity: [Lanes<f32>; 3],
     /// Where any arrives.
     here: Lanes<bool>,
 }
 
-impl Arrivals {
+impl IncidentLight16 {
     #[inline(always)]
-    fn set(&mut self, light: &crate::scene::Light, lit: &Lit) {
+    fn set(&mut self, light: &crate::scene::Light, lit: &LitSurface16) {
         self.intensity = light.intensity.to_array().map(|x| [x; LANES]);
         self.here = lit.here;
         match light.kind {
             LightKind::Directional { direction } => {
                 self.toward = (-direction).to_array().map(|x| [x; LANES]);
             }
-            LightKind::Point { position, .. } if light.is_steady() => {
+            LightKind::Point { position, .. } if light.has_constant_intensity() => {
                 for axis in 0..3 {
                     for i in 0..LANES {
                         self.toward[axis][i] = position[axis] - lit.surfaces.position[axis][i];
@@ -141,7 +141,7 @@ impl Arrivals {
             }
             _ => {
                 for i in (0..LANES).filter(|&i| lit.here[i]) {
-                    match light.arrival(lit.surfaces.position(i)) {
+                    match light.incident(lit.surfaces.position(i)) {
                         None => self.here[i] = false,
                         Some(arrival) => {
                             for axis in 0..3 {
@@ -164,7 +164,7 @@ impl Arrivals {
 /// What sixteen surfaces send to the eye of one light, in units of its intensity.
 #[derive(Default)]
 #[repr(C, align(64))]
-struct Shares {
+struct Reflected16 {
     share: [Lanes<f32>; 3],
     /// Those that face the light.
     here: Lanes<bool>,
@@ -172,26 +172,26 @@ struct Shares {
     on_front: Lanes<bool>,
 }
 
-impl Shares {
+impl Reflected16 {
     /// As [`shading::direct`], to the bit.
     #[inline(always)]
     fn set<const HIGHLIGHTS: bool>(
         &mut self,
-        lit: &Lit,
-        arrivals: &Arrivals,
-        rays: &Rays,
-        found: &Found,
-        work: &mut WorkCounts,
+        lit: &LitSurface16,
+        arrivals: &IncidentLight16,
+        rays: &RayBatch,
+        found: &Hit16,
+        work: &mut FeatureCounts,
     ) {
         let surfaces = &lit.surfaces;
         let (mut cosines, mut over, mut mirrored) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        let light = shading::unit_of_all(&arrivals.toward, &arrivals.here);
+        let light = shading::normalize16(&arrivals.toward, &arrivals.here);
         let light = |i: usize| DVec3::new(light[0][i], light[1][i], light[2][i]);
         for i in 0..LANES {
             cosines[i] = shading::lambert(surfaces.normal(i), light(i));
         }
         if HIGHLIGHTS && lit.shines {
-            let view = shading::unit_of_all(&rays.lines()[lit.block].direction, &arrivals.here);
+            let view = shading::normalize16(&rays.blocks()[lit.block].direction, &arrivals.here);
             for i in 0..LANES {
                 let view = DVec3::new(view[0][i], view[1][i], view[2][i]);
                 mirrored[i] = shading::phong(surfaces.normal(i), view, light(i));
@@ -209,14 +209,16 @@ impl Shares {
                 // On a smooth-shaded mesh the shading normal may see a light that is behind the
                 // surface itself.
                 let facing = if surfaces.is_back[i] { -over[i] } else { over[i] };
-                self.here[i] &= !((found.id.geometry[i] >= Ids::MESHES) & (facing <= 0.0));
+                self.here[i] &=
+                    !((found.id.geometry[i] >= PrimitiveId16::MESHES) & (facing <= 0.0));
             }
         }
         if lit.is_bent {
             // So may a normal that a picture bends on anything else.
             for i in 0..LANES {
                 let facing = if surfaces.is_back[i] { -over[i] } else { over[i] };
-                let is_inside = surfaces.is_back[i] & (found.id.geometry[i] == Ids::SPHERES);
+                let is_inside =
+                    surfaces.is_back[i] & (found.id.geometry[i] == PrimitiveId16::SPHERES);
                 self.here[i] &= (facing > 0.0) | is_inside;
             }
         }
@@ -235,11 +237,11 @@ impl Shares {
     }
 }
 
-impl Lit {
+impl LitSurface16 {
     #[inline(always)]
-    fn add_highlights(&self, mirrored: Lanes<f64>, shares: &mut Shares) {
+    fn add_highlights(&self, mirrored: Lanes<f64>, shares: &mut Reflected16) {
         let highlight = match self.exponent {
-            Some(exponent) => shading::power_of_all(mirrored, exponent),
+            Some(exponent) => shading::power16(mirrored, exponent),
             None => {
                 let mut each = [0.0; LANES];
                 for i in (0..LANES).filter(|&i| shares.here[i]) {

@@ -3,17 +3,17 @@
 use glam::Vec3;
 
 use crate::geometry::{LANES, Lanes};
-use crate::integrator::counts::Cause;
+use crate::integrator::counts::NotFiniteCause;
 use crate::integrator::radiance::{Radiance, all_finite, at, put};
-use crate::integrator::shade::{Shadows, Waiting};
+use crate::integrator::shade::{PendingLight, ShadowQueue};
 
 /// The radiance along the rays of a wave, and which of it is spoilt.
-pub(super) struct Sums<'a> {
+pub(super) struct RadianceSums<'a> {
     pub radiance: &'a mut [Radiance],
-    pub spoilt: &'a mut Vec<(u32, Cause)>,
+    pub spoilt: &'a mut Vec<(u32, NotFiniteCause)>,
 }
 
-impl Sums<'_> {
+impl RadianceSums<'_> {
     /// Adds to the radiance along the rays that are `here`, unless it is spoilt already.
     #[inline(always)]
     pub fn add_all(&mut self, block: usize, with: &Radiance, here: &Lanes<bool>) {
@@ -40,16 +40,16 @@ impl Sums<'_> {
         if sum.is_finite() {
             put(&mut self.radiance[block], i, sum);
         } else if with.is_nan() {
-            self.spoil(block, i, Cause::Light);
+            self.spoil(block, i, NotFiniteCause::Light);
         } else {
-            self.spoil(block, i, Cause::Sum);
+            self.spoil(block, i, NotFiniteCause::Sum);
         }
     }
 
     /// Makes the radiance along one ray NaN, so that it stays out of the picture, and keeps what
     /// did it first.
     #[cold]
-    pub fn spoil(&mut self, block: usize, i: usize, cause: Cause) {
+    pub fn spoil(&mut self, block: usize, i: usize, cause: NotFiniteCause) {
         if !at(&self.radiance[block], i).is_nan() {
             self.spoilt.push(((block * LANES + i) as u32, cause));
         }
@@ -59,8 +59,8 @@ impl Sums<'_> {
 
 /// Adds what waits on shadow rays that nothing blocks.
 pub(super) struct Settle<'a, 'b> {
-    pub shadow: &'a Shadows,
-    pub to: &'a mut Sums<'b>,
+    pub shadow: &'a ShadowQueue,
+    pub to: &'a mut RadianceSums<'b>,
 }
 
 impl pulp::WithSimd for Settle<'_, '_> {
@@ -68,8 +68,10 @@ impl pulp::WithSimd for Settle<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
-        let Shadows { waiting, blocked, .. } = self.shadow;
-        for (Waiting { block, with, here }, blocked) in waiting.iter().zip(blocked.chunks(LANES)) {
+        let ShadowQueue { waiting, blocked, .. } = self.shadow;
+        for (PendingLight { block, with, here }, blocked) in
+            waiting.iter().zip(blocked.chunks(LANES))
+        {
             let mut open = *here;
             for (open, blocked) in open.iter_mut().zip(blocked) {
                 *open &= !blocked;

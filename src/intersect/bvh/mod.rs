@@ -12,13 +12,13 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, Rays, sphere};
-use crate::intersect::brute::is_extreme;
-use crate::intersect::entry::Entry;
-use crate::intersect::kept::{Kept, used};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, RayBatch, sphere};
+use crate::intersect::blas_cache::{BlasCache, meshes_in_use};
+use crate::intersect::brute_force::is_extreme;
+use crate::intersect::frame_diff::FrameDiff;
+use crate::intersect::object_space::ObjectSpace;
 use crate::intersect::primitive::Primitives;
-use crate::intersect::standing::Moved;
-use crate::intersect::{BruteForce, Coherence, Extras, Intersector, Precision};
+use crate::intersect::{BruteForce, Coherence, ExtraTests, Intersector, Precision};
 use crate::scene::{Instance, Mesh, Scene, Sphere};
 use build::build;
 use tree::{Line, Tree};
@@ -29,8 +29,6 @@ pub struct Bvh<'s> {
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
     meshes: Vec<Arc<MeshTree>>,
-    /// Whether planes are tried.
-    pub(super) planes: bool,
 }
 
 /// Where the meshes stand.
@@ -38,19 +36,19 @@ pub struct Bvh<'s> {
 struct Instances {
     tree: Tree,
     /// For each instance, the way into its mesh's space.
-    entries: Vec<Entry>,
+    entries: Vec<ObjectSpace>,
 }
 
 /// What frames share: the trees of the meshes, and those above them while nothing in these moves.
 #[derive(Default)]
-pub struct Shared {
-    meshes: Kept<MeshTree>,
+pub struct FrameCache {
+    meshes: BlasCache<MeshTree>,
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
     tops: u64,
 }
 
-impl Shared {
+impl FrameCache {
     /// How many meshes were built.
     pub fn built(&self) -> u64 {
         self.meshes.built()
@@ -72,8 +70,7 @@ impl<'s> Bvh<'s> {
         let primitives = Primitives { scene, precision };
         let meshes = mesh_trees(scene, None);
         let instances = Instances::new(scene, &meshes).into();
-        let (spheres, planes) = (sphere_tree(scene).into(), !scene.planes.is_empty());
-        Self { primitives, spheres, instances, meshes, planes }
+        Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
     /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
@@ -81,8 +78,8 @@ impl<'s> Bvh<'s> {
     pub(super) fn build_sharing(
         scene: &'s Scene,
         precision: Precision,
-        shared: &mut Shared,
-        moved: Option<&Moved>,
+        shared: &mut FrameCache,
+        moved: Option<&FrameDiff>,
     ) -> Self {
         let primitives = Primitives { scene, precision };
         let meshes = mesh_trees(scene, Some(&mut shared.meshes));
@@ -96,7 +93,7 @@ impl<'s> Bvh<'s> {
         }
         shared.tops += u64::from(!(spheres_stay && instances_stay));
         let (spheres, instances) = (shared.spheres.clone(), shared.instances.clone());
-        Self { primitives, spheres, instances, meshes, planes: !scene.planes.is_empty() }
+        Self { primitives, spheres, instances, meshes }
     }
 
     /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
@@ -118,7 +115,7 @@ impl<'s> Bvh<'s> {
         self.instances.tree.walk(&line, limit, |instance, limit| {
             let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
             let entry = &self.instances.entries[instance as usize];
-            let (origin, direction) = entry.line(ray.origin, ray.direction);
+            let (origin, direction) = entry.object_ray(ray.origin, ray.direction);
             let local = Line::new(origin, direction, entry.error(ray.origin));
             self.meshes[mesh as usize].0.walk(&local, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
@@ -129,9 +126,9 @@ impl<'s> Bvh<'s> {
 }
 
 /// The trees of the meshes that stand anywhere.
-fn mesh_trees(scene: &Scene, mut kept: Option<&mut Kept<MeshTree>>) -> Vec<Arc<MeshTree>> {
+fn mesh_trees(scene: &Scene, mut kept: Option<&mut BlasCache<MeshTree>>) -> Vec<Arc<MeshTree>> {
     let there = |index, mesh| kept.as_ref().and_then(|kept| kept.get(index, mesh));
-    let used = used(scene);
+    let used = meshes_in_use(scene);
     let meshes: Vec<Arc<MeshTree>> = (scene.meshes.par_iter().enumerate())
         .map(|(i, mesh)| match used[i] {
             true => there(i, mesh).unwrap_or_else(|| MeshTree::new(mesh).into()),
@@ -160,7 +157,8 @@ impl Instances {
             bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
         };
         let placed: Vec<Bounds> = scene.instances.iter().map(placed).collect();
-        let entries = scene.instances.iter().zip(&placed).map(|(i, b)| Entry::new(i, b)).collect();
+        let entries =
+            scene.instances.iter().zip(&placed).map(|(i, b)| ObjectSpace::new(i, b)).collect();
         Self { tree: build(&placed), entries }
     }
 }
@@ -186,12 +184,12 @@ impl Intersector for Bvh<'_> {
         env!("CARGO_PKG_VERSION").to_owned()
     }
 
-    fn closest_extras(&self, _: &Rays) -> Extras {
-        Extras { planes: self.planes, filters: false }
+    fn closest_extras(&self, _: &RayBatch) -> ExtraTests {
+        ExtraTests { planes: !self.primitives.scene.planes.is_empty(), filters: false }
     }
 
-    fn occluded_extras(&self) -> Extras {
-        Extras { planes: self.planes, filters: false }
+    fn occluded_extras(&self) -> ExtraTests {
+        ExtraTests { planes: !self.primitives.scene.planes.is_empty(), filters: false }
     }
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
@@ -200,20 +198,18 @@ impl Intersector for Bvh<'_> {
             *best = None;
             let mut limit = ray.tmax;
             self.visit(ray, &mut limit, |hit, limit| {
-                Hit::keep_first(best, hit);
+                Hit::keep_closest(best, hit);
                 *limit = limit.min(hit.t);
                 false
             });
-            if self.planes {
-                self.primitives.merge_planes(ray, best);
-            }
+            self.primitives.merge_planes(ray, best);
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.planes && self.primitives.planes_occlude(ray);
+            *blocked = self.primitives.planes_occlude(ray);
             if !*blocked {
                 let mut limit = ray.tmax;
                 self.visit(ray, &mut limit, |hit, _| {

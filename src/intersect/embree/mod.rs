@@ -15,32 +15,14 @@
 //! embree4-rs owns device, scene, meshes and their lifetimes. Its ray queries are not used: they
 //! take records smaller than the library writes (`layout`).
 
-mod canary;
 mod certified;
-mod decide;
-mod exact;
-mod filter;
-mod finish;
-mod frame;
-mod layout;
-mod memory;
-mod mesh_geometry;
-mod meshes;
-mod native;
-mod nearest;
+mod f32_space;
+mod fast;
+mod ffi;
 mod packet;
-mod placements;
-mod planes;
-mod query;
-mod raw;
-mod refine;
-mod spheres;
 #[cfg(test)]
 mod tests;
-mod top;
-mod triangles;
-mod user;
-mod width;
+mod tlas;
 
 use std::sync::{Arc, OnceLock};
 
@@ -49,31 +31,32 @@ use embree4_rs::{Device, SceneOptions};
 use embree4_sys::{RTCDeviceProperty, RTCSceneFlags};
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Hit, Hits, PrimitiveId, Ray, Rays};
-use crate::intersect::kept::Kept;
-use crate::intersect::standing::Moved;
-use crate::intersect::{BuildQuality, Coherence, Extras, Intersector, Precision, leaving};
+use crate::geometry::{Bounds, Hit, HitBatch, PrimitiveId, Ray, RayBatch};
+use crate::intersect::blas_cache::BlasCache;
+use crate::intersect::frame_diff::FrameDiff;
+use crate::intersect::{
+    BuildQuality, Coherence, ExtraTests, Intersector, Precision, self_intersection,
+};
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Instance, Scene, Skips, Work};
-use canary::failed;
-use frame::Frame;
-pub use memory::peak as peak_memory;
-use raw::{DeviceHandle, scene_handle};
-use top::Top;
-use width::Width;
+use crate::scene::{Instance, Scene};
+use f32_space::F32Space;
+use ffi::abi_check::{self, failed};
+use ffi::handles::{DeviceHandle, scene_handle};
+pub use ffi::memory::peak as peak_memory;
+use ffi::packet_width::PacketWidth;
+use packet::query;
+use tlas::Tlas;
 
 /// What is asked of an intersector.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Asked {
+pub(super) struct BuildOptions {
     pub precision: Precision,
     /// How many threads build it; 0 means all there are.
     pub threads: usize,
     /// How good the trees are.
     pub quality: BuildQuality,
-    /// Which work is left out where the scene has no need of it.
-    pub skips: Skips,
     /// How wide its packets are; none for the widest that is native.
-    pub width: Option<Width>,
+    pub width: Option<PacketWidth>,
 }
 
 /// The Embree intersector of one scene.
@@ -81,13 +64,11 @@ pub struct Embree<'s> {
     scene: &'s Scene,
     /// The largest absolute coordinate in the scene.
     reach: f64,
-    /// Whether planes are tried.
-    planes: bool,
     /// Whether every triangle blocks light.
     all_block: bool,
     /// Of which instances the alpha is tested; empty where it is of none.
     masked: Vec<bool>,
-    top: Arc<Top>,
+    top: Arc<Tlas>,
 }
 
 impl<'s> Embree<'s> {
@@ -96,7 +77,7 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// When the library is not as expected, or runs out of memory.
     pub fn build(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        Self::build_as(scene, Asked { precision, threads, ..Asked::default() })
+        Self::build_as(scene, BuildOptions { precision, threads, ..BuildOptions::default() })
     }
 
     /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
@@ -105,16 +86,16 @@ impl<'s> Embree<'s> {
     /// # Errors
     /// As [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
-        let width = Some(Width::One);
-        Self::build_as(scene, Asked { precision, threads, width, ..Asked::default() })
+        let width = Some(PacketWidth::One);
+        Self::build_as(scene, BuildOptions { precision, threads, width, ..BuildOptions::default() })
     }
 
-    pub(super) fn build_as(scene: &'s Scene, asked: Asked) -> Result<Self> {
+    pub(super) fn build_as(scene: &'s Scene, asked: BuildOptions) -> Result<Self> {
         let boxes = scene.mesh_bounds();
         let bounds = scene.bounds_with(&boxes);
         let device = new_device(scene, asked.threads)?;
-        let top = Top::build(scene, device, asked, Frame::around(bounds), &boxes, None)?;
-        Ok(Self::of(scene, asked, &bounds, top.into()))
+        let top = Tlas::build(scene, device, asked, F32Space::around(bounds), &boxes, None)?;
+        Ok(Self::of(scene, &bounds, top.into()))
     }
 
     /// As [`Embree::build`], where the boxes of the meshes are known, with what is there already
@@ -122,25 +103,24 @@ impl<'s> Embree<'s> {
     /// where the things are other ones.
     pub(super) fn build_sharing(
         scene: &'s Scene,
-        asked: Asked,
+        asked: BuildOptions,
         boxes: &[Bounds],
-        shared: &mut Shared,
-        moved: Option<&Moved>,
+        shared: &mut FrameCache,
+        moved: Option<&FrameDiff>,
     ) -> Result<Self> {
         let bounds = scene.bounds_with(boxes);
-        let frame = Frame::on_stage(bounds, shared.stage);
+        let frame = F32Space::on_stage(bounds, shared.stage);
         let top = shared.top(scene, asked, frame, boxes, moved)?;
-        Ok(Self::of(scene, asked, &bounds, top))
+        Ok(Self::of(scene, &bounds, top))
     }
 
-    fn of(scene: &'s Scene, asked: Asked, bounds: &Bounds, top: Arc<Top>) -> Self {
-        let planes = asked.skips.does(Work::Planes, !scene.planes.is_empty());
+    fn of(scene: &'s Scene, bounds: &Bounds, top: Arc<Tlas>) -> Self {
         let blocks = |(i, instance): (u32, &Instance)| {
             scene.blocks_light(PrimitiveId::triangle(instance.mesh.0, 0, i))
         };
         let all_block = (0..).zip(&scene.instances).all(blocks);
-        let masked = masked(scene, asked.skips);
-        Self { scene, reach: leaving::scene_reach(scene, bounds), planes, all_block, masked, top }
+        let masked = masked(scene);
+        Self { scene, reach: self_intersection::scene_reach(scene, bounds), all_block, masked, top }
     }
 
     /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
@@ -167,7 +147,6 @@ impl<'s> Embree<'s> {
             precision: top.precision,
             careful: false,
             reach: self.reach,
-            planes: self.planes,
             all_block: self.all_block,
             masked: &self.masked,
         }
@@ -179,7 +158,7 @@ impl<'s> Embree<'s> {
 fn new_device(scene: &Scene, threads: usize) -> Result<Device> {
     static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
     CHECKED
-        .get_or_init(|| canary::check().map_err(|e| e.to_string()))
+        .get_or_init(|| abi_check::check().map_err(|e| e.to_string()))
         .clone()
         .map_err(Error::failed)?;
     // Waking threads takes longer than a small tree does.
@@ -188,20 +167,20 @@ fn new_device(scene: &Scene, threads: usize) -> Result<Device> {
 }
 
 /// What frames share: a device, the meshes that were built on it, and the level above them.
-pub(super) struct Shared {
+pub(super) struct FrameCache {
     /// Where the frames take place, as far as that is known.
     stage: Bounds,
-    fast: Kept<native::Own>,
-    certified: Kept<meshes::Own>,
+    fast: BlasCache<fast::meshes::Blas>,
+    certified: BlasCache<certified::meshes::Blas>,
     /// That of the last frame.
-    top: Option<Arc<Top>>,
+    top: Option<Arc<Tlas>>,
     /// How many of them were built.
     tops: u64,
     /// Dropped after what stands on it.
     device: Option<DeviceHandle>,
 }
 
-impl Shared {
+impl FrameCache {
     /// Nothing yet, for frames that take place mostly within `stage`.
     pub(super) fn new(stage: Bounds) -> Self {
         let (fast, certified) = Default::default();
@@ -223,11 +202,11 @@ impl Shared {
     fn top(
         &mut self,
         scene: &Scene,
-        asked: Asked,
-        frame: Frame,
+        asked: BuildOptions,
+        frame: F32Space,
         boxes: &[Bounds],
-        moved: Option<&Moved>,
-    ) -> Result<Arc<Top>> {
+        moved: Option<&FrameDiff>,
+    ) -> Result<Arc<Tlas>> {
         // Taken, so that nothing half changed stays behind an error.
         let mut last = self.top.take();
         // Whoever traces the last frame holds it, too: then it must not change.
@@ -240,7 +219,7 @@ impl Shared {
                 Some(there) => there.device(),
                 None => new_device(scene, asked.threads)?,
             };
-            last = Some(Top::build(scene, device, asked, frame, boxes, Some(self))?.into());
+            last = Some(Tlas::build(scene, device, asked, frame, boxes, Some(self))?.into());
             self.tops += 1;
         }
         self.top.clone_from(&last);
@@ -266,12 +245,9 @@ fn is_outsized(mesh: &Bounds) -> bool {
     mesh.max_abs() > MAX_COORDINATE
 }
 
-/// Of which instances the alpha is tested: of those with a mask, or of all where that is not to be
-/// skipped; none at all where there is none.
-fn masked(scene: &Scene, skips: Skips) -> Vec<bool> {
-    let masked: Vec<bool> = (0..scene.instances.len() as u32)
-        .map(|i| skips.does(Work::AlphaTests, scene.is_masked(i)))
-        .collect();
+/// True for each instance whose alpha is tested; empty where no instance has a mask.
+fn masked(scene: &Scene) -> Vec<bool> {
+    let masked: Vec<bool> = (0..scene.instances.len() as u32).map(|i| scene.is_masked(i)).collect();
     if masked.contains(&true) { masked } else { Vec::new() }
 }
 
@@ -311,38 +287,41 @@ impl Intersector for Embree<'_> {
         self.top.version.clone()
     }
 
-    fn closest_extras(&self, rays: &Rays) -> Extras {
-        let asked = !rays.are_fresh() || !self.masked.is_empty();
+    fn closest_extras(&self, rays: &RayBatch) -> ExtraTests {
+        let asked = !rays.have_no_departures() || !self.masked.is_empty();
         let filters = self.top.precision == Precision::Fast && asked;
-        Extras { planes: self.planes, filters }
+        ExtraTests { planes: !self.scene.planes.is_empty(), filters }
     }
 
-    fn occluded_extras(&self) -> Extras {
-        Extras { planes: self.planes, filters: self.top.precision == Precision::Fast }
+    fn occluded_extras(&self) -> ExtraTests {
+        ExtraTests {
+            planes: !self.scene.planes.is_empty(),
+            filters: self.top.precision == Precision::Fast,
+        }
     }
 
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        let (mut batch, mut found) = (Rays::default(), Hits::default());
+        let (mut batch, mut found) = (RayBatch::default(), HitBatch::default());
         batch.extend(rays);
-        self.closest_of(&batch, coherence, &mut found);
+        self.closest_batch(&batch, coherence, &mut found);
         found.iter().zip(hits).for_each(|(found, hit)| *hit = found);
     }
 
     fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
-        let (mut batch, mut found) = (Rays::default(), Vec::new());
+        let (mut batch, mut found) = (RayBatch::default(), Vec::new());
         batch.extend(rays);
-        self.occluded_of(&batch, coherence, &mut found);
+        self.occluded_batch(&batch, coherence, &mut found);
         blocked.copy_from_slice(&found);
     }
 
-    fn closest_of(&self, rays: &Rays, coherence: Coherence, hits: &mut Hits) {
-        hits.fill(rays.len());
+    fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
+        hits.resize(rays.len());
         self.target().closest(rays, coherence, hits);
     }
 
-    fn occluded_of(&self, rays: &Rays, coherence: Coherence, blocked: &mut Vec<bool>) {
+    fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, blocked: &mut Vec<bool>) {
         blocked.clear();
         blocked.resize(rays.len(), false);
         self.target().occluded(rays, coherence, blocked);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::geometry::{Departure, Passage, PrimitiveId, Side};
+use crate::geometry::{Continuation, Departure, PrimitiveId, Side};
 use crate::intersect::Bvh;
 use crate::scene::{Instance, MaterialId, Mesh, Sphere};
 use glam::{DAffine3, DVec3};
@@ -45,11 +45,11 @@ fn rays(state: &mut u64) -> Vec<Ray> {
             let from = id.map(|id| Departure { id, side });
             let past = (i % 4 == 1).then(|| {
                 let id = PrimitiveId::sphere(i % 40);
-                Passage { t: 0.3, through: Departure { id, side } }
+                Continuation { t: 0.3, crossed: Departure { id, side } }
             });
             Ray {
-                from,
-                past,
+                departure: from,
+                continuation: past,
                 tmax: if i % 5 == 0 { 1.0 } else { f64::INFINITY },
                 ..Ray::new(origin, target - origin)
             }
@@ -57,16 +57,16 @@ fn rays(state: &mut u64) -> Vec<Ray> {
         .collect()
 }
 
-fn check(width: Width) {
+fn check(width: PacketWidth) {
     compare(width, Precision::Fast, BuildQuality::Medium);
     compare(width, Precision::Certified, BuildQuality::Medium);
 }
 
-fn compare(width: Width, precision: Precision, quality: BuildQuality) {
+fn compare(width: PacketWidth, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let asked = Asked { precision, threads: 1, quality, width: Some(width), ..Asked::default() };
+    let asked = BuildOptions { precision, threads: 1, quality, width: Some(width) };
     let embree = Embree::build_as(&scene, asked).unwrap();
     let judge = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
@@ -85,19 +85,19 @@ fn compare(width: Width, precision: Precision, quality: BuildQuality) {
 
 #[test]
 fn single_rays_equal_the_bvh() {
-    check(Width::One);
+    check(PacketWidth::One);
 }
 
 #[test]
 fn packets_of_four_equal_the_bvh() {
-    check(Width::Four);
+    check(PacketWidth::Four);
 }
 
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn packets_of_eight_equal_the_bvh() {
     if is_x86_feature_detected!("avx2") {
-        check(Width::Eight);
+        check(PacketWidth::Eight);
     }
 }
 
@@ -105,12 +105,12 @@ fn packets_of_eight_equal_the_bvh() {
 #[cfg(target_arch = "x86_64")]
 fn packets_of_sixteen_equal_the_bvh() {
     if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
-        check(Width::Sixteen);
+        check(PacketWidth::Sixteen);
     }
 }
 
 #[test]
 fn trees_of_low_quality_equal_the_bvh() {
-    compare(Width::One, Precision::Fast, BuildQuality::Low);
-    compare(Width::One, Precision::Certified, BuildQuality::Low);
+    compare(PacketWidth::One, Precision::Fast, BuildQuality::Low);
+    compare(PacketWidth::One, Precision::Certified, BuildQuality::Low);
 }

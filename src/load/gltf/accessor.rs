@@ -14,13 +14,13 @@ use super::number::Number;
 use super::packed;
 use super::rows::Rows;
 use crate::error::{Error, Place, Result};
-use crate::load::guard::Guard;
 use crate::load::limits::Limit;
+use crate::load::sandbox::Sandbox;
 
 /// Reads accessors.
 pub struct Accessors<'a> {
     root: &'a json::Root,
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     buffers: &'a Buffers<'a>,
     /// How many elements were read so far.
     read: Rc<Cell<u64>>,
@@ -45,7 +45,7 @@ const ELEMENTS_PER_FACE: u64 = 4;
 
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
-    pub fn new(root: &'a json::Root, guard: &'a Guard, buffers: &'a Buffers<'a>) -> Self {
+    pub fn new(root: &'a json::Root, guard: &'a Sandbox, buffers: &'a Buffers<'a>) -> Self {
         Self { root, guard, buffers, read: Rc::default(), supplied: HashMap::new() }
     }
 

@@ -13,12 +13,13 @@ use gltf::json::validation::Checked;
 use super::accessor::Accessors;
 use super::buffers::get;
 use crate::error::{Error, Result};
-use crate::load::guard::Guard;
+use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
-use crate::load::suggest;
-use crate::load::tally::Tally;
+use crate::load::sandbox::Sandbox;
+use crate::load::spelling;
 use crate::scene::animation::{
-    Animation, Curve, Interpolation, Keys, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation, Value,
+    Animated, Animation, Curve, Interpolation, Keyframes, MAX_FRAMES, Motion, Node, NodeId,
+    Rotation, Value,
 };
 
 /// Frames in a second of a model's own animation, which is made of times alone.
@@ -35,7 +36,7 @@ pub struct Clip {
     /// The nodes of the scene that is shown and move.
     nodes: Vec<Node>,
     /// What moves with them.
-    pub movers: Vec<Mover>,
+    pub movers: Vec<Animated>,
 }
 
 #[derive(Default)]
@@ -52,10 +53,10 @@ impl Clip {
     /// When there is none of that name.
     pub fn read(
         root: &json::Root,
-        guard: &Guard,
+        guard: &Sandbox,
         accessors: &Accessors,
         name: Option<&str>,
-        tally: &mut Tally,
+        tally: &mut Diagnostics,
     ) -> Result<Self> {
         let mut clip = Self {
             moves: HashMap::new(),
@@ -150,7 +151,7 @@ impl Clip {
         let still = if still.length() > 0.0 { still.normalize() } else { DQuat::IDENTITY };
         let translation = vector(node.translation.unwrap_or_default());
         let scale = vector(node.scale.unwrap_or([1.0; 3]));
-        let keys = Keys {
+        let keys = Keyframes {
             translation: moves.translation.clone().unwrap_or(Curve::constant(translation)),
             rotation: Rotation::Quaternions(
                 moves.rotation.clone().unwrap_or(Curve::constant(still)),
@@ -194,14 +195,14 @@ fn named(root: &json::Root, name: &str) -> Result<usize> {
         let names: Vec<&str> = root.animations.iter().filter_map(|a| a.name.as_deref()).collect();
         Error::input(format!("there is no animation `{name}`")).help(match &names[..] {
             [] => "no animation of the file has a name; without one the first is played".to_owned(),
-            names => suggest::choice(name, names, "animations"),
+            names => spelling::choice(name, names, "animations"),
         })
     })
 }
 
 struct Reader<'a> {
     accessors: &'a Accessors<'a>,
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     sampler: &'a Sampler,
     place: &'a str,
 }

@@ -9,14 +9,14 @@ use gltf::json;
 
 use super::meshopt::Packed;
 use crate::error::{Error, Place, Result};
-use crate::load::guard::{Guard, Opened};
 use crate::load::limits::Limit;
+use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::load::uri::Uri;
 
 /// The buffers of a file.
 pub struct Buffers<'a> {
     root: &'a json::Root,
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     folder: PathBuf,
     bin: Option<&'a [u8]>,
     loaded: Vec<OnceCell<Arc<Vec<u8>>>>,
@@ -32,12 +32,17 @@ pub enum Target {
     /// Bytes in the URI itself.
     Data(Vec<u8>),
     /// A file.
-    File(Opened),
+    File(OpenedFile),
 }
 
 impl<'a> Buffers<'a> {
     /// The buffers of the file at `path`, whose binary chunk is `bin`.
-    pub fn new(root: &'a json::Root, guard: &'a Guard, path: &Path, bin: Option<&'a [u8]>) -> Self {
+    pub fn new(
+        root: &'a json::Root,
+        guard: &'a Sandbox,
+        path: &Path,
+        bin: Option<&'a [u8]>,
+    ) -> Self {
         Self {
             root,
             guard,
@@ -131,7 +136,7 @@ impl<'a> Buffers<'a> {
         Ok(cell.get_or_init(|| bytes))
     }
 
-    fn file(&self, file: Opened) -> Result<Arc<Vec<u8>>> {
+    fn file(&self, file: OpenedFile) -> Result<Arc<Vec<u8>>> {
         let identity = file.identity.clone();
         if let Some(bytes) = self.files.borrow().get(&identity) {
             return Ok(bytes.clone());
@@ -158,7 +163,7 @@ impl<'a> Buffers<'a> {
 }
 
 /// What a URI in a file of this folder names: data within it, or a file that may be read.
-pub fn resolve(uri: &str, folder: &Path, guard: &Guard) -> Result<Target> {
+pub fn resolve(uri: &str, folder: &Path, guard: &Sandbox) -> Result<Target> {
     Ok(match Uri::parse(uri)? {
         Uri::Data(bytes) => Target::Data(bytes),
         Uri::File(names) => Target::File(guard.open(folder, &names)?),

@@ -12,7 +12,7 @@ use super::accessor::Accessors;
 use super::buffers::get;
 use super::nodes::Placed;
 use crate::error::{Error, Place, Result};
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 use crate::scene::animation::{Influences, Joint, Morph};
 
 /// The morph targets of a primitive of so many vertices.
@@ -23,7 +23,7 @@ pub fn morphs(
     primitive: &Primitive,
     accessors: &Accessors,
     count: usize,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     at: &str,
 ) -> Result<Vec<Morph>> {
     let mut morphs = Vec::new();
@@ -73,7 +73,7 @@ pub fn influences(
     primitive: &Primitive,
     accessors: &Accessors,
     count: usize,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     at: &str,
 ) -> Result<Option<Influences>> {
     let index = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|i| i.value());

@@ -3,7 +3,7 @@
 use gltf::json;
 
 use crate::error::{Error, Place, Result};
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are read.
 const READ: [&str; 18] = [
@@ -52,7 +52,7 @@ const UNSEEN_FAMILIES: [&str; 6] =
 
 /// Refuses a file that cannot be shown without an extension that isn't read, and warns of
 /// extensions that a file uses but can do without.
-pub fn check(root: &json::Root, tally: &mut Tally) -> Result<()> {
+pub fn check(root: &json::Root, tally: &mut Diagnostics) -> Result<()> {
     let is_read = |name: &str| {
         READ.contains(&name)
             || UNSEEN.contains(&name)

@@ -6,9 +6,9 @@ use gltf::json::Value;
 use super::accessor::Accessors;
 use super::nodes::Placed;
 use crate::error::{Error, Place, Result};
-use crate::load::guard::Guard;
+use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
-use crate::load::tally::Tally;
+use crate::load::sandbox::Sandbox;
 
 /// Where a node's mesh stands, in the node's space; nothing where that is once, at its origin.
 ///
@@ -16,9 +16,9 @@ use crate::load::tally::Tally;
 /// When the extension's accessors cannot be read, or are not equally long.
 pub fn places(
     Placed { node, index, .. }: &Placed,
-    guard: &Guard,
+    guard: &Sandbox,
     accessors: &Accessors,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
 ) -> Result<Option<Vec<DAffine3>>> {
     let extension = node.extensions.as_ref().and_then(|e| e.others.get("EXT_mesh_gpu_instancing"));
     let Some(extension) = extension else { return Ok(None) };

@@ -11,14 +11,14 @@ use gltf::json::validation::Checked;
 use super::buffers::get;
 use super::nodes::Placed;
 use crate::error::Result;
-use crate::load::tally::Tally;
-use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Shadow};
+use crate::load::diagnostics::Diagnostics;
+use crate::scene::{Camera, Falloff, Light, LightKind, Projection, Shadow};
 
 /// The light that a node carries.
 ///
 /// # Errors
 /// When the node names a light that isn't there.
-pub fn light(root: &json::Root, placed: &Placed, tally: &mut Tally) -> Result<Option<Light>> {
+pub fn light(root: &json::Root, placed: &Placed, tally: &mut Diagnostics) -> Result<Option<Light>> {
     let extension = placed.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let Some(index) = extension.map(|e| e.light.value()) else { return Ok(None) };
     let by = format!("nodes[{}].extensions.KHR_lights_punctual.light", placed.index);
@@ -44,7 +44,7 @@ pub fn light(root: &json::Root, placed: &Placed, tally: &mut Tally) -> Result<Op
     }))
 }
 
-fn kind(source: &Source, placed: &Placed, at: &str, tally: &mut Tally) -> Option<LightKind> {
+fn kind(source: &Source, placed: &Placed, at: &str, tally: &mut Diagnostics) -> Option<LightKind> {
     let Checked::Valid(kind) = source.type_ else { return None };
     let position = placed.world.translation;
     let direction = placed.world.matrix3.mul_vec3(DVec3::NEG_Z).try_normalize();
@@ -83,7 +83,11 @@ fn kind(source: &Source, placed: &Placed, at: &str, tally: &mut Tally) -> Option
 ///
 /// # Errors
 /// When the node names a camera that isn't there.
-pub fn camera(root: &json::Root, placed: &Placed, tally: &mut Tally) -> Result<Option<Camera>> {
+pub fn camera(
+    root: &json::Root,
+    placed: &Placed,
+    tally: &mut Diagnostics,
+) -> Result<Option<Camera>> {
     let Some(index) = placed.node.camera.map(|c| c.value()) else { return Ok(None) };
     let by = format!("nodes[{}].camera", placed.index);
     let source = get(&root.cameras, index, "camera", &by)?;
@@ -105,16 +109,16 @@ pub fn camera(root: &json::Root, placed: &Placed, tally: &mut Tally) -> Result<O
     }
 }
 
-fn lens(source: &json::Camera) -> Option<Lens> {
+fn lens(source: &json::Camera) -> Option<Projection> {
     match source.type_ {
         Checked::Valid(CameraType::Perspective) => {
             let yfov = f64::from(source.perspective.as_ref()?.yfov);
-            (yfov > 0.0 && yfov < PI).then_some(Lens::FovY(yfov))
+            (yfov > 0.0 && yfov < PI).then_some(Projection::FovY(yfov))
         }
         Checked::Valid(CameraType::Orthographic) => {
             // ymag is half of the height. Some files have it negative, to turn the picture over.
             let height = 2.0 * f64::from(source.orthographic.as_ref()?.ymag).abs();
-            (height > 0.0 && height.is_finite()).then_some(Lens::OrthoHeight(height))
+            (height > 0.0 && height.is_finite()).then_some(Projection::OrthoHeight(height))
         }
         Checked::Invalid => None,
     }

@@ -10,7 +10,7 @@ use super::buffers::get;
 use super::slot::Slot;
 use super::texture::Textures;
 use crate::error::Result;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
     Channel, Material, MaterialId, Metallic, MetallicMaps, NormalMap, OcclusionMap, Scene,
     ShininessMap, TextureId, Transfer, sharpness, shininess,
@@ -55,7 +55,7 @@ impl<'a> Materials<'a> {
         index: Option<usize>,
         by: &str,
         scene: &mut Scene,
-        tally: &mut Tally,
+        tally: &mut Diagnostics,
     ) -> Result<Made> {
         if let Some(made) = self.made.get(&index) {
             return Ok(made.clone());
@@ -75,7 +75,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Decodes what the materials show.
-    pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
+    pub fn decode(self, scene: &mut Scene, tally: &mut Diagnostics) {
         self.textures.decode(scene, tally);
     }
 }
@@ -87,7 +87,7 @@ pub struct Maker<'m, 'a> {
     pub asks: Asks,
     textures: &'m mut Textures<'a>,
     scene: &'m mut Scene,
-    pub tally: &'m mut Tally,
+    pub tally: &'m mut Diagnostics,
 }
 
 impl<'a> Maker<'_, 'a> {

@@ -10,9 +10,9 @@ use gltf::json::Node;
 use super::animation::Clip;
 use super::buffers::get;
 use crate::error::{Error, Place, Result};
-use crate::load::guard::Guard;
+use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
-use crate::load::tally::Tally;
+use crate::load::sandbox::Sandbox;
 use crate::scene::animation::NodeId;
 
 /// A node of the scene that is shown, with its place in the world.
@@ -46,9 +46,9 @@ impl Placed<'_> {
 /// finite.
 pub fn walk<'a>(
     root: &'a json::Root,
-    guard: &Guard,
+    guard: &Sandbox,
     clip: &mut Clip,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
 ) -> Result<Vec<Placed<'a>>> {
     let place = || Place::Json("nodes".to_owned());
     guard.take(Limit::Nodes, root.nodes.len() as u64).map_err(|e| e.place(place()))?;
@@ -177,7 +177,7 @@ fn roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usize, Str
     Ok(scene.nodes.iter().enumerate().map(|(i, node)| (node.value(), name(i))).collect())
 }
 
-fn local(node: &Node, index: usize, tally: &mut Tally) -> Result<DAffine3> {
+fn local(node: &Node, index: usize, tally: &mut Diagnostics) -> Result<DAffine3> {
     let finite = |numbers: &[f32], key: &str| {
         if numbers.iter().all(|x| x.is_finite()) {
             return Ok(());

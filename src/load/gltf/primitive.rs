@@ -13,8 +13,8 @@ use super::draco::{self, Unpacked};
 use super::material::Asks;
 use super::topology;
 use crate::error::{Error, Place, Result};
-use crate::load::repair::repair;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::mesh_repair::repair;
 use crate::scene::animation::{Influences, Morph};
 use crate::scene::{DropReason, Mesh};
 
@@ -34,7 +34,7 @@ pub fn read(
     primitive: &Primitive,
     accessors: &Accessors,
     asks: &Asks,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     at: &str,
 ) -> Result<Option<Part>> {
     let mode = mode(primitive, at)?;
@@ -58,7 +58,7 @@ fn assemble(
     accessors: &Accessors,
     corners: Option<Vec<u32>>,
     asks: &Asks,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     at: &str,
 ) -> Result<Option<Part>> {
     let reader = Reader { primitive, accessors, at };
@@ -141,7 +141,7 @@ impl Reader<'_> {
     }
 
     /// Counts all faces as read and dropped.
-    fn drop_all(&self, mode: Mode, reason: DropReason, tally: &mut Tally) {
+    fn drop_all(&self, mode: Mode, reason: DropReason, tally: &mut Diagnostics) {
         let any = self.primitive.attributes.values().next();
         let corners = self.primitive.indices.or(any.copied());
         let corners = corners.map_or(0, |index| self.accessors.count(index.value()));
@@ -155,7 +155,7 @@ impl Reader<'_> {
     }
 
     /// The accessor of an attribute that a mesh can do without, when it fits the positions.
-    fn fitting(&self, semantic: &Semantic, count: usize, tally: &mut Tally) -> Option<usize> {
+    fn fitting(&self, semantic: &Semantic, count: usize, tally: &mut Diagnostics) -> Option<usize> {
         let index = self.index(semantic.clone())?;
         let found = self.accessors.count(index);
         if found == count as u64 {
@@ -167,7 +167,7 @@ impl Reader<'_> {
         None
     }
 
-    fn normals(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 3]>> {
+    fn normals(&self, count: usize, tally: &mut Diagnostics) -> Result<Vec<[f32; 3]>> {
         let semantic = Semantic::Normals;
         match self.fitting(&semantic, count, tally) {
             Some(index) => self.accessors.floats(index, &self.place(&semantic)),
@@ -175,7 +175,7 @@ impl Reader<'_> {
         }
     }
 
-    fn tangents(&self, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 4]>> {
+    fn tangents(&self, count: usize, tally: &mut Diagnostics) -> Result<Vec<[f32; 4]>> {
         let semantic = Semantic::Tangents;
         match self.fitting(&semantic, count, tally) {
             Some(index) => self.accessors.floats(index, &self.place(&semantic)),
@@ -188,7 +188,7 @@ impl Reader<'_> {
         &self,
         alpha: bool,
         count: usize,
-        tally: &mut Tally,
+        tally: &mut Diagnostics,
     ) -> Result<(Vec<[f32; 3]>, Vec<f32>)> {
         let semantic = Semantic::Colors(0);
         let Some(index) = self.fitting(&semantic, count, tally) else {
@@ -208,7 +208,12 @@ impl Reader<'_> {
 
     /// Without a texture that asks for them the first set is kept, for who lays another material
     /// on the model.
-    fn uvs(&self, set: Option<&u32>, count: usize, tally: &mut Tally) -> Result<Vec<[f32; 2]>> {
+    fn uvs(
+        &self,
+        set: Option<&u32>,
+        count: usize,
+        tally: &mut Diagnostics,
+    ) -> Result<Vec<[f32; 2]>> {
         let semantic = Semantic::TexCoords(set.copied().unwrap_or(0));
         match self.fitting(&semantic, count, tally) {
             Some(index) => self.accessors.floats(index, &self.place(&semantic)),

@@ -13,16 +13,16 @@ use gltf::json::validation::Checked;
 use super::buffers::{Buffers, Target, cannot_have, get, resolve};
 use super::slot::Slot;
 use crate::error::{Error, Place, Result};
-use crate::load::guard::Guard;
-use crate::load::picture;
-use crate::load::stand_in;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::images::decode;
+use crate::load::images::placeholder;
+use crate::load::sandbox::Sandbox;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
 /// The textures of a file. What they show is decoded when all are known, each picture once.
 pub struct Textures<'a> {
     root: &'a json::Root,
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     buffers: &'a Buffers<'a>,
     /// Whether anything shows the pictures; otherwise they are only named.
     wanted: bool,
@@ -65,7 +65,7 @@ impl<'a> Textures<'a> {
     /// The textures of a file, whose pictures are read where they are `wanted`.
     pub fn new(
         root: &'a json::Root,
-        guard: &'a Guard,
+        guard: &'a Sandbox,
         buffers: &'a Buffers<'a>,
         wanted: bool,
     ) -> Self {
@@ -84,7 +84,7 @@ impl<'a> Textures<'a> {
         transfer: Transfer,
         by: &str,
         scene: &mut Scene,
-        tally: &mut Tally,
+        tally: &mut Diagnostics,
     ) -> Result<TextureId> {
         let key = (slot, transfer, set);
         let mut made = self.made.get(&slot.index).into_iter().flatten();
@@ -113,7 +113,7 @@ impl<'a> Textures<'a> {
                 Affine2::IDENTITY
             }
         };
-        let image = stand_in::white(&format!("textures[{index}]"));
+        let image = placeholder::white(&format!("textures[{index}]"));
         let id = scene.add_texture(Texture {
             transfer,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
@@ -163,23 +163,23 @@ impl<'a> Textures<'a> {
 
     /// Decodes the pictures, side by side, and gives them to the textures of the scene that show
     /// them. One that cannot be had is a warning, and a placeholder takes its place.
-    pub fn decode(self, scene: &mut Scene, tally: &mut Tally) {
+    pub fn decode(self, scene: &mut Scene, tally: &mut Diagnostics) {
         let Self { guard, buffers, wanted, pictures, .. } = self;
         let folder = buffers.folder();
         let open = |picture: &Picture<'a>| match picture.source.clone()? {
-            Source::Bytes(bytes) => Ok(picture::Source::Bytes(bytes, picture.at.clone())),
+            Source::Bytes(bytes) => Ok(decode::Source::Bytes(bytes, picture.at.clone())),
             Source::File(uri) => match resolve(uri, folder, guard) {
                 Ok(Target::Data(bytes)) => {
-                    Ok(picture::Source::Bytes(bytes.into(), picture.at.clone()))
+                    Ok(decode::Source::Bytes(bytes.into(), picture.at.clone()))
                 }
-                Ok(Target::File(file)) => Ok(picture::Source::File(file)),
+                Ok(Target::File(file)) => Ok(decode::Source::File(file)),
                 Err(error) => Err(cannot_have("picture", uri, &error)),
             },
         };
-        let images = picture::decode_all(&pictures, guard, open, |_| wanted);
+        let images = decode::decode_all(&pictures, guard, open, |_| wanted);
         for (image, Picture { at, shown_by, .. }) in images.into_iter().zip(pictures) {
             let image = image.map_err(|e| e.place(Place::Json(at.clone())));
-            stand_in::show(image, &at, shown_by.into_iter(), scene, tally);
+            placeholder::show(image, &at, shown_by.into_iter(), scene, tally);
         }
     }
 }

@@ -4,14 +4,14 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use crate::error::Result;
-use crate::load::guard::{Guard, Opened};
+use crate::load::sandbox::{OpenedFile, Sandbox};
 
 /// A file named in a model: as it stands, or as written on Windows, or beside the model when the
 /// folder it was in is on another machine; and where none is there, in any case.
 ///
 /// # Errors
-/// As [`Guard::open`], of the name as it stands.
-pub fn find(guard: &Guard, folder: &Path, name: &str) -> Result<Opened> {
+/// As [`Sandbox::open`], of the name as it stands.
+pub fn find(guard: &Sandbox, folder: &Path, name: &str) -> Result<OpenedFile> {
     let slashes = name.replace('\\', "/");
     let last = slashes.rsplit('/').next().unwrap_or_default();
     guard.open(folder, &[name, &slashes, last]).or_else(|error| {

@@ -11,13 +11,13 @@ use super::material::Maker;
 use super::mtl::{UNNAMED, clean};
 use super::textures::Textures;
 use crate::error::Error;
-use crate::load::guard::{Guard, Opened};
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Material, MaterialId, Scene};
 
 /// The materials that an OBJ file can name, each made when a face first uses it.
 pub struct Library<'a> {
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     made: HashMap<String, MaterialId>,
     textures: Textures<'a>,
@@ -28,7 +28,12 @@ pub struct Library<'a> {
 impl<'a> Library<'a> {
     /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. In place
     /// of one that is missing, or where none is named, that of the OBJ file's own name is read.
-    pub fn read(names: &[String], path: &Path, guard: &'a Guard, tally: &mut Tally) -> Self {
+    pub fn read(
+        names: &[String],
+        path: &Path,
+        guard: &'a Sandbox,
+        tally: &mut Diagnostics,
+    ) -> Self {
         let textures = Textures::new(guard);
         let (sources, made, files) = Default::default();
         let mut library = Self { guard, sources, made, textures, files };
@@ -65,7 +70,7 @@ impl<'a> Library<'a> {
         library
     }
 
-    fn add(&mut self, file: Opened, tally: &mut Tally) {
+    fn add(&mut self, file: OpenedFile, tally: &mut Diagnostics) {
         if !self.files.insert(file.identity.clone()) {
             return;
         }
@@ -96,7 +101,7 @@ impl<'a> Library<'a> {
     }
 
     /// The material of a name, made if it is new; a neutral grey if there is none of the name.
-    pub fn get(&mut self, name: &str, scene: &mut Scene, tally: &mut Tally) -> MaterialId {
+    pub fn get(&mut self, name: &str, scene: &mut Scene, tally: &mut Diagnostics) -> MaterialId {
         if let Some(&id) = self.made.get(name) {
             return id;
         }
@@ -120,7 +125,7 @@ impl<'a> Library<'a> {
 
     /// Decodes the pictures that the materials show, if they are `wanted`; otherwise they are only
     /// named.
-    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
+    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Diagnostics) {
         self.textures.decode(wanted, scene, tally);
     }
 }

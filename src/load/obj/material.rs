@@ -7,7 +7,7 @@ use glam::Vec3;
 use super::illumination::Illumination;
 use super::map::Map;
 use super::textures::Textures;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
     AlphaMode, Channel, Coverage, Material, MaterialId, Metallic, MetallicMaps, NormalMap, Scene,
     ShininessMap, TextureId, Transfer,
@@ -29,7 +29,7 @@ pub struct Maker<'a, 'g> {
     /// Where it is added next.
     pub scene: &'a mut Scene,
     /// What cannot be drawn is said here.
-    pub tally: &'a mut Tally,
+    pub tally: &'a mut Diagnostics,
 }
 
 impl<'a> Maker<'a, '_> {

@@ -30,10 +30,10 @@ use glam::{DAffine3, DVec3};
 use self::library::Library;
 use self::setting::Part;
 use crate::error::{Error, Result};
-use crate::load::guard::{Guard, Opened};
+use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
-use crate::load::repair::repair;
-use crate::load::tally::Tally;
+use crate::load::mesh_repair::repair;
+use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
 
 /// Loads an `.obj` file; its pictures are read where they are `wanted`.
@@ -41,14 +41,14 @@ use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(file: Opened, guard: &Guard, wanted: bool) -> Result<Scene> {
+pub fn load(file: OpenedFile, guard: &Sandbox, wanted: bool) -> Result<Scene> {
     let path = file.path.clone();
     let bytes = file.read(guard)?;
     import(&path, &bytes, guard, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], guard: &Guard, wanted: bool) -> Result<Scene> {
-    let mut tally = Tally::default();
+fn import(path: &Path, bytes: &[u8], guard: &Sandbox, wanted: bool) -> Result<Scene> {
+    let mut tally = Diagnostics::default();
     let text = lines::decode(bytes)?;
     let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
         let options = tobj::LoadOptions { single_index: true, ..Default::default() };
@@ -87,7 +87,7 @@ fn unit_of_colors(models: &[tobj::Model]) -> f32 {
 }
 
 /// The mesh of a part; nothing where it has no triangle. Its vertices' colours go up to `unit`.
-fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Tally) -> Option<Mesh> {
+fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Diagnostics) -> Option<Mesh> {
     let name = part.setting.name.as_deref();
     let place = name.unwrap_or("the object without a name");
     let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
@@ -125,7 +125,7 @@ fn per_vertex<T>(values: Vec<T>, count: usize) -> Vec<T> {
 fn triangles(
     source: &tobj::Mesh,
     positions: &[[f32; 3]],
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     place: &str,
 ) -> Vec<[u32; 3]> {
     // tobj leaves the arities out where all are 3.

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::lines::lines;
 use glam::{Mat3, Vec3};
 
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 
 /// The name, for tobj, of a material whose name is empty.
 pub const UNNAMED: &str = "(unnamed)";
@@ -70,7 +70,7 @@ fn meaning(keyword: &str) -> Option<(&'static str, Value)> {
 }
 
 /// The statements that tobj is to read, of the file at `path`.
-pub fn clean(text: &str, path: &Path, tally: &mut Tally) -> String {
+pub fn clean(text: &str, path: &Path, tally: &mut Diagnostics) -> String {
     let mut out = String::with_capacity(text.len());
     let mut names = HashSet::new();
     for line in lines(text) {
@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     fn cleaned(text: &str) -> (String, Vec<String>) {
-        let mut tally = Tally::default();
+        let mut tally = Diagnostics::default();
         let clean = clean(text, Path::new("a.mtl"), &mut tally);
         (clean, tally.sentences(Path::new("a.obj")))
     }

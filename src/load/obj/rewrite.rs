@@ -17,7 +17,7 @@ use super::setting::Place;
 use super::sorter::Sorter;
 use super::stream::{Rewritten, Stream};
 use crate::error::Result;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 
 /// About how many bytes a thread works on at a time.
 const CHUNK: usize = 1 << 20;
@@ -31,7 +31,7 @@ const BLOCK: usize = 1 << 12;
 /// a file is dropped.
 pub fn rewrite<T: Send>(
     text: &str,
-    tally: &mut Tally,
+    tally: &mut Diagnostics,
     read: impl FnOnce(&mut Stream) -> T + Send,
 ) -> Result<(Rewritten, T)> {
     let chunks: Vec<&str> = cut(text, CHUNK).collect();
@@ -139,8 +139,8 @@ mod tests {
         let text = "v 0 0 0\nv 1 0 0\nf 1 2 -1\nv 0 1 0\nf 1 2 3";
         let lines = |made: &mut Stream| made.lines().map(Result::unwrap).collect::<Vec<_>>();
         let whole = |made: &mut Stream| std::io::read_to_string(made).unwrap();
-        let (_, lines) = rewrite(text, &mut Tally::default(), lines).unwrap();
-        let (_, whole) = rewrite(text, &mut Tally::default(), whole).unwrap();
+        let (_, lines) = rewrite(text, &mut Diagnostics::default(), lines).unwrap();
+        let (_, whole) = rewrite(text, &mut Diagnostics::default(), whole).unwrap();
         assert_eq!(lines, ["v 0 0 0", "v 1 0 0", "v 0 1 0", "g 0", "f 1 2 2", "f 1 2 3", ""]);
         assert_eq!(whole.lines().collect::<Vec<_>>(), lines[..6]);
     }
@@ -161,7 +161,7 @@ mod tests {
         let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
         let text =
             format!("{vertices}usemtl a\n{filler}f -3 -2 -1\n{filler}{vertices}f 4 5 6\np 1");
-        let mut tally = Tally::default();
+        let mut tally = Diagnostics::default();
         let read = |made: &mut Stream| made.lines().map(Result::unwrap).collect::<Vec<_>>();
         let (made, read) = rewrite(&text, &mut tally, read).unwrap();
         let read: Vec<_> = read.iter().filter(|l| !l.starts_with('#')).collect();

@@ -9,7 +9,7 @@ use super::segments::Segments;
 use super::setting::{Counts, Part, Place, Setting};
 use super::vertices;
 use crate::error::{self, Result};
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 use crate::scene::DropReason;
 
 /// A chunk sorted.
@@ -45,7 +45,7 @@ pub struct Sorter<'a> {
     /// it.
     last: Option<(Target, usize)>,
     made: Sorted,
-    tally: Tally,
+    tally: Diagnostics,
 }
 
 impl<'a> Sorter<'a> {
@@ -61,7 +61,7 @@ impl<'a> Sorter<'a> {
             numbers: HashMap::new(),
             last: None,
             made: Sorted::default(),
-            tally: Tally::default(),
+            tally: Diagnostics::default(),
         }
     }
 
@@ -69,7 +69,7 @@ impl<'a> Sorter<'a> {
     ///
     /// # Errors
     /// When a line's numbers are no numbers; the error names the line.
-    pub fn sort(mut self) -> Result<(Sorted, Tally)> {
+    pub fn sort(mut self) -> Result<(Sorted, Diagnostics)> {
         for line in lines(self.chunk) {
             if self.keep(&line) {
                 continue;

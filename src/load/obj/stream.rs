@@ -10,10 +10,10 @@ use super::segments::{Segment, Segments};
 use super::setting::Part;
 use super::sorter::Sorted;
 use crate::error::{Error, Result};
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 
 /// A chunk of the file, as a thread is done with it.
-pub type Done = Result<(Sorted, Tally)>;
+pub type Done = Result<(Sorted, Diagnostics)>;
 
 /// What an OBJ file says beside vertices and faces.
 #[derive(Debug, Default)]
@@ -40,7 +40,7 @@ pub struct Stream<'a> {
     /// Parts whose faces were read, or are being read.
     begun: usize,
     made: Rewritten,
-    tally: Tally,
+    tally: Diagnostics,
     error: Option<Error>,
 }
 
@@ -57,7 +57,7 @@ impl<'a> Stream<'a> {
             faces: Vec::new(),
             begun: 0,
             made: Rewritten::default(),
-            tally: Tally::default(),
+            tally: Diagnostics::default(),
             error: None,
         }
     }
@@ -67,7 +67,7 @@ impl<'a> Stream<'a> {
     ///
     /// # Errors
     /// What was wrong with the first chunk that could not be sorted.
-    pub fn finish(mut self, tally: &mut Tally) -> Result<Rewritten> {
+    pub fn finish(mut self, tally: &mut Diagnostics) -> Result<Rewritten> {
         while let Some(chunk) = self.next_chunk() {
             self.store(chunk);
         }
@@ -76,7 +76,7 @@ impl<'a> Stream<'a> {
     }
 
     /// Waits for a chunk; nothing after the last one, or after one that went wrong.
-    fn next_chunk(&mut self) -> Option<(Sorted, Tally)> {
+    fn next_chunk(&mut self) -> Option<(Sorted, Diagnostics)> {
         if self.error.is_some() {
             return None;
         }
@@ -92,7 +92,7 @@ impl<'a> Stream<'a> {
 
     /// Keeps a chunk's faces for later, with the parts in the order in which they come up in the
     /// file, and gives its vertices.
-    fn store(&mut self, (chunk, said): (Sorted, Tally)) -> Segments {
+    fn store(&mut self, (chunk, said): (Sorted, Diagnostics)) -> Segments {
         self.tally.append(said);
         self.made.libraries.extend(chunk.libraries);
         for (part, segments) in chunk.parts {

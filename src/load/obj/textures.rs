@@ -9,10 +9,10 @@ use glam::{Affine2, Vec2};
 
 use super::files::find;
 use super::map::Map;
-use crate::load::guard::Guard;
-use crate::load::picture;
-use crate::load::stand_in;
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::images::decode;
+use crate::load::images::placeholder;
+use crate::load::sandbox::Sandbox;
 use crate::scene::{
     Channel, Image, MaterialId, NormalMap, Scene, Texture, TextureId, Transfer, Wrap,
 };
@@ -22,7 +22,7 @@ const MOSTLY: f64 = 0.9;
 
 /// The textures of a file.
 pub struct Textures<'a> {
-    guard: &'a Guard,
+    guard: &'a Sandbox,
     /// Pictures that are still to be decoded.
     pictures: Vec<Picture>,
     /// Their numbers, by their canonical paths, or those that they should have.
@@ -46,7 +46,7 @@ struct Picture {
 
 impl<'a> Textures<'a> {
     /// None yet.
-    pub fn new(guard: &'a Guard) -> Self {
+    pub fn new(guard: &'a Sandbox) -> Self {
         let (pictures, numbers, opacities, bumps) = Default::default();
         Self { guard, pictures, numbers, opacities, bumps }
     }
@@ -79,7 +79,7 @@ impl<'a> Textures<'a> {
             wrap: [wrap; 2],
             mipmap: true,
             transform: key.2,
-            ..Texture::new(Arc::new(stand_in::white(&map.file)))
+            ..Texture::new(Arc::new(placeholder::white(&map.file)))
         });
         shown_by.push((key, id));
         id
@@ -102,16 +102,16 @@ impl<'a> Textures<'a> {
     }
 
     /// Decodes the pictures, side by side, if they are `wanted`, and settles what depends on them.
-    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Tally) {
+    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Diagnostics) {
         let open = |picture: &Picture| {
-            find(self.guard, &picture.folder, &picture.name).map(picture::Source::File)
+            find(self.guard, &picture.folder, &picture.name).map(decode::Source::File)
         };
-        let images = picture::decode_all(&self.pictures, self.guard, open, |_| wanted);
+        let images = decode::decode_all(&self.pictures, self.guard, open, |_| wanted);
         let mut missing = HashSet::new();
         for (image, picture) in images.into_iter().zip(&self.pictures) {
             let image = image.map_err(|e| e.at(&picture.folder.join(&picture.name)));
             let shown_by = picture.shown_by.iter().map(|(_, id)| *id);
-            if !stand_in::show(image, &picture.name, shown_by.clone(), scene, tally) {
+            if !placeholder::show(image, &picture.name, shown_by.clone(), scene, tally) {
                 missing.extend(shown_by);
             }
         }

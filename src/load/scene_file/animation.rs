@@ -10,7 +10,7 @@ use super::tables::{ModelTable, SceneTable};
 use super::track::{Curves, curves};
 use crate::error::{Error, Result};
 use crate::scene::animation::{
-    Anchor, Animation, Curve, Keys, Motion, Node, NodeId, Orbit, Rotation,
+    Anchor, Animation, Curve, Keyframes, Motion, Node, NodeId, Orbit, Rotation,
 };
 
 /// Frames in a second of an animation that says nothing of it.
@@ -218,14 +218,14 @@ impl Builder<'_, '_> {
     }
 
     /// The keys of an object's own space, if its place, rotation or scale has any.
-    fn keys(&self, object: usize) -> Option<Keys> {
+    fn keys(&self, object: usize) -> Option<Keyframes> {
         let curves = &self.rigs[object].curves;
         let position = curves.position.as_ref().map(|curve| curve.value.clone());
         if position.is_none() && curves.rotation.is_none() && curves.scale.is_none() {
             return None;
         }
         let still = self.names.objects[object].position.unwrap_or_default();
-        let mut keys = Keys::still();
+        let mut keys = Keyframes::still();
         keys.translation = position.unwrap_or(Curve::constant(still));
         if let Some(table) = self.models[object] {
             let angles = table.rotate.map_or(DVec3::ZERO, |angles| angles.radians());

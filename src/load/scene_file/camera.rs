@@ -7,7 +7,7 @@ use super::source::{Source, Span};
 use super::tables::CameraTable;
 use super::values::unit;
 use crate::error::Result;
-use crate::scene::{Camera, Lens};
+use crate::scene::{Camera, Projection};
 
 /// The vertical field of view, in degrees, of a camera that says nothing of it.
 const DEFAULT_FOV_Y: f64 = 45.0;
@@ -52,24 +52,24 @@ pub fn camera(
     Ok(Camera { name, position, ..camera })
 }
 
-fn lens(source: &Source<'_>, table: &CameraTable, width: u32) -> Result<Lens> {
-    let given: Vec<(&str, &Span, Lens)> = [
-        table.fov_y.as_ref().map(|a| ("fov_y", &a.span, Lens::FovY(a.value.0.to_radians()))),
-        table.fov_x.as_ref().map(|a| ("fov_x", &a.span, Lens::FovX(a.value.0.to_radians()))),
+fn lens(source: &Source<'_>, table: &CameraTable, width: u32) -> Result<Projection> {
+    let given: Vec<(&str, &Span, Projection)> = [
+        table.fov_y.as_ref().map(|a| ("fov_y", &a.span, Projection::FovY(a.value.0.to_radians()))),
+        table.fov_x.as_ref().map(|a| ("fov_x", &a.span, Projection::FovX(a.value.0.to_radians()))),
         table
             .focal_px
             .as_ref()
-            .map(|d| ("focal_px", &d.span, Lens::FocalPx { focal: d.value.0, width })),
+            .map(|d| ("focal_px", &d.span, Projection::FocalPx { focal: d.value.0, width })),
         table
             .ortho_height
             .as_ref()
-            .map(|h| ("ortho_height", &h.span, Lens::OrthoHeight(h.value.0))),
+            .map(|h| ("ortho_height", &h.span, Projection::OrthoHeight(h.value.0))),
     ]
     .into_iter()
     .flatten()
     .collect();
     match given[..] {
-        [] => Ok(Lens::FovY(DEFAULT_FOV_Y.to_radians())),
+        [] => Ok(Projection::FovY(DEFAULT_FOV_Y.to_radians())),
         [(_, _, lens)] => Ok(lens),
         [(first, ..), (second, span, _), ..] => Err(source
             .error(

@@ -6,7 +6,7 @@ use super::source::{Source, Span};
 use super::spanned::At;
 use super::tables::{Kind, LightTable};
 use crate::error::Result;
-use crate::load::suggest;
+use crate::load::spelling;
 use crate::scene::{Light, LightKind, Shadow, Transfer};
 
 /// The cone of a spot that says nothing of it, in degrees.
@@ -127,7 +127,7 @@ fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
         {
             let article = if kind == Kind::Ambient { "an" } else { "a" };
             let name = kind.name();
-            let help = format!("its keys are {}", suggest::list(kind.keys()));
+            let help = format!("its keys are {}", spelling::list(kind.keys()));
             return Err(source
                 .error(&source.key(key, span), format!("{article} {name} light has no `{key}`"))
                 .help(help));

@@ -27,7 +27,7 @@ mod values;
 
 use crate::error::{Error, Place, Result};
 use crate::load::Options;
-use crate::load::guard::{Guard, Opened};
+use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::Scene;
 
 pub use schema::schema;
@@ -37,7 +37,7 @@ pub use schema::schema;
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(file: Opened, guard: &Guard, options: &Options) -> Result<Scene> {
+pub fn load(file: OpenedFile, guard: &Sandbox, options: &Options) -> Result<Scene> {
     let path = &file.path.clone();
     let bytes = file.read(guard)?;
     let text = utf8(&bytes).map_err(|e| e.at(path))?;

@@ -9,9 +9,9 @@ use super::resolve::Resolver;
 use super::spanned::At;
 use super::tables::ModelTable;
 use crate::error::{Error, Result};
-use crate::load::guard::Opened;
 use crate::load::limits::Limit;
-use crate::load::place::{Part, Placement};
+use crate::load::merge::{MergedModel, Placement};
+use crate::load::sandbox::OpenedFile;
 use crate::load::{self, Choice};
 use crate::scene::check::MAX_COORDINATE;
 
@@ -19,7 +19,7 @@ use crate::scene::check::MAX_COORDINATE;
 /// variants that they show.
 #[derive(Default)]
 pub struct Models {
-    loaded: HashMap<(PathBuf, Option<String>, Option<String>), Part>,
+    loaded: HashMap<(PathBuf, Option<String>, Option<String>), MergedModel>,
     /// What stands in the scene so far.
     placed: u64,
 }
@@ -56,7 +56,7 @@ impl Models {
                         path.display()
                     ));
                 }
-                unknown.insert(Part::add(&mut resolver.scene, model))
+                unknown.insert(MergedModel::add(&mut resolver.scene, model))
             }
         };
         let still = transform(table);
@@ -85,7 +85,7 @@ impl Models {
 
 /// Opens a model file. What is wrong with the name is the scene file's fault and is reported there;
 /// what is wrong in the file, its reader reports.
-fn open(resolver: &Resolver<'_>, name: &At<String>) -> Result<Opened> {
+fn open(resolver: &Resolver<'_>, name: &At<String>) -> Result<OpenedFile> {
     let At { span, value: name } = name;
     let source = resolver.source;
     let fail = |message| source.cannot_have(span, "model", name, &message);

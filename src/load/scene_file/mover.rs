@@ -6,24 +6,28 @@ use super::animation::Rig;
 use super::resolve::Resolver;
 use super::tables::{CameraTable, LightTable, SphereTable};
 use crate::error::Result;
-use crate::scene::animation::{Aim, Anchor, Mover, Toward};
+use crate::scene::animation::{Aim, Anchor, Animated, Toward};
 use crate::scene::{Camera, Light, LightKind, Sphere};
 
 /// How the next sphere of the scene moves, if it does.
-pub fn sphere(resolver: &Resolver<'_>, table: &SphereTable, sphere: &Sphere) -> Option<Mover> {
+pub fn sphere(resolver: &Resolver<'_>, table: &SphereTable, sphere: &Sphere) -> Option<Animated> {
     let rig = resolver.rig(&table.name)?;
     let radius = rig.curves.radius.clone();
     let (moves, node) = (rig.node.is_some() || radius.is_some(), rig.node);
     let center = if rig.is_own { DVec3::ZERO } else { sphere.center };
     let sphere = resolver.scene.spheres.len();
-    moves.then_some(Mover::Sphere { sphere, node, center, radius })
+    moves.then_some(Animated::Sphere { sphere, node, center, radius })
 }
 
 /// How the next light of the scene moves, if it does.
 ///
 /// # Errors
 /// When its colour times its intensity is beyond f32 at some time.
-pub fn light(resolver: &Resolver<'_>, table: &LightTable, light: &Light) -> Result<Option<Mover>> {
+pub fn light(
+    resolver: &Resolver<'_>,
+    table: &LightTable,
+    light: &Light,
+) -> Result<Option<Animated>> {
     let Some(rig) = resolver.rig(&table.name) else { return Ok(None) };
     let mut rest = light.clone();
     if rig.is_own
@@ -45,7 +49,7 @@ pub fn light(resolver: &Resolver<'_>, table: &LightTable, light: &Light) -> Resu
     }
     let moves = rig.node.is_some() || direction.is_some() || intensity.is_some();
     let (light, node) = (resolver.scene.lights.len(), rig.node);
-    Ok(moves.then_some(Mover::Light { light, node, rest, direction, intensity }))
+    Ok(moves.then_some(Animated::Light { light, node, rest, direction, intensity }))
 }
 
 /// How the next camera of the scene moves, or what it looks at; nothing when neither does.
@@ -56,7 +60,7 @@ pub fn camera(
     resolver: &Resolver<'_>,
     table: &CameraTable,
     camera: &Camera,
-) -> Result<Option<Mover>> {
+) -> Result<Option<Animated>> {
     let still = Rig::default();
     let rig = resolver.rig(&table.name).unwrap_or(&still);
     let mut rest = camera.clone();
@@ -84,5 +88,5 @@ pub fn camera(
     let up = table.up.as_ref().map_or(DVec3::Y, |up| up.value.0);
     let aim = toward.map(|toward| Aim { toward, up });
     let (camera, node) = (resolver.scene.cameras.len(), rig.node);
-    Ok(Some(Mover::Camera { camera, node, rest, aim, lens }))
+    Ok(Some(Animated::Camera { camera, node, rest, aim, lens }))
 }

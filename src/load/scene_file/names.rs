@@ -9,7 +9,7 @@ use super::spanned::At;
 use super::tables::{Kind, SceneTable};
 use super::values::PointOrName;
 use crate::error::Result;
-use crate::load::suggest;
+use crate::load::spelling;
 
 /// What kind of object a name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -115,7 +115,7 @@ impl Names {
             let names: Vec<&str> = self.objects.iter().map(|o| &*o.name).collect();
             error.help(match &names[..] {
                 [] => "give a sphere, a model, a light or a camera this `name`".to_owned(),
-                names => suggest::advice(name, names, "the objects with names are"),
+                names => spelling::advice(name, names, "the objects with names are"),
             })
         })
     }

@@ -8,8 +8,8 @@ use super::source::{Source, Span};
 use super::spanned::At;
 use super::tables::MapFilter;
 use crate::error::Result;
-use crate::load::guard::Guard;
-use crate::load::picture;
+use crate::load::images::decode;
+use crate::load::sandbox::Sandbox;
 use crate::scene::{Filter, Image, Scene, Texture, TextureId, Transfer};
 
 /// The pictures that materials name, to be decoded when all are known.
@@ -38,7 +38,7 @@ impl Pictures {
     /// When there is no such file, or it may not be read.
     pub fn texture(
         &mut self,
-        (source, guard): (&Source<'_>, &Guard),
+        (source, guard): (&Source<'_>, &Sandbox),
         At { span, value: name }: &At<String>,
         transfer: Transfer,
         filter: MapFilter,
@@ -72,10 +72,10 @@ impl Pictures {
     ///
     /// # Errors
     /// When one of them cannot be read; of several the one that is named first.
-    pub fn decode(self, source: &Source<'_>, guard: &Guard, scene: &mut Scene) -> Result<()> {
+    pub fn decode(self, source: &Source<'_>, guard: &Sandbox, scene: &mut Scene) -> Result<()> {
         let open =
-            |file: &File| guard.open(source.folder(), &[&file.name]).map(picture::Source::File);
-        let images = picture::decode_all(&self.files, guard, open, |file| file.wanted);
+            |file: &File| guard.open(source.folder(), &[&file.name]).map(decode::Source::File);
+        let images = decode::decode_all(&self.files, guard, open, |file| file.wanted);
         for (file, image) in self.files.iter().zip(images) {
             let fail = |e| source.cannot_have(&file.span, "picture", &file.name, &e);
             let image = Arc::new(image.map_err(fail)?);

@@ -2,7 +2,7 @@
 
 use super::source::{Source, Span};
 use crate::error::Error;
-use crate::load::suggest;
+use crate::load::spelling;
 
 /// Tables that are written under double brackets.
 const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];
@@ -45,14 +45,14 @@ impl Report<'_> {
         let candidates: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
         if what == "variant" {
             let key = self.key()?;
-            let advice = suggest::advice(found, &candidates, "it is one of");
+            let advice = spelling::advice(found, &candidates, "it is one of");
             return Some(self.error(format!("`{key}` cannot be \"{found}\"")).help(advice));
         }
         let table = if self.path.is_empty() { "a scene file" } else { &self.table() };
         let error = self.error(format!("{table} has no key `{found}`"));
-        let help = match (suggest::closest(found, &candidates), homes(found)) {
+        let help = match (spelling::closest(found, &candidates), homes(found)) {
             (None, Some(homes)) => format!("it belongs {homes}"),
-            _ => suggest::advice(found, &candidates, "its keys are"),
+            _ => spelling::advice(found, &candidates, "its keys are"),
         };
         Some(error.help(help))
     }

@@ -8,8 +8,6 @@ use super::tables::SceneTable;
 
 /// What shows pictures.
 pub struct Shown {
-    /// Whether all are to be read nevertheless.
-    all: bool,
     /// The materials of the file that something is made of.
     materials: HashSet<String>,
     /// The models that stand somewhere in their own materials, by their canonical paths.
@@ -18,7 +16,7 @@ pub struct Shown {
 
 impl Shown {
     /// What the tables of a scene file show.
-    pub fn of(source: &Source<'_>, tables: &SceneTable, all: bool) -> Self {
+    pub fn of(source: &Source<'_>, tables: &SceneTable) -> Self {
         let spheres = tables.sphere.0.iter().map(|s| &s.value.0.material);
         let planes = tables.plane.0.iter().map(|p| &p.value.0.material);
         let models = || tables.model.0.iter().map(|m| &m.value.0);
@@ -26,17 +24,17 @@ impl Shown {
         let materials = named.map(|name| name.value.clone()).collect();
         let own = models().filter(|model| model.material.is_none());
         let models = own.map(|model| canonical(&source.file(&model.file.value))).collect();
-        Self { all, materials, models }
+        Self { materials, models }
     }
 
     /// Whether anything shows the pictures of a material of the file.
     pub fn material(&self, name: &str) -> bool {
-        self.all || self.materials.contains(name)
+        self.materials.contains(name)
     }
 
     /// Whether anything shows the pictures of a model.
     pub fn model(&self, path: &Path) -> bool {
-        self.all || self.models.contains(&canonical(path))
+        self.models.contains(&canonical(path))
     }
 }
 

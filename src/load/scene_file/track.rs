@@ -8,8 +8,8 @@ use super::source::{Source, Span};
 use super::spanned::At;
 use super::tables::Kind;
 use crate::error::{Error, Result};
-use crate::load::suggest;
-use crate::scene::Lens;
+use crate::load::spelling;
+use crate::scene::Projection;
 use crate::scene::animation::{Curve, Interpolation, Value};
 
 /// What changes of an object.
@@ -34,7 +34,7 @@ pub struct Curves {
 }
 
 /// A lens of a value, for a film of so many pixels in width.
-pub type MakeLens = fn(f64, u32) -> Lens;
+pub type MakeLens = fn(f64, u32) -> Projection;
 
 impl What {
     /// The keys that can change.
@@ -85,11 +85,17 @@ pub fn curves(
         track.once("intensity", &list.span, curves.intensity.replace(at).is_some())?;
     }
     let lens = &mut curves.lens;
-    track.lens("fov_y", &table.fov_y, |a| a.0.to_radians(), |a, _| Lens::FovY(a), lens)?;
-    track.lens("fov_x", &table.fov_x, |a| a.0.to_radians(), |a, _| Lens::FovX(a), lens)?;
-    let focal_px = |focal, width| Lens::FocalPx { focal, width };
+    track.lens("fov_y", &table.fov_y, |a| a.0.to_radians(), |a, _| Projection::FovY(a), lens)?;
+    track.lens("fov_x", &table.fov_x, |a| a.0.to_radians(), |a, _| Projection::FovX(a), lens)?;
+    let focal_px = |focal, width| Projection::FocalPx { focal, width };
     track.lens("focal_px", &table.focal_px, |d| d.0, focal_px, lens)?;
-    track.lens("ortho_height", &table.ortho_height, |h| h.0, |h, _| Lens::OrthoHeight(h), lens)?;
+    track.lens(
+        "ortho_height",
+        &table.ortho_height,
+        |h| h.0,
+        |h, _| Projection::OrthoHeight(h),
+        lens,
+    )?;
     let both = curves.look_at.is_some() && curves.direction.is_some();
     if both && object.what == What::Camera {
         let message = "a camera has `look_at` or `direction`, not both";
@@ -98,7 +104,7 @@ pub fn curves(
     if track.is_empty {
         let name = &object.name;
         let message = format!("the track says nothing of what changes of `{name}`");
-        let keys = suggest::list(object.what.keys());
+        let keys = spelling::list(object.what.keys());
         return Err(source.error(&table.object.span, message).help(format!(
             "give it values for one or several of {keys}: one for each of its `times`"
         )));
@@ -128,7 +134,7 @@ impl Track<'_> {
         if !what.keys().contains(&key) {
             let message =
                 format!("`{}` is {}, which has no `{key}`", self.object.name, what.name());
-            let help = format!("what can change of it is {}", suggest::list(what.keys()));
+            let help = format!("what can change of it is {}", spelling::list(what.keys()));
             return Err(self.source.error(&self.source.key(key, span), message).help(help));
         }
         let times = self.table.times.value.0.len();

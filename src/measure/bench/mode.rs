@@ -1,7 +1,7 @@
 //! The ways to make a picture between which a user can choose.
 
 use crate::error::Result;
-use crate::intersect::{Backend, BuildQuality, Builder, Intersector, Precision};
+use crate::intersect::{Backend, BuildQuality, Intersector, IntersectorBuilder, Precision};
 use crate::scene::{Adaptive, FilmSettings, Scene};
 
 /// What has to be built before the first ray: one serves pictures of any number of samples.
@@ -68,7 +68,8 @@ impl Setup {
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
     pub fn build<'s>(&self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
-        let builder = Builder::new(self.backend, self.precision, rayon::current_num_threads());
+        let builder =
+            IntersectorBuilder::new(self.backend, self.precision, rayon::current_num_threads());
         let quality = self.quality.unwrap_or(BuildQuality::Medium);
         builder.with_quality(quality).build(scene)
     }

@@ -12,7 +12,7 @@ const BITS: usize = 130;
 
 /// The number (p ± √q) / a · 2^k, above 0, held as its integers.
 #[derive(Clone, Debug)]
-pub struct Exact {
+pub struct ExactNumber {
     rational: IBig,
     /// Which root: ∓√q. Without meaning when q is 0.
     root: Sign,
@@ -22,7 +22,7 @@ pub struct Exact {
     exponent: i64,
 }
 
-impl Exact {
+impl ExactNumber {
     /// numerator / denominator · 2^exponent.
     pub(super) fn quotient(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
         let (numerator, denominator) = match denominator.sign() {
@@ -174,8 +174,8 @@ pub(super) fn truncate(mantissa: &UBig, exponent: i64) -> f64 {
 mod tests {
     use super::*;
 
-    fn quotient(n: i64, d: i64, exponent: i64) -> Exact {
-        Exact::quotient(IBig::from(n), IBig::from(d), exponent)
+    fn quotient(n: i64, d: i64, exponent: i64) -> ExactNumber {
+        ExactNumber::quotient(IBig::from(n), IBig::from(d), exponent)
     }
 
     #[test]
@@ -188,7 +188,8 @@ mod tests {
     #[test]
     fn square_root_rounds_as_the_processor_rounds() {
         for n in [2u64, 3, 5, 1 << 50, (1 << 53) - 1] {
-            let root = Exact::root(IBig::ZERO, Sign::Positive, UBig::from(n), IBig::from(1), 0);
+            let root =
+                ExactNumber::root(IBig::ZERO, Sign::Positive, UBig::from(n), IBig::from(1), 0);
             assert_eq!(root.to_f64(), (n as f64).sqrt(), "{n}");
         }
     }
@@ -204,7 +205,7 @@ mod tests {
     fn a_tie_missed_by_a_hair_goes_to_the_nearer() {
         // 1 + 2^-53 ± 2^-200.
         let tie = (IBig::from(1) << 200) + (IBig::from(1) << 147);
-        let number = |n: IBig| Exact::quotient(n, IBig::from(1), -200).to_f64();
+        let number = |n: IBig| ExactNumber::quotient(n, IBig::from(1), -200).to_f64();
         assert_eq!(number(tie.clone()), 1.0);
         assert_eq!(number(tie.clone() - IBig::from(1)), 1.0);
         assert_eq!(number(tie + IBig::from(1)), 1.0 + f64::EPSILON);
@@ -215,7 +216,7 @@ mod tests {
         // 10^17 − √(10^34 − 1) = 5·10^-18 (1 + 2.5·10^-35 …).
         let p = IBig::from(10u64).pow(17);
         let q = (&p * &p - IBig::from(1)).unsigned_abs();
-        let root = Exact::root(p, Sign::Negative, q, IBig::from(1), 0);
+        let root = ExactNumber::root(p, Sign::Negative, q, IBig::from(1), 0);
         assert_eq!(root.to_f64(), 5e-18);
     }
 

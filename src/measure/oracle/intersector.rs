@@ -1,7 +1,9 @@
 //! The oracle in an intersector's place.
 
 use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
-use crate::intersect::primitive::{Leaving, leaving, starts_in_plane, starts_on};
+use crate::intersect::primitive::{
+    SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
+};
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::Scene;
 
@@ -22,7 +24,7 @@ impl<'s> Oracle<'s> {
             let count = scene.meshes[mesh as usize].triangles.len() as u32;
             (0..count).map(move |t| {
                 let id = PrimitiveId::triangle(mesh, t, instance);
-                (id, Bounds::of(scene.triangle(id)))
+                (id, Bounds::of(scene.triangle_vertices(id)))
             })
         });
         Self { scene, boxes: spheres.chain(triangles).collect() }
@@ -38,27 +40,27 @@ impl<'s> Oracle<'s> {
     }
 
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
-        let Some(past) = ray.past else { return self.crossing(id, ray, false) };
-        if past.through.id != id {
+        let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
+        if past.crossed.id != id {
             return [false, true]
                 .into_iter()
-                .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.is_beyond(h.t, id)));
+                .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.excludes(h.t, id)));
         }
-        let inside = id.geometry == Geometry::Spheres && past.through.side == Side::Back;
+        let inside = id.geometry == Geometry::Spheres && past.crossed.side == Side::Back;
         inside.then(|| self.crossing(id, ray, true))?.filter(|hit| hit.t >= past.t)
     }
 
     /// Where the ray meets a primitive; a sphere first, or at its far side.
     fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<Hit> {
-        if ray.from.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
+        if ray.departure.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
             return None;
         }
         let (t, u, v) = match id.geometry {
             Geometry::Spheres => {
-                let inward = match leaving(self.scene, id.primitive, ray) {
-                    Leaving::No => far,
-                    Leaving::Outward => return None,
-                    Leaving::Inward => true,
+                let inward = match sphere_departure(self.scene, id.primitive, ray) {
+                    SphereDeparture::No => far,
+                    SphereDeparture::Outward => return None,
+                    SphereDeparture::Inward => true,
                 };
                 let s = &self.scene.spheres[id.primitive as usize];
                 (super::sphere(s.center, s.radius, ray, inward)?, 0.0, 0.0)
@@ -66,15 +68,15 @@ impl<'s> Oracle<'s> {
             Geometry::Planes => {
                 let p = &self.scene.planes[id.primitive as usize];
                 let t = super::plane(p.point, p.normal, ray)?;
-                if starts_in_plane(self.scene, id.primitive, ray) {
+                if starts_on_plane(self.scene, id.primitive, ray) {
                     return None;
                 }
                 (t, 0.0, 0.0)
             }
             Geometry::Mesh(_) => {
-                let corners = self.scene.triangle(id);
+                let corners = self.scene.triangle_vertices(id);
                 let crossing = super::triangle(corners, ray)?;
-                if starts_on(self.scene, corners, ray) {
+                if starts_on_triangle(self.scene, corners, ray) {
                     return None;
                 }
                 if self.scene.is_cut_out(id, crossing.u, crossing.v) {
@@ -121,7 +123,7 @@ impl Intersector for Oracle<'_> {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         for (ray, best) in rays.iter().zip(hits) {
             *best = None;
-            self.all(ray).for_each(|hit| Hit::keep_first(best, hit));
+            self.all(ray).for_each(|hit| Hit::keep_closest(best, hit));
         }
     }
 

@@ -19,7 +19,7 @@ use glam::DVec3;
 
 use crate::geometry::Ray;
 
-pub use exact::Exact;
+pub use exact::ExactNumber;
 pub use intersector::Oracle;
 
 use integers::{Vector, common_scale, common_scale_of, cross, decode, dot, sub};
@@ -28,7 +28,7 @@ use integers::{Vector, common_scale, common_scale_of, cross, decode, dot, sub};
 #[derive(Clone, Debug)]
 pub struct Crossing {
     /// The distance, in units of the ray's |direction|.
-    pub t: Exact,
+    pub t: ExactNumber,
     /// Weight of the second vertex, correctly rounded, in \[0, 1\].
     pub u: f64,
     /// Weight of the third vertex, correctly rounded, in \[0, 1\].
@@ -39,7 +39,7 @@ pub struct Crossing {
 ///
 /// `leaving_inward` leaves the near root out. The far root is not tried when the near one lies
 /// beyond `ray.tmax`. What the ray left (`ray.from`) plays no part.
-pub fn sphere(center: DVec3, radius: f64, ray: &Ray, leaving_inward: bool) -> Option<Exact> {
+pub fn sphere(center: DVec3, radius: f64, ray: &Ray, leaving_inward: bool) -> Option<ExactNumber> {
     let line = Line::new(center, radius, ray)?;
     let near = line.root(Sign::Negative);
     if !leaving_inward && near.compare(0.0) == Ordering::Greater {
@@ -74,7 +74,7 @@ pub fn height(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
 
 /// Where the ray meets the plane through `point` with normal `normal`, of any length, at
 /// 0 < t < `ray.tmax`; a ray along the plane does not meet it.
-pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<Exact> {
+pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<ExactNumber> {
     let ([point, origin], scale) = common_scale_of([point, ray.origin]);
     let ([normal], _) = common_scale_of([normal]);
     let ([direction], direction_scale) = common_scale_of([ray.direction]);
@@ -83,12 +83,12 @@ pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<Exact> {
         return None;
     }
     let away = dot(&normal, &sub(&point, &origin));
-    within(Exact::quotient(away, toward, scale - direction_scale), ray.tmax)
+    within(ExactNumber::quotient(away, toward, scale - direction_scale), ray.tmax)
 }
 
 /// Where the ray meets the plane through three points, at 0 < t < `ray.tmax`; `None` also when the
 /// points lie on a line.
-pub fn plane_of(corners: [DVec3; 3], ray: &Ray) -> Option<Exact> {
+pub fn plane_of(corners: [DVec3; 3], ray: &Ray) -> Option<ExactNumber> {
     Facet::new(corners, ray).t(ray.tmax)
 }
 
@@ -111,7 +111,7 @@ pub fn triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Crossing> {
         if edge.function.is_zero() {
             return 0.0;
         }
-        Exact::quotient(edge.function.clone(), facet.toward.clone(), 0).to_f64()
+        ExactNumber::quotient(edge.function.clone(), facet.toward.clone(), 0).to_f64()
     };
     Some(Crossing { t, u: weight(&edges[1]), v: weight(&edges[2]) })
 }
@@ -138,11 +138,11 @@ impl Facet {
         Self { corners: [a, b, c], origin, direction, toward, away, exponent }
     }
 
-    fn t(&self, tmax: f64) -> Option<Exact> {
+    fn t(&self, tmax: f64) -> Option<ExactNumber> {
         if self.toward.is_zero() {
             return None;
         }
-        within(Exact::quotient(self.away.clone(), self.toward.clone(), self.exponent), tmax)
+        within(ExactNumber::quotient(self.away.clone(), self.toward.clone(), self.exponent), tmax)
     }
 }
 
@@ -195,14 +195,14 @@ impl Line {
         crosses.then(|| Self { a, h, discriminant, exponent: scale - direction_scale })
     }
 
-    fn root(&self, which: Sign) -> Exact {
+    fn root(&self, which: Sign) -> ExactNumber {
         let radicand = self.discriminant.clone().unsigned_abs();
-        Exact::root(self.h.clone(), which, radicand, self.a.clone(), self.exponent)
+        ExactNumber::root(self.h.clone(), which, radicand, self.a.clone(), self.exponent)
     }
 }
 
 /// The distance, if it lies within 0 < t < `tmax`.
-fn within(t: Exact, tmax: f64) -> Option<Exact> {
+fn within(t: ExactNumber, tmax: f64) -> Option<ExactNumber> {
     let inside = t.compare(0.0) == Ordering::Greater && t.compare(tmax) == Ordering::Less;
     inside.then_some(t)
 }

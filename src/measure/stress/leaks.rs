@@ -50,7 +50,7 @@ pub fn cells() -> Vec<Cell> {
                             let mut first = None;
                             let mut crossings = 0;
                             for hit in brute.all(ray) {
-                                Hit::keep_first(&mut first, hit);
+                                Hit::keep_closest(&mut first, hit);
                                 crossings += 1;
                             }
                             // An origin inside is left an odd number of times.
@@ -98,7 +98,7 @@ fn ray(scene: &Scene, target: Target, random: &mut Random) -> (Ray, bool) {
     let place = |p: DVec3| instance.transform.transform_point3(p);
     let triangles = scene.meshes[0].triangles.len();
     let corners = |random: &mut Random| {
-        scene.triangle(PrimitiveId::triangle(0, random.below(triangles) as u32, 0))
+        scene.triangle_vertices(PrimitiveId::triangle(0, random.below(triangles) as u32, 0))
     };
     if matches!(target, Target::Grid) {
         let axis = random.below(3);

@@ -11,8 +11,8 @@ use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
 use crate::render::{Options, render};
 use crate::scene::{
-    Camera, Checker, Falloff, Instance, Lens, Light, LightKind, Material, Plane, Scene, Shadow,
-    Sphere,
+    Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
+    Shadow, Sphere,
 };
 use crate::write::{Settings, png_bytes};
 
@@ -171,7 +171,7 @@ fn scene(side: u32) -> Scene {
     let forward = -position.normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
-    for lens in [Lens::FovY(0.8), Lens::OrthoHeight(6.0)] {
+    for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
         scene.cameras.push(Camera { name: String::new(), position, forward, right, up, lens });
     }
     scene
@@ -213,7 +213,7 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
     }
     for camera in &mut scene.cameras {
         camera.position *= by;
-        if let Lens::OrthoHeight(height) = &mut camera.lens {
+        if let Projection::OrthoHeight(height) = &mut camera.lens {
             *height *= by;
         }
     }

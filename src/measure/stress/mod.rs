@@ -35,48 +35,55 @@ use resume::{Conditions, Finished};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
     /// Distances to spheres are exact, correctly rounded.
-    G1,
+    SphereDistance,
     /// So they are at a tangent.
-    G2,
+    Tangency,
     /// The trees find what trying every primitive finds.
-    G3,
+    Traversal,
     /// Closed meshes have no holes.
-    G4,
+    Watertight,
     /// Thin triangles met at a small angle.
-    G5,
+    Grazing,
     /// Nothing shadows itself, and nothing close is passed over.
-    G6,
+    SelfShadow,
     /// Scale and threads do not change a picture.
-    G7,
+    Invariance,
 }
 
 impl Goal {
     /// All of them.
-    pub const ALL: [Goal; 7] =
-        [Goal::G1, Goal::G2, Goal::G3, Goal::G4, Goal::G5, Goal::G6, Goal::G7];
+    pub const ALL: [Goal; 7] = [
+        Goal::SphereDistance,
+        Goal::Tangency,
+        Goal::Traversal,
+        Goal::Watertight,
+        Goal::Grazing,
+        Goal::SelfShadow,
+        Goal::Invariance,
+    ];
 
-    /// What it is called: `G1` to `G7`.
+    /// What it is called: `SphereDistance` to `Invariance`.
     pub const fn name(self) -> &'static str {
         match self {
-            Goal::G1 => "G1",
-            Goal::G2 => "G2",
-            Goal::G3 => "G3",
-            Goal::G4 => "G4",
-            Goal::G5 => "G5",
-            Goal::G6 => "G6",
-            Goal::G7 => "G7",
+            Goal::SphereDistance => "G1",
+            Goal::Tangency => "G2",
+            Goal::Traversal => "G3",
+            Goal::Watertight => "G4",
+            Goal::Grazing => "G5",
+            Goal::SelfShadow => "G6",
+            Goal::Invariance => "G7",
         }
     }
 
     fn cells(self, method: Method) -> Vec<Cell> {
         match self {
-            Goal::G1 => spheres::cells(method),
-            Goal::G2 => tangency::cells(method),
-            Goal::G3 => paths::cells(),
-            Goal::G4 => leaks::cells(),
-            Goal::G5 => grazing::cells(),
-            Goal::G6 => shadows::cells(),
-            Goal::G7 => metamorphic::cells(),
+            Goal::SphereDistance => spheres::cells(method),
+            Goal::Tangency => tangency::cells(method),
+            Goal::Traversal => paths::cells(),
+            Goal::Watertight => leaks::cells(),
+            Goal::Grazing => grazing::cells(),
+            Goal::SelfShadow => shadows::cells(),
+            Goal::Invariance => metamorphic::cells(),
         }
     }
 }

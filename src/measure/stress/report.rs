@@ -34,7 +34,7 @@ pub struct Tally {
 /// One row of the report: a cell of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The goal, `G1` to `G7`.
+    /// The goal, `SphereDistance` to `Invariance`.
     pub goal: String,
     /// Which rays.
     pub cell: String,

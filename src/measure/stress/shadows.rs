@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::oracle;
-use crate::scene::{Arrival, Material, Scene, Sphere};
+use crate::scene::{IncidentLight, Material, Scene, Sphere};
 use crate::surface::Surface;
 
 const RADII: [f64; 5] = [1e-6, 1e-3, 1.0, 1e3, 1e6];
@@ -40,8 +40,8 @@ pub fn cells() -> Vec<Cell> {
     cells
 }
 
-fn arrival(toward: DVec3) -> Arrival {
-    Arrival { toward, bounded: true, intensity: Vec3::ONE }
+fn arrival(toward: DVec3) -> IncidentLight {
+    IncidentLight { toward, bounded: true, intensity: Vec3::ONE }
 }
 
 /// Hits a sphere from both sides, and asks from there for lights on both sides.

@@ -11,11 +11,11 @@ use crate::error::Result;
 use crate::film::Film;
 use crate::intersect::Precision;
 #[cfg(any(feature = "embree", test))]
-use crate::measure::dispute::Cause;
+use crate::measure::mismatch::MismatchCause;
 use crate::scene::Scene;
 
 /// Disagreements, by cause. In precision `fast` the first three are explained by what it promises
-/// ([`Disputes`](crate::measure::Disputes) derives the margins); in `certified` nothing is, and
+/// ([`MismatchClassifier`](crate::measure::MismatchClassifier) derives the margins); in `certified` nothing is, and
 /// every disagreement is `other`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Causes {
@@ -37,11 +37,11 @@ impl Causes {
     }
 
     #[cfg(any(feature = "embree", test))]
-    fn of(&mut self, cause: Option<Cause>) -> &mut u64 {
+    fn of(&mut self, cause: Option<MismatchCause>) -> &mut u64 {
         match cause {
-            Some(Cause::Edge) => &mut self.edge,
-            Some(Cause::Tangency) => &mut self.tangency,
-            Some(Cause::Tie) => &mut self.tie,
+            Some(MismatchCause::Edge) => &mut self.edge,
+            Some(MismatchCause::Tangency) => &mut self.tangency,
+            Some(MismatchCause::Tie) => &mut self.tie,
             None => &mut self.other,
         }
     }

@@ -3,7 +3,7 @@
 use glam::DAffine3;
 
 use super::{
-    Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Mover, Node, NodeId, Rotation,
+    Animated, Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Node, NodeId, Rotation,
     Toward, naming,
 };
 use crate::error::{Error, Result};
@@ -102,7 +102,7 @@ fn check_deformation(
     require(fits, "the joints are not as many for each vertex")
 }
 
-fn check_mover(mover: &Mover, nodes: usize, scene: &Scene) -> Result<()> {
+fn check_mover(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
     let there = |what: &str, index: usize, count: usize| {
         if index < count {
             return Ok(());
@@ -111,27 +111,27 @@ fn check_mover(mover: &Mover, nodes: usize, scene: &Scene) -> Result<()> {
     };
     let node = |id: &Option<NodeId>| id.map_or(Ok(()), |id| there("node", id.0 as usize, nodes));
     match mover {
-        Mover::Sphere { sphere, node: of, radius, .. } => {
+        Animated::Sphere { sphere, node: of, radius, .. } => {
             there("sphere", *sphere, scene.spheres.len())?;
             node(of)?;
             radius.iter().try_for_each(Curve::check)
         }
-        Mover::Instance { instance, node: of, .. } => {
+        Animated::Instance { instance, node: of, .. } => {
             there("instance", *instance, scene.instances.len())?;
             node(&Some(*of))
         }
-        Mover::Mesh { mesh, deformation } => {
+        Animated::Mesh { mesh, deformation } => {
             there("mesh", *mesh, scene.meshes.len())?;
             check_deformation(deformation, node)
                 .map_err(|e| naming(&format!("the deformation of mesh {mesh}"), &e))
         }
-        Mover::Light { light, node: of, direction, intensity, .. } => {
+        Animated::Light { light, node: of, direction, intensity, .. } => {
             there("light", *light, scene.lights.len())?;
             node(of)?;
             direction.iter().try_for_each(Curve::check)?;
             intensity.iter().try_for_each(Curve::check)
         }
-        Mover::Camera { camera, node: of, aim, lens, .. } => {
+        Animated::Camera { camera, node: of, aim, lens, .. } => {
             there("camera", *camera, scene.cameras.len())?;
             node(of)?;
             lens.iter().try_for_each(Curve::check)?;

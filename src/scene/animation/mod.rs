@@ -14,7 +14,7 @@ use crate::scene::{Camera, Light, Scene};
 
 pub use curve::{Curve, Interpolation, Value};
 pub use deform::{Deformation, Influences, Joint, Morph, Skin};
-pub use node::{Anchor, Keys, Motion, Node, NodeId, Orbit, Rotation};
+pub use node::{Anchor, Keyframes, Motion, Node, NodeId, Orbit, Rotation};
 pub use poses::Poses;
 
 /// The most frames that an animation can have: eleven hours at 24 a second.
@@ -32,12 +32,12 @@ pub struct Animation {
     /// The spaces that move, each after those that it depends on.
     pub nodes: Vec<Node>,
     /// What of the scene changes.
-    pub movers: Vec<Mover>,
+    pub movers: Vec<Animated>,
 }
 
 /// Something of the scene that changes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Mover {
+pub enum Animated {
     /// A sphere.
     Sphere {
         /// Its index.
@@ -132,8 +132,8 @@ impl Animation {
     /// Whether anything moves that rays can meet, rather than lights and cameras alone.
     pub fn moves_geometry(&self) -> bool {
         self.movers.iter().any(|m| match m {
-            Mover::Sphere { .. } | Mover::Instance { .. } | Mover::Mesh { .. } => true,
-            Mover::Light { .. } | Mover::Camera { .. } => false,
+            Animated::Sphere { .. } | Animated::Instance { .. } | Animated::Mesh { .. } => true,
+            Animated::Light { .. } | Animated::Camera { .. } => false,
         })
     }
 
@@ -141,7 +141,7 @@ impl Animation {
     pub(in crate::scene) fn moved_instances(&self, count: usize) -> Vec<bool> {
         let mut moved = vec![false; count];
         for mover in &self.movers {
-            if let Mover::Instance { instance, .. } = mover
+            if let Animated::Instance { instance, .. } = mover
                 && let Some(moved) = moved.get_mut(*instance)
             {
                 *moved = true;

@@ -25,7 +25,7 @@ pub struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// From key to key: scaled, then rotated, then translated.
-    Keys(Keys),
+    Keys(Keyframes),
     /// About an axis, or along with something else. The space is that of the world as it is at
     /// time 0, and the node has neither parent nor place.
     Orbit(Orbit),
@@ -33,7 +33,7 @@ pub enum Motion {
 
 /// Motion from key to key.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Keys {
+pub struct Keyframes {
     /// Where its origin is.
     pub translation: Curve<DVec3>,
     /// How it is turned.
@@ -80,7 +80,7 @@ pub struct Orbit {
     pub turn: bool,
 }
 
-impl Keys {
+impl Keyframes {
     /// What moves nowhere; a start for what has some keys only.
     pub fn still() -> Self {
         Self {
@@ -232,10 +232,10 @@ mod tests {
 
     #[test]
     fn a_child_moves_within_its_parent() {
-        let mut parent = Keys::still();
+        let mut parent = Keyframes::still();
         parent.translation = Curve::constant(DVec3::X);
         parent.scale = Curve::constant(DVec3::splat(2.0));
-        let mut child = Keys::still();
+        let mut child = Keyframes::still();
         child.translation = Curve::constant(DVec3::Y);
         let nodes = [
             free(Motion::Keys(parent)),
@@ -255,7 +255,7 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::Y * (2.0 * TAU)],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keys { rotation: Rotation::Angles(angles), ..Keys::still() };
+        let keys = Keyframes { rotation: Rotation::Angles(angles), ..Keyframes::still() };
         // After an eighth of two turns, a quarter turn.
         let turned = keys.at(1.0).matrix3 * DVec3::Z;
         assert!((turned - DVec3::X).length() < 1e-15, "{turned}");
@@ -268,7 +268,7 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::X],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keys { translation, repeats: Some(2.0), ..Keys::still() };
+        let keys = Keyframes { translation, repeats: Some(2.0), ..Keyframes::still() };
         assert_eq!(keys.at(5.0).translation, DVec3::X * 0.5);
     }
 }

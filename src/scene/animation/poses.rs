@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::deform::Pose;
-use super::{Aim, Mover, Toward, naming, node};
+use super::{Aim, Animated, Toward, naming, node};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::scene::check::check_extent;
@@ -63,7 +63,7 @@ impl<'a> Poses<'a> {
         let worlds = node::worlds(&animation.nodes, time);
         self.shapes.resize(animation.movers.len(), None);
         for (mover, shape) in animation.movers.iter().zip(&mut self.shapes) {
-            let Mover::Mesh { mesh, deformation } = mover else {
+            let Animated::Mesh { mesh, deformation } = mover else {
                 self.lacks_flat |= pose(mover, time, &worlds, scene)?;
                 continue;
             };
@@ -92,12 +92,12 @@ impl<'a> Poses<'a> {
         let posed = &self.posed;
         for mover in self.scene.animation.iter().flat_map(|animation| &animation.movers) {
             match *mover {
-                Mover::Sphere { sphere, .. } => posed.check_sphere(sphere)?,
-                Mover::Instance { instance, .. } if !self.lacks_flat => {
+                Animated::Sphere { sphere, .. } => posed.check_sphere(sphere)?,
+                Animated::Instance { instance, .. } if !self.lacks_flat => {
                     posed.check_instance(instance, false)?;
                 }
-                Mover::Mesh { mesh, .. } => posed.check_mesh(mesh)?,
-                Mover::Instance { .. } | Mover::Light { .. } | Mover::Camera { .. } => {}
+                Animated::Mesh { mesh, .. } => posed.check_mesh(mesh)?,
+                Animated::Instance { .. } | Animated::Light { .. } | Animated::Camera { .. } => {}
             }
         }
         if self.lacks_flat {
@@ -128,25 +128,25 @@ impl<'a> Poses<'a> {
 }
 
 /// Moves what a mover moves; says whether that made an instance flat.
-fn pose(mover: &Mover, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> Result<bool> {
+fn pose(mover: &Animated, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> Result<bool> {
     let world = |node: &Option<super::NodeId>| {
         node.map_or(DAffine3::IDENTITY, |node| worlds[node.0 as usize])
     };
     match mover {
-        Mover::Sphere { sphere, node, center, radius } => {
+        Animated::Sphere { sphere, node, center, radius } => {
             let sphere = &mut scene.spheres[*sphere];
             sphere.center = world(node).transform_point3(*center);
             if let Some(radius) = radius {
                 sphere.radius = radius.at(time);
             }
         }
-        Mover::Instance { instance, node, transform } => {
+        Animated::Instance { instance, node, transform } => {
             let instance: &mut Instance = &mut scene.instances[*instance];
             instance.transform = world(&Some(*node)) * *transform;
             return Ok(instance.is_flat());
         }
-        Mover::Mesh { .. } => {}
-        Mover::Light { light, node, rest, direction: way, intensity } => {
+        Animated::Mesh { .. } => {}
+        Animated::Light { light, node, rest, direction: way, intensity } => {
             let mut rest = rest.clone();
             if let (
                 LightKind::Directional { direction } | LightKind::Spot { direction, .. },
@@ -161,7 +161,7 @@ fn pose(mover: &Mover, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> Res
             }
             scene.lights[*light] = rest.placed(&world(node));
         }
-        Mover::Camera { camera, node, rest, aim, lens } => {
+        Animated::Camera { camera, node, rest, aim, lens } => {
             let posed = pose_camera(&world(node), rest, aim.as_ref(), worlds, time);
             let posed = posed.map_err(|e| {
                 let name = match &*rest.name {

@@ -2,7 +2,7 @@
 
 use super::require::{position, require, unit};
 use crate::error::Result;
-use crate::scene::{Camera, Lens};
+use crate::scene::{Camera, Projection};
 
 /// Checks camera `i`.
 pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
@@ -12,9 +12,13 @@ pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
     unit(|| format!("{what}: right"), camera.right)?;
     unit(|| format!("{what}: up"), camera.up)?;
     let (value, in_range) = match camera.lens {
-        Lens::FovY(a) | Lens::FovX(a) => (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI),
-        Lens::FocalPx { focal, width } => (focal, focal > 0.0 && focal.is_finite() && width > 0),
-        Lens::OrthoHeight(h) => (h, h > 0.0 && h.is_finite()),
+        Projection::FovY(a) | Projection::FovX(a) => {
+            (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI)
+        }
+        Projection::FocalPx { focal, width } => {
+            (focal, focal > 0.0 && focal.is_finite() && width > 0)
+        }
+        Projection::OrthoHeight(h) => (h, h > 0.0 && h.is_finite()),
     };
     require(in_range, || {
         format!("{what}: its field of view, focal length or height is out of range: {value}")

@@ -13,8 +13,7 @@ pub(super) fn check(i: usize, texture: &Texture, shown: bool) -> Result<()> {
                 "texture {i} (`{}`): the picture was not read, and a material in use shows it",
                 image.name
             )
-        })
-        .map_err(|e| e.help("load the scene without skipping `pictures`"));
+        });
     }
     let pixels = u64::from(image.width) * u64::from(image.height);
     require(pixels > 0 && pixels == image.texels.len() as u64, || {

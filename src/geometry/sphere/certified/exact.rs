@@ -8,7 +8,7 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 use glam::DVec3;
 use num_bigint::BigInt;
 
-use crate::geometry::exact::{Rounded, Scale, dot, minus, sign};
+use crate::geometry::integer::{Rounded, Scale, dot, minus, sign};
 
 /// The first root above 0, or with `inward` the far root if it is above 0.
 #[cold]

@@ -31,7 +31,7 @@
 use glam::DVec3;
 
 use crate::geometry::Estimate;
-use crate::geometry::double::U;
+use crate::geometry::double_double::U;
 
 /// Share of r² within which the squared distance of the line from the centre decides nothing.
 const LAMBDA: f64 = 1.0 / (1u64 << 20) as f64;
@@ -47,10 +47,10 @@ const SMALLEST: f64 = 1e-270;
 
 /// A line beside a sphere, with the bounds of what f64 arithmetic says of them.
 ///
-/// Split as the plain [`Line`](crate::geometry::sphere::Line) is, so that a packet can stop early
+/// Split as the plain [`Line`](crate::geometry::sphere::Quadratic) is, so that a packet can stop early
 /// when all of its rays certainly pass.
 #[derive(Clone, Copy)]
-pub struct Line {
+pub struct QuadraticBound {
     /// From the centre to the origin, rounded.
     pub(super) offset: DVec3,
     pub(super) origin: DVec3,
@@ -65,7 +65,7 @@ pub struct Line {
     slack: [f64; 2],
 }
 
-impl Line {
+impl QuadraticBound {
     /// Sets the line `origin + t·direction` beside the sphere, with `inverse_length_squared` from
     /// [`sphere::inverse_length_squared`](crate::geometry::sphere::inverse_length_squared): what
     /// is never certain where |direction|² is beyond f64.
@@ -171,7 +171,7 @@ impl Line {
     }
 }
 
-/// What both [`Line::estimate`] and [`Line::guess`] start from.
+/// What both [`QuadraticBound::estimate`] and [`QuadraticBound::guess`] start from.
 struct Roots {
     /// h above.
     half_chord: f64,

@@ -1,6 +1,6 @@
 //! Ray and sphere, proven: the answer of exact arithmetic.
 //!
-//! Three stages, each passing on what it cannot decide: [`Line`] bounds t in f64, [`round`] takes
+//! Three stages, each passing on what it cannot decide: [`QuadraticBound`] bounds t in f64, [`round`] takes
 //! one Newton step with a double-double residual, and `exact` computes with integers.
 
 mod exact;
@@ -9,7 +9,7 @@ mod newton;
 #[cfg(test)]
 mod tests;
 
-pub use line::Line;
+pub use line::QuadraticBound;
 pub use newton::{Rounded, round};
 
 use glam::DVec3;
@@ -28,7 +28,7 @@ pub fn estimate(
     direction: DVec3,
     inverse_length_squared: f64,
 ) -> Estimate {
-    Line::new(center, radius, origin, direction, inverse_length_squared).estimate()
+    QuadraticBound::new(center, radius, origin, direction, inverse_length_squared).estimate()
 }
 
 /// The first t with 0 < t < `tmax`, exactly, correctly rounded.
@@ -46,7 +46,7 @@ pub fn first_root(
     leaving_inward: bool,
 ) -> Option<f64> {
     let inverse = inverse_length_squared(direction);
-    let line = Line::new(center, radius, origin, direction, inverse);
+    let line = QuadraticBound::new(center, radius, origin, direction, inverse);
     if !line.may_cross() {
         return None;
     }

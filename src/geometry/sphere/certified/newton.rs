@@ -19,8 +19,8 @@
 
 use glam::DVec3;
 
-use crate::geometry::double::{Double, U, difference, in_range};
-use crate::geometry::sphere::certified::Line;
+use crate::geometry::double_double::{DoubleDouble, U, difference, in_range};
+use crate::geometry::sphere::certified::QuadraticBound;
 use crate::geometry::sphere::inverse_length_squared;
 
 /// A root as [`round`] found it.
@@ -40,12 +40,12 @@ pub struct Rounded {
 #[inline(always)]
 pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
     let inverse = inverse_length_squared(direction);
-    let line = Line::new(center, radius, origin, direction, inverse);
+    let line = QuadraticBound::new(center, radius, origin, direction, inverse);
     step(&line, line.guess(inward), inward)
 }
 
 /// Up to three steps, for what is nearly a tangent.
-pub(super) fn refined(line: &Line, inward: bool) -> Rounded {
+pub(super) fn refined(line: &QuadraticBound, inward: bool) -> Rounded {
     let mut rounded = step(line, line.guess(inward), inward);
     for _ in 0..2 {
         if rounded.certain || !rounded.t.is_finite() {
@@ -58,16 +58,16 @@ pub(super) fn refined(line: &Line, inward: bool) -> Rounded {
 
 /// One Newton step from `guess`.
 #[inline(always)]
-fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
+fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
     let (d, r) = (line.direction, line.radius);
     let f = difference(line.origin, line.center);
     // One by one: compilers do not vectorise a caller's loop around a loop or a `map`.
     let p = [point(f[0], guess, d.x), point(f[1], guess, d.y), point(f[2], guess, d.z)];
     let (x, y, z) = (square(p[0]), square(p[1]), square(p[2]));
-    let r2 = Double::product(r, r);
-    let xy = Double::sum(x.hi, y.hi);
-    let xyz = Double::sum(xy.hi, z.hi);
-    let all = Double::difference(xyz.hi, r2.hi);
+    let r2 = DoubleDouble::product(r, r);
+    let xy = DoubleDouble::sum(x.hi, y.hi);
+    let xyz = DoubleDouble::sum(xy.hi, z.hi);
+    let all = DoubleDouble::difference(xyz.hi, r2.hi);
     let low = ((x.lo + y.lo) + (z.lo - r2.lo)) + ((xy.lo + xyz.lo) + all.lo);
     let g = all.hi + low;
 
@@ -88,7 +88,7 @@ fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
     let error = (g_error + g_most * relative) * inverse;
 
     let delta = -0.5 * g * inverse.copysign(slope);
-    let t = Double::sum(guess, delta);
+    let t = DoubleDouble::sum(guess, delta);
 
     // Whether this is the first root above 0: the near one, or the far one seen from inside.
     let f2 = line.offset.dot(line.offset);
@@ -108,15 +108,15 @@ fn step(line: &Line, guess: f64, inward: bool) -> Rounded {
 
 /// f + t·d, off by less than 4u²(|f| + |t·d|).
 #[inline(always)]
-fn point(f: Double, t: f64, d: f64) -> Double {
-    let along = Double::product(t, d);
-    let sum = Double::sum(f.hi, along.hi);
-    Double::sum(sum.hi, sum.lo + (f.lo + along.lo))
+fn point(f: DoubleDouble, t: f64, d: f64) -> DoubleDouble {
+    let along = DoubleDouble::product(t, d);
+    let sum = DoubleDouble::sum(f.hi, along.hi);
+    DoubleDouble::sum(sum.hi, sum.lo + (f.lo + along.lo))
 }
 
 /// p², off by less than 7u²p².
 #[inline(always)]
-fn square(p: Double) -> Double {
-    let square = Double::product(p.hi, p.hi);
-    Double { hi: square.hi, lo: square.lo + 2.0 * p.hi * p.lo }
+fn square(p: DoubleDouble) -> DoubleDouble {
+    let square = DoubleDouble::product(p.hi, p.hi);
+    DoubleDouble { hi: square.hi, lo: square.lo + 2.0 * p.hi * p.lo }
 }

@@ -201,7 +201,7 @@ fn estimate_decides_what_is_not_nearly_a_tangent() {
 fn direction_of_a_square_beyond_f64_leaves_the_decision_open() {
     let direction = DVec3::Z * 1e160;
     let inverse = inverse_length_squared(direction);
-    let line = Line::new(DVec3::new(5.0, 0.0, 9.0), 1.0, DVec3::ZERO, direction, inverse);
+    let line = QuadraticBound::new(DVec3::new(5.0, 0.0, 9.0), 1.0, DVec3::ZERO, direction, inverse);
     assert!(line.may_cross() && !line.crosses());
 }
 

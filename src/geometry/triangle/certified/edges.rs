@@ -20,7 +20,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use crate::geometry::Estimate;
-use crate::geometry::double::{U, in_range};
+use crate::geometry::double_double::{U, in_range};
 
 /// The edge functions of a line and a triangle, and the distance to its plane, with bounds.
 ///

@@ -5,8 +5,8 @@ use std::cmp::Ordering::{self, Equal};
 use glam::DVec3;
 use num_bigint::BigInt;
 
-use crate::geometry::exact::{Integer, Rounded, Scale, cross, dot, minus, sign};
-use crate::geometry::triangle::Crossing;
+use crate::geometry::integer::{Integer, Rounded, Scale, cross, dot, minus, sign};
+use crate::geometry::triangle::TriangleHit;
 
 /// The scales of the positions and of the direction.
 struct Scales {
@@ -94,7 +94,7 @@ pub(super) fn crossing(
     origin: DVec3,
     direction: DVec3,
     tmax: f64,
-) -> Option<Crossing> {
+) -> Option<TriangleHit> {
     let scales = Scales::of(triangle, origin, direction);
     let ([a, b, c], d) = scales.integers::<BigInt>(triangle, origin, direction);
     let (first, second) = (minus(&b, &a), minus(&c, &a));
@@ -113,5 +113,5 @@ pub(super) fn crossing(
         _ => Rounded::quotient(&x, &divisor, 0).nearest,
     };
     let (u, v) = (weight(dot(&moment, &second)), weight(-dot(&moment, &first)));
-    t.is_below(tmax).then_some(Crossing { t: t.nearest, u, v })
+    t.is_below(tmax).then_some(TriangleHit { t: t.nearest, u, v })
 }

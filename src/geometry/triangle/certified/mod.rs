@@ -23,7 +23,7 @@ pub use round::{Rounded, round};
 use glam::DVec3;
 
 use crate::geometry::Estimate;
-use crate::geometry::triangle::Crossing;
+use crate::geometry::triangle::TriangleHit;
 
 /// Where the line crosses the triangle, as f64 arithmetic can bound it; behind the origin too.
 #[inline(always)]
@@ -42,7 +42,7 @@ pub fn crossing(
     origin: DVec3,
     direction: DVec3,
     tmax: f64,
-) -> Option<Crossing> {
+) -> Option<TriangleHit> {
     let edges = Edges::new(triangle, origin, direction);
     if !edges.may_cross() {
         return None;
@@ -62,10 +62,10 @@ pub fn crossing(
     // Where the rounded t is tmax itself, the exact one may lie on either side.
     if rounded.certain && rounded.t != tmax {
         let Rounded { t, u, v, .. } = rounded;
-        return (t > 0.0 && t < tmax).then_some(Crossing { t, u, v });
+        return (t > 0.0 && t < tmax).then_some(TriangleHit { t, u, v });
     }
     let hit = exact::crossing(triangle, origin, direction, tmax)?;
     // The weights must not depend on tmax.
     let (u, v) = if rounded.certain { (rounded.u, rounded.v) } else { (hit.u, hit.v) };
-    Some(Crossing { t: hit.t, u, v })
+    Some(TriangleHit { t: hit.t, u, v })
 }

@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::double::{Double, OMEGA, U, cross, difference, dot, in_range};
+use crate::geometry::double_double::{DoubleDouble, OMEGA, U, cross, difference, dot, in_range};
 
 /// A crossing as [`round`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +66,7 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
 }
 
 #[inline(always)]
-fn largest(v: [Double; 3]) -> f64 {
+fn largest(v: [DoubleDouble; 3]) -> f64 {
     greater(v[0].hi.abs(), greater(v[1].hi.abs(), v[2].hi.abs()))
 }
 

@@ -23,7 +23,7 @@ impl Case {
         Self { triangle, origin, direction, tmax: f64::INFINITY }
     }
 
-    fn certified(&self) -> Option<Crossing> {
+    fn certified(&self) -> Option<TriangleHit> {
         crossing(self.triangle, self.origin, self.direction, self.tmax)
     }
 
@@ -39,7 +39,7 @@ impl Case {
     }
 
     /// t, u and v by bisection of exact quotients.
-    fn exact(&self) -> Option<Crossing> {
+    fn exact(&self) -> Option<TriangleHit> {
         let [a, b, c] = self.triangle.map(vector);
         let (first, second) = (minus(&b, &a), minus(&c, &a));
         let (d, from) = (vector(self.direction), minus(&a, &vector(self.origin)));
@@ -57,7 +57,7 @@ impl Case {
             Equal => 0.0,
             _ => dyadic::round(|y| beside(&x, &divisor, y)),
         };
-        (self.tmax > 0.0 && below).then(|| Crossing {
+        (self.tmax > 0.0 && below).then(|| TriangleHit {
             t: dyadic::round(quotient),
             u: weight(determinant(&d, &second, &from)),
             v: weight(determinant(&d, &from, &first)),
@@ -75,13 +75,13 @@ impl Case {
             let rounded = round(self.triangle, self.origin, self.direction);
             if rounded.certain {
                 let Rounded { t, u, v, .. } = rounded;
-                assert_eq!(Crossing { t, u, v }, found, "{self:?}");
+                assert_eq!(TriangleHit { t, u, v }, found, "{self:?}");
             }
         }
         let estimate = estimate(self.triangle, self.origin, self.direction);
         let unbounded = Self { tmax: f64::INFINITY, ..*self };
         match unbounded.exact() {
-            Some(Crossing { t, .. }) => {
+            Some(TriangleHit { t, .. }) => {
                 assert_ne!(estimate, Estimate::MISS, "{self:?}");
                 let distance = (t - estimate.t).abs();
                 assert!(distance <= estimate.error, "{t} {estimate:?} {self:?}");
@@ -112,7 +112,7 @@ fn weights_belong_to_the_second_and_third_vertex() {
 #[test]
 fn winding_does_not_matter() {
     let case = Case::new([UNIT[0], UNIT[2], UNIT[1]], DVec3::new(0.25, 0.5, 3.0), -DVec3::Z);
-    assert_eq!(case.certified(), Some(Crossing { t: 3.0, u: 0.5, v: 0.25 }));
+    assert_eq!(case.certified(), Some(TriangleHit { t: 3.0, u: 0.5, v: 0.25 }));
 }
 
 #[test]

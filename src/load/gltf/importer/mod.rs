@@ -21,10 +21,10 @@ use super::primitive::{self, Part};
 use super::variants::Variants;
 use super::{instancing, lights, shapes};
 use crate::error::{Error, Place, Result};
-use crate::load::guard::Guard;
+use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
-use crate::load::tally::Tally;
-use crate::scene::animation::Mover;
+use crate::load::sandbox::Sandbox;
+use crate::scene::animation::Animated;
 use crate::scene::{MaterialId, MeshId, Scene};
 
 /// A primitive in the scene.
@@ -39,7 +39,7 @@ pub struct Made {
 /// A file on its way to a scene, node by node.
 pub struct Importer<'a> {
     pub(super) root: &'a json::Root,
-    pub(super) guard: &'a Guard,
+    pub(super) guard: &'a Sandbox,
     /// The same as it stands in the file.
     pub(super) json: &'a Value,
     pub(super) accessors: Accessors<'a>,
@@ -52,7 +52,7 @@ pub struct Importer<'a> {
     pub(super) joints: HashMap<usize, Joints>,
     pub(super) scene: Scene,
     pub(super) clip: Clip,
-    pub(super) tally: Tally,
+    pub(super) tally: Diagnostics,
 }
 
 impl Importer<'_> {
@@ -89,26 +89,26 @@ impl Importer<'_> {
     /// Makes the next camera of the scene move with its node.
     fn move_camera(&mut self, placed: &Placed) -> Result<()> {
         // What there is to say of it was said of it as the file places it.
-        let mut quiet = Tally::default();
+        let mut quiet = Diagnostics::default();
         if placed.mover.is_some()
             && let Some(rest) = lights::camera(self.root, &placed.at_rest(), &mut quiet)?
         {
             let (camera, node) = (self.scene.cameras.len(), placed.mover);
             let (aim, lens) = (None, None);
-            self.clip.movers.push(Mover::Camera { camera, node, rest, aim, lens });
+            self.clip.movers.push(Animated::Camera { camera, node, rest, aim, lens });
         }
         Ok(())
     }
 
     /// Makes the next light of the scene move with its node.
     fn move_light(&mut self, placed: &Placed) -> Result<()> {
-        let mut quiet = Tally::default();
+        let mut quiet = Diagnostics::default();
         if placed.mover.is_some()
             && let Some(rest) = lights::light(self.root, &placed.at_rest(), &mut quiet)?
         {
             let (light, node) = (self.scene.lights.len(), placed.mover);
             let (direction, intensity) = (None, None);
-            self.clip.movers.push(Mover::Light { light, node, rest, direction, intensity });
+            self.clip.movers.push(Animated::Light { light, node, rest, direction, intensity });
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::load::gltf::nodes::Placed;
 use crate::load::gltf::primitive::Part;
 use crate::load::gltf::shapes::{self, Shape};
-use crate::scene::animation::Mover;
+use crate::scene::animation::Animated;
 use crate::scene::{Instance, Plane, Sphere};
 
 impl Importer<'_> {
@@ -36,7 +36,7 @@ impl Importer<'_> {
             // What moves may be flat at one time and not at another.
             if let Some(node) = placed.mover {
                 let (instance, transform) = (self.scene.instances.len(), placed.rest * *place);
-                self.clip.movers.push(Mover::Instance { instance, node, transform });
+                self.clip.movers.push(Animated::Instance { instance, node, transform });
             } else if instance.is_flat() {
                 let reason = "{} meshes are not drawn where their scale is 0 along some direction";
                 self.tally.add(reason, 1, || by.to_owned());
@@ -63,7 +63,7 @@ impl Importer<'_> {
                     if let Some(node) = placed.mover {
                         let (sphere, center) = (self.scene.spheres.len(), placed.rest.translation);
                         let (node, radius) = (Some(node), None);
-                        self.clip.movers.push(Mover::Sphere { sphere, node, center, radius });
+                        self.clip.movers.push(Animated::Sphere { sphere, node, center, radius });
                     }
                     self.scene.spheres.push(Sphere::new(center, radius, material));
                     return Ok(());

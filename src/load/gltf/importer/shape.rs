@@ -11,7 +11,7 @@ use crate::load::gltf::nodes::Placed;
 use crate::load::gltf::primitive::Part;
 use crate::load::limits::Limit;
 use crate::scene::MeshId;
-use crate::scene::animation::{Curve, Deformation, Joint, Mover, Skin};
+use crate::scene::animation::{Animated, Curve, Deformation, Joint, Skin};
 
 impl Importer<'_> {
     /// The mesh of a part as it stands at a node, and whether joints have bent it.
@@ -65,7 +65,7 @@ impl Importer<'_> {
                 skin.joints.clone_from(&joints.moving);
             }
             let (mesh, deformation) = (id.0 as usize, Box::new(deformation));
-            self.clip.movers.push(Mover::Mesh { mesh, deformation });
+            self.clip.movers.push(Animated::Mesh { mesh, deformation });
         }
         Ok((id, skin.is_some()))
     }

@@ -13,10 +13,10 @@ mod walk;
 
 use gltf::json::Value;
 
-use crate::load::tally::Tally;
+use crate::load::diagnostics::Diagnostics;
 
 /// Warns of what in a file is not valid; `bin` is the length of a GLB's binary chunk.
-pub fn validate(root: &Value, bin: Option<usize>, tally: &mut Tally) {
+pub fn validate(root: &Value, bin: Option<usize>, tally: &mut Diagnostics) {
     let mut faults = Faults::default();
     walk::walk(root, &mut faults);
     layout::check(root, bin, &mut faults);

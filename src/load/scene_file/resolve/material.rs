@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::load::scene_file::color::Color;
 use crate::load::scene_file::spanned::{At, Table};
 use crate::load::scene_file::tables::{MapAlpha, MapFilter, MaterialTable};
-use crate::load::suggest;
+use crate::load::spelling;
 use crate::scene::{
     AlphaMode, Channel, Coverage, Material, MaterialId, NormalMap, TextureId, Transfer,
 };
@@ -144,7 +144,7 @@ impl Resolver<'_> {
             let help = if names.is_empty() {
                 "the file has none: add a [[material]] with this name".to_owned()
             } else {
-                suggest::choice(name, &names, "materials")
+                spelling::choice(name, &names, "materials")
             };
             self.source.error(span, format!("there is no material `{name}`")).help(help)
         })

@@ -19,8 +19,8 @@ use super::spanned::{At, Table};
 use super::tables::{CameraTable, LightTable, PlaneTable, SceneTable, SphereTable};
 use crate::error::Result;
 use crate::load::Options;
-use crate::load::guard::Guard;
-use crate::scene::animation::Mover;
+use crate::load::sandbox::Sandbox;
+use crate::scene::animation::Animated;
 use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Checker, MaterialId, Plane, Scene, Sphere};
 
@@ -31,7 +31,7 @@ const MAX_NAMED: u64 = 100;
 pub fn scene(
     source: &Source<'_>,
     tables: SceneTable,
-    guard: &Guard,
+    guard: &Sandbox,
     options: &Options,
 ) -> Result<Scene> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
@@ -47,7 +47,7 @@ pub fn scene(
         source,
         guard,
         names: &names,
-        shown: Shown::of(source, &tables, options.reads_all_pictures()),
+        shown: Shown::of(source, &tables),
         variant: options.variant.as_deref(),
         rigs: &rigs,
         scene: Scene { film, animation, ..Scene::default() },
@@ -77,7 +77,7 @@ pub struct Resolver<'a> {
     /// The file.
     pub source: &'a Source<'a>,
     /// The bounds of the load.
-    pub guard: &'a Guard,
+    pub guard: &'a Sandbox,
     /// Which pictures something shows.
     pub shown: Shown,
     /// The variant of models that name none.
@@ -105,7 +105,7 @@ impl Resolver<'_> {
         self.rigs.get(self.names.find(self.source, value, span).ok())
     }
 
-    fn moves(&mut self, mover: Option<Mover>) {
+    fn moves(&mut self, mover: Option<Animated>) {
         if let (Some(animation), Some(mover)) = (&mut self.scene.animation, mover) {
             animation.movers.push(mover);
         }

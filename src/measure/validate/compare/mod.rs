@@ -11,10 +11,10 @@ use crate::film::{Film, View};
 use crate::geometry::{Hit, Ray};
 use crate::integrator::sample_positions;
 use crate::intersect::{Coherence, Intersector, Precision};
-use crate::measure::dispute::{Cause, Disputes};
+use crate::measure::mismatch::{MismatchCause, MismatchClassifier};
 use crate::measure::replay::ray_to_text;
 use crate::render::{self, Options};
-use crate::scene::{RayMaker, Scene};
+use crate::scene::{RayGenerator, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
 use witness::Witness;
@@ -24,7 +24,7 @@ pub struct Comparer<'a> {
     pub precision: Precision,
     /// Who is held against the judge.
     pub subject: &'a dyn Intersector,
-    /// How far its rays may be off, in precision `fast`; see [`Disputes`].
+    /// How far its rays may be off, in precision `fast`; see [`MismatchClassifier`].
     pub margin: f64,
     pub judge: &'a dyn Intersector,
     pub camera: usize,
@@ -102,11 +102,11 @@ impl Comparer<'_> {
     }
 
     /// Traces a row with both; marks in `row` what they make of it.
-    fn row(&self, maker: &RayMaker, y: usize, row: &mut [[f32; 3]]) -> Tally {
+    fn row(&self, maker: &RayGenerator, y: usize, row: &mut [[f32; 3]]) -> Tally {
         let mut tally = Tally::default();
         for [dx, dy] in sample_positions(&self.scene.film) {
             let rays: Vec<Ray> =
-                (0..row.len()).map(|x| maker.through(x as f64 + dx, y as f64 + dy)).collect();
+                (0..row.len()).map(|x| maker.ray(x as f64 + dx, y as f64 + dy)).collect();
             let (found, truth) = (closest(self.subject, &rays), closest(self.judge, &rays));
             tally.primary += rays.len() as u64;
             for (x, ray) in rays.iter().enumerate() {
@@ -169,7 +169,7 @@ impl Comparer<'_> {
         for light in self.scene.lights.iter().filter(casting) {
             let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
                 .iter()
-                .filter_map(|(x, s)| Some((*x, s.shadow_ray(&light.arrival(s.position)?))))
+                .filter_map(|(x, s)| Some((*x, s.shadow_ray(&light.incident(s.position)?))))
                 .unzip();
             let (found, truth) = (occluded(self.subject, &shadow), occluded(self.judge, &shadow));
             tally.shadow += shadow.len() as u64;
@@ -185,8 +185,8 @@ impl Comparer<'_> {
         }
     }
 
-    fn disputes(&self) -> Disputes<'_> {
-        Disputes { scene: self.scene, margin: self.margin }
+    fn disputes(&self) -> MismatchClassifier<'_> {
+        MismatchClassifier { scene: self.scene, margin: self.margin }
     }
 
     /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
@@ -247,7 +247,7 @@ impl Tally {
     fn mismatch(
         &mut self,
         place: Option<Place<'_>>,
-        cause: Option<Cause>,
+        cause: Option<MismatchCause>,
         shadow: bool,
         ulp: Option<u64>,
     ) {
@@ -260,7 +260,7 @@ impl Tally {
             *place.mark = YELLOW;
         }
         let severity = (if explained { 1 } else { 2 }, ulp.unwrap_or(0));
-        self.note(severity, &place, Some(cause.map_or("other", Cause::name)), shadow, ulp);
+        self.note(severity, &place, Some(cause.map_or("other", MismatchCause::name)), shadow, ulp);
     }
 
     /// Keeps the ray if none so far is as bad.

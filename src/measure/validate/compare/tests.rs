@@ -1,6 +1,8 @@
 use super::*;
 use crate::intersect::Bvh;
-use crate::scene::{Camera, Falloff, Lens, Light, LightKind, Material, Plane, Shadow, Sphere};
+use crate::scene::{
+    Camera, Falloff, Light, LightKind, Material, Plane, Projection, Shadow, Sphere,
+};
 use glam::{DVec3, Vec3};
 
 /// A ball over the ground and a lamp, in 16 × 16 pixels.
@@ -9,7 +11,7 @@ fn scene() -> Scene {
     scene.film.size = [16, 16];
     let material = scene.add_material(Material::default());
     let eye = DVec3::new(0.0, 2.0, 6.0);
-    let camera = Camera::look_at(eye, DVec3::Y, DVec3::Y, Lens::FovY(0.7)).unwrap();
+    let camera = Camera::look_at(eye, DVec3::Y, DVec3::Y, Projection::FovY(0.7)).unwrap();
     scene.cameras.push(camera);
     scene.spheres.push(Sphere::new(DVec3::Y * 1.2, 1.0, material));
     scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, material));
@@ -37,7 +39,7 @@ fn rays_off_a_mirror_are_compared_too() {
     let scene = mirror();
     let judge = Bvh::build(&scene, Precision::Certified);
     let subject = Spoilt(Bvh::build(&scene, Precision::Certified), |ray, hit| {
-        if ray.from.is_some() {
+        if ray.departure.is_some() {
             *hit = None;
         }
     });
@@ -86,7 +88,7 @@ fn compared(precision: Precision, spoil: fn(&Ray, &mut Option<Hit>)) -> Validati
 
 /// Whether the ray is the one through the middle of pixel (8, 9), which meets the ball.
 fn is_chosen(ray: &Ray) -> bool {
-    *ray == scene().cameras[0].rays([16, 16]).through(8.5, 9.5)
+    *ray == scene().cameras[0].rays([16, 16]).ray(8.5, 9.5)
 }
 
 #[test]
