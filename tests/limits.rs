@@ -5,7 +5,7 @@ mod import_common;
 
 use std::path::PathBuf;
 
-use envers::load::{Limit, Limits, Options, load_with};
+use envers::{Limit, LoadOptions, Limits};
 use import_common::{Folder, Model, data_uri, png};
 use serde_json::json;
 
@@ -41,7 +41,7 @@ impl Needs {
     /// Whether it loads whole under a limit, and what is said otherwise.
     fn loads(&self, most: u64) -> Result<(), String> {
         let limits = Limits::default().with(self.limit, most);
-        match load_with(&self.path(), &Options { limits, ..Options::default() }) {
+        match LoadOptions::default().limits(limits).load(self.path()) {
             Ok(scene) if scene.warnings.is_empty() => Ok(()),
             Ok(scene) => Err(scene.warnings.join("\n")),
             Err(error) => Err(error.to_string()),

@@ -12,7 +12,7 @@ use std::os::unix::fs::symlink;
 use std::os::unix::net::UnixListener;
 use std::path::Path;
 
-use envers::load::{Options, load_with};
+use envers::LoadOptions;
 use import_common::{Folder, Model, png};
 use rustix::fs::inotify;
 use serde_json::json;
@@ -196,7 +196,7 @@ fn load(place: &Place, (_, file, text): &Reference, name: &str, allow_outside: b
     };
     let options = Options { allow_outside, ..Options::default() };
     match options.load(&path) {
-        Ok(scene) => scene.warnings.join("\n"),
+        Ok(loaded) => loaded.report.warnings.join("\n"),
         Err(error) => error.to_string(),
     }
 }
@@ -333,10 +333,10 @@ fn a_model_in_a_scene_may_name_what_is_in_the_folder_of_the_scene() {
         "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n",
     );
     let scene = place.folder.write("scene/a.toml", "[[model]]\nfile = \"models/a.obj\"\n");
-    assert_eq!(envers::load(&scene).unwrap().warnings, [""; 0]);
+    assert_eq!(envers::load(&scene).unwrap().report.warnings, [""; 0]);
     // By itself the model has a folder of its own.
     let alone = envers::load(&place.folder.path("scene/models/a.obj")).unwrap();
-    assert!(alone.warnings[0].contains("not in the folder"), "{:?}", alone.warnings);
+    assert!(alone.report.warnings[0].contains("not in the folder"), "{:?}", alone.report.warnings);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! KHR_materials_variants.
 
 use super::*;
-use envers::load::{Options, load_with};
+use envers::{LoadOptions, Loaded};
 
 /// The extension of a primitive, from pairs of a material and the variants that have it.
 fn mapped(mappings: &[(usize, &[usize])]) -> serde_json::Value {
