@@ -13,13 +13,13 @@ mod support {
 }
 
 use std::hint::black_box;
-use std::path::Path;
 
 use envers::geometry::Ray;
 use envers::integrator::Tiling;
 use envers::intersect::{IntersectorBuilder, Precision};
+use envers::render::Traced;
 use envers::scene::Scene;
-use envers::{RenderOptions, Renderer};
+use envers::{LoadOptions, RenderOptions, Renderer};
 use rayon::prelude::*;
 use support::arguments::Arguments;
 use support::bare::{Bare, Packet, packets};
@@ -140,7 +140,8 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
     let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
     let options = settings.options();
     let recorder = Recorder::new(&*fast);
-    let (_, counts, _) = Renderer::new(scene).options(options.clone()).render_with(&recorder);
+    let Traced { counts, .. } =
+        Renderer::new(scene).options(options.clone()).render_with(&recorder);
     let [width, height] = scene.film.size;
     println!("{name} {width}x{height}, {} threads: {:?}", settings.threads, counts.rays);
 

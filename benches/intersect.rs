@@ -18,6 +18,7 @@ use std::time::Instant;
 use criterion::{Criterion, Throughput};
 use envers::geometry::Ray;
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
+use envers::render::Traced;
 use envers::scene::{IncidentLight, Scene};
 use envers::surface::Surface;
 use envers::{RenderOptions, Renderer};
@@ -168,7 +169,7 @@ fn price(case: &Case) {
             black_box(Renderer::new(&case.scene).options(options.clone()).render_with(intersector));
         });
     };
-    let (_, counts, _) =
+    let Traced { counts, .. } =
         pool.install(|| Renderer::new(&case.scene).options(options.clone()).render_with(&fast));
     beside(
         &format!("{} frame", case.name),

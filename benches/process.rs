@@ -100,7 +100,7 @@ fn bare_work(
     quality: RTCBuildQuality,
     picture: &image::RgbImage,
 ) -> impl Fn() -> Parts {
-    let scene = envers::load(scene).unwrap();
+    let scene = envers::load(scene).unwrap().scene;
     let options = RenderOptions::default();
     let intersector =
         IntersectorBuilder::new(Default::default(), Precision::Fast, 0).build(&scene).unwrap();

@@ -8,7 +8,7 @@ use envers::measure::validate;
 
 fn passes(name: &str, size: [u32; 2]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);
-    let mut scene = LoadOptions::default().size(size).load(&path).unwrap();
+    let mut scene = LoadOptions::default().size(size).load(&path).unwrap().scene;
     scene.film.spp = 1;
     for precision in [Precision::Fast, Precision::Certified] {
         let found = validate(&scene, precision, 0, 0).unwrap();

@@ -67,13 +67,18 @@ fn check(path: &Path, expected: Expected) {
     let name = path.display();
     match (envers::load(path), expected) {
         (Ok(scene), Ok(triangles)) => {
-            assert_eq!(scene.triangle_count(), triangles, "{name}: {:?}", scene.warnings);
+            assert_eq!(
+                scene.scene.triangle_count(),
+                triangles,
+                "{name}: {:?}",
+                scene.report.warnings
+            );
         }
         (Err(error), Err(part)) => {
             assert!(error.to_string().contains(part), "{name}: `{part}` in `{error}`");
         }
         (found, expected) => {
-            panic!("{name}: {:?} for {expected:?}", found.map(|s| s.triangle_count()));
+            panic!("{name}: {:?} for {expected:?}", found.map(|s| s.scene.triangle_count()));
         }
     }
 }
@@ -145,10 +150,11 @@ fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
         let Ok(scene) = envers::load(&path) else { continue };
         let report = &scene.report;
         assert!(report.balances(), "{}: {report}", path.display());
-        let mut shown: Vec<_> = scene.instances.iter().map(|i| i.mesh).collect();
+        let mut shown: Vec<_> = scene.scene.instances.iter().map(|i| i.mesh).collect();
         shown.sort_unstable();
         shown.dedup();
-        let stored: usize = shown.iter().map(|m| scene.meshes[m.0 as usize].triangles.len()).sum();
+        let stored: usize =
+            shown.iter().map(|m| scene.scene.meshes[m.0 as usize].triangles.len()).sum();
         assert_eq!(report.handed_over, stored as u64, "{}: {report}", path.display());
         faces += report.read;
     }
@@ -262,7 +268,7 @@ fn files_that_khronos_validator_finds_valid_load_without_complaint() {
         }
         match envers::load(&path) {
             Ok(scene) => {
-                let complaint = scene.warnings.iter().find(|w| w.contains("not valid glTF"));
+                let complaint = scene.report.warnings.iter().find(|w| w.contains("not valid glTF"));
                 assert_eq!(complaint, None, "{}", path.display());
             }
             Err(error) => panic!("valid, but refused: {error}"),
@@ -277,7 +283,8 @@ fn files_in_which_khronos_validator_finds_errors_are_refused_or_warned_of() {
     for (path, codes) in judged(&corpus) {
         let Ok(scene) = envers::load(&path) else { continue };
         // That a file shows nothing says nothing of its faults.
-        let mut warnings = scene.warnings.iter().filter(|w| !w.contains("there is no triangle"));
+        let mut warnings =
+            scene.report.warnings.iter().filter(|w| !w.contains("there is no triangle"));
         if codes.is_empty() || warnings.next().is_some() {
             continue;
         }

@@ -39,8 +39,8 @@ impl Needs {
     fn loads(&self, most: u64) -> Result<(), String> {
         let limits = Limits::default().with(self.limit, most);
         match LoadOptions::default().limits(limits).load(self.path()) {
-            Ok(scene) if scene.warnings.is_empty() => Ok(()),
-            Ok(scene) => Err(scene.warnings.join("\n")),
+            Ok(scene) if scene.report.warnings.is_empty() => Ok(()),
+            Ok(scene) => Err(scene.report.warnings.join("\n")),
             Err(error) => Err(error.to_string()),
         }
     }

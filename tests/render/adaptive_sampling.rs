@@ -3,7 +3,6 @@
 use envers::film::Film;
 use envers::integrator::{Counts, FeatureCounts, Tiling, sample_steps};
 use envers::intersect::{Backend, Precision};
-use envers::load;
 use envers::scene::{Adaptive, Scene};
 use envers::{RenderOptions, Renderer};
 
@@ -17,7 +16,7 @@ fn scene(size: [u32; 2], objects: &str) -> Scene {
          [camera]\nposition = [0, 0, 99]\nlook_at = [0, 0, 0]\northo_height = {height}\n{objects}"
     );
     std::fs::write(&path, text).unwrap();
-    envers::load(&path).unwrap()
+    envers::load(&path).unwrap().scene
 }
 
 fn with_samples(scene: &Scene, min: u32, max: u32, threshold: f32) -> Scene {

@@ -22,7 +22,7 @@ const MOON: usize = 2;
 
 fn orbit() -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/tutorial/6-4-orbit.toml");
-    let mut scene = envers::load(&path).unwrap();
+    let mut scene = envers::load(&path).unwrap().scene;
     scene.film.size = [100, 50];
     scene.film.spp = 1;
     scene

@@ -1,5 +1,6 @@
 //! The scenes of `docs/gallery.md`.
 
+use envers::Loaded;
 use std::path::{Path, PathBuf};
 
 use envers::LoadOptions;
@@ -40,8 +41,9 @@ fn picture(
     depth: Option<u32>,
 ) -> (Film, Settings) {
     let path = root().join(format!("assets/scenes/gallery/{name}.toml"));
-    let mut scene = LoadOptions::default().size(size).load(&path).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(scene.warnings, [""; 0], "{name}");
+    let Loaded { mut scene, report, .. } =
+        LoadOptions::default().size(size).load(&path).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(report.warnings, [""; 0], "{name}");
     scene.film.spp = spp;
     scene.film.max_depth = depth.unwrap_or(scene.film.max_depth);
     (

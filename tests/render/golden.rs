@@ -24,7 +24,7 @@ fn root() -> &'static Path {
 fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) -> RgbImage {
     let path = root().join("assets/scenes").join(name).with_extension("toml");
     let mut scene =
-        LoadOptions::default().size([width, height]).load(&path).expect("the scene loads");
+        LoadOptions::default().size([width, height]).load(&path).expect("the scene loads").scene;
     scene.film.spp = spp;
     let options = RenderOptions { backend, ..RenderOptions::default() };
     let film =

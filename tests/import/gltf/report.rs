@@ -1,7 +1,7 @@
 //! What a file's report counts.
 
 use super::*;
-use envers::scene::{DropReason, LoadReport};
+use envers::{DropReason, LoadReport};
 
 fn report(model: &Model) -> LoadReport {
     let report = model.load().unwrap().report;

@@ -1,5 +1,6 @@
 //! Bodies within and across others.
 
+use envers::Renderer;
 use envers::scene::{Material, Plane};
 use glam::{DVec3, Vec3};
 
