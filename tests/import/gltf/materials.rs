@@ -160,7 +160,7 @@ fn tangents_of_the_file_are_kept() {
 
 #[test]
 fn without_a_normal_texture_there_are_no_tangents() {
-    let scene = pictured(&[[9; 4]], json!({"occlusionTexture": {"index": 0}}));
+    let scene = pictured(&[[9; 4]], json!({"occlusionTexture": {"index": 0}})).scene;
     assert!(scene.meshes[0].tangents.is_empty());
 }
 
