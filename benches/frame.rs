@@ -13,13 +13,13 @@ mod support {
 }
 
 use std::hint::black_box;
-use std::path::Path;
 
 use envers::geometry::Ray;
 use envers::integrator::Tiling;
 use envers::intersect::{IntersectorBuilder, Precision};
-use envers::render::{self, Options};
+use envers::render::Traced;
 use envers::scene::Scene;
+use envers::{LoadOptions, RenderOptions, Renderer};
 use rayon::prelude::*;
 use support::arguments::Arguments;
 use support::bare::{Bare, Packet, packets};
@@ -37,8 +37,8 @@ struct Settings {
 }
 
 impl Settings {
-    fn options(&self) -> Options {
-        Options { tiling: self.tiling, ..Options::default() }
+    fn options(&self) -> RenderOptions {
+        RenderOptions { tiling: self.tiling, ..RenderOptions::default() }
     }
 }
 
@@ -114,7 +114,9 @@ fn main() {
     let Some(settings) = settings() else { return };
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build().unwrap();
     for name in &settings.scenes {
-        let mut scene = envers::load::load_for(Path::new(name), settings.size).unwrap();
+        let mut options = LoadOptions::default();
+        options.size = settings.size;
+        let mut scene = options.load(name).unwrap().scene;
         if let Some(size) = settings.size {
             scene.film.size = size;
         }
@@ -131,14 +133,15 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
     if let Some(precision) = settings.ours {
         let (fast, options) = (build(precision), settings.options());
         for _ in 0..settings.rounds {
-            black_box(render::with_intersector(scene, &options, &*fast, &|_| {}));
+            black_box(Renderer::new(scene).options(options.clone()).render_with(&*fast));
         }
         return;
     }
     let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
     let options = settings.options();
     let recorder = Recorder::new(&*fast);
-    let (_, counts, _) = render::with_intersector(scene, &options, &recorder, &|_| {});
+    let Traced { counts, .. } =
+        Renderer::new(scene).options(options.clone()).render_with(&recorder);
     let [width, height] = scene.film.size;
     println!("{name} {width}x{height}, {} threads: {:?}", settings.threads, counts.rays);
 
@@ -173,7 +176,7 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
 
     let frame = |intersector: &dyn envers::intersect::Intersector| {
         time(settings.threads, || {
-            black_box(render::with_intersector(scene, &options, intersector, &|_| {}));
+            black_box(Renderer::new(scene).options(options.clone()).render_with(intersector));
         })
     };
     let (mut ours, mut theirs, mut exact) = (Vec::new(), Vec::new(), Vec::new());

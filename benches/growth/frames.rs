@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
+use envers::Renderer;
 use envers::intersect::{Embree, Precision};
-use envers::render::{self, Options};
+use envers::render::Traced;
 use envers::scene::{LightKind, Scene};
 use glam::DVec3;
 use rayon::ThreadPool;
@@ -29,8 +30,7 @@ fn pool(threads: usize) -> ThreadPool {
 
 /// Renders a frame on the current pool; returns how many rays that took.
 fn frame(scene: &Scene, intersector: &Embree<'_>) -> u64 {
-    let (film, counts, _) =
-        render::with_intersector(scene, &Options::default(), intersector, &|_| {});
+    let Traced { film, counts, .. } = Renderer::new(scene).render_with(intersector);
     black_box(film);
     counts.rays.total()
 }

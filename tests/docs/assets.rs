@@ -1,9 +1,10 @@
 //! The committed models and drawings are what `xtask` makes, and the scenes that use them
 //! load without a warning.
 
+use envers::Loaded;
 use std::path::Path;
 
-use envers::load::load;
+use envers::load;
 use envers::scene::LightKind;
 use xtask::assets;
 
@@ -55,8 +56,8 @@ fn demo_scenes_and_models_load_without_a_warning() {
         "scenes/gallery/models/room.glb",
         "scenes/gallery/models/vase.obj",
     ] {
-        let scene = load(&assets.join(name)).expect(name);
-        assert_eq!(scene.warnings, [""; 0], "{name}");
+        let Loaded { report, .. } = load(&assets.join(name)).expect(name);
+        assert_eq!(report.warnings, [""; 0], "{name}");
     }
 }
 
@@ -64,7 +65,8 @@ fn demo_scenes_and_models_load_without_a_warning() {
 #[test]
 fn room_uses_what_gltf_offers() {
     let scene = load(&assets::root().join("assets/scenes/gallery/models/room.glb"))
-        .expect("the room loads");
+        .expect("the room loads")
+        .scene;
     assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
     let own = scene.lights.iter().filter(|light| light.kind != LightKind::Ambient).count();
     assert_eq!((own, scene.textures.len()), (2, 3));
@@ -75,6 +77,7 @@ fn room_uses_what_gltf_offers() {
 #[test]
 fn vase_uses_what_obj_offers() {
     let scene = load(&assets::root().join("assets/scenes/gallery/models/vase.obj"))
-        .expect("the vase loads");
+        .expect("the vase loads")
+        .scene;
     assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));
 }

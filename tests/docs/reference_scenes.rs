@@ -1,12 +1,12 @@
 //! The reference scenes of the benches are what their descriptions say.
 
-use envers::load::load;
-use envers::scene::{Mesh, Scene};
+use envers::scene::Mesh;
+use envers::{Loaded, load};
 use glam::DVec3;
 use xtask::reference::{knot, spheres};
 
 /// The scene of a file made by the generator, which is written into a folder for it.
-fn loaded(name: &str, files: &[(&str, Vec<u8>)]) -> Scene {
+fn loaded(name: &str, files: &[(&str, Vec<u8>)]) -> Loaded {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for (name, bytes) in files {
         std::fs::write(folder.path().join(name), bytes).expect("the folder takes files");
@@ -14,19 +14,19 @@ fn loaded(name: &str, files: &[(&str, Vec<u8>)]) -> Scene {
     load(&folder.path().join(name)).expect(name)
 }
 
-fn s() -> Scene {
+fn s() -> Loaded {
     loaded("s.toml", &[("s.toml", spheres::toml().into_bytes())])
 }
 
 /// M with a knot of about `triangles`.
-fn m(triangles: usize) -> Scene {
+fn m(triangles: usize) -> Loaded {
     let model = knot::glb(&knot::mesh(knot::resolution(triangles)));
     loaded("m.toml", &[("m.toml", knot::TOML.as_bytes().to_vec()), ("m.glb", model)])
 }
 
 #[test]
 fn s_has_the_tutorials_sphere_and_500_others_within_their_ranges() {
-    let scene = s();
+    let scene = s().scene;
     let (first, others) = scene.spheres.split_first().expect("S has spheres");
     assert_eq!((first.center, first.radius), (DVec3::new(0.0, 0.0, 10.0), 1.0));
     assert_eq!(others.len(), 500);
@@ -48,7 +48,7 @@ fn s_is_the_same_one_everywhere() {
 
 #[test]
 fn s_spreads_over_the_ranges() {
-    let scene = s();
+    let scene = s().scene;
     let others = &scene.spheres[1..];
     let span = |of: fn(DVec3) -> f64| {
         let values = others.iter().map(|s| of(s.center));
@@ -97,7 +97,7 @@ fn no_triangle_of_the_knot_is_degenerate() {
 
 #[test]
 fn the_knot_stands_above_the_ground_and_beside_the_spheres() {
-    let scene = m(30_000);
+    let scene = m(30_000).scene;
     let instance = &scene.instances[0];
     for p in &scene.meshes[0].positions {
         let p = instance.to_world(*p);
@@ -110,7 +110,7 @@ fn the_knot_stands_above_the_ground_and_beside_the_spheres() {
 
 #[test]
 fn m_has_a_mirror_a_glass_sphere_a_ground_and_one_light() {
-    let scene = m(1_000);
+    let scene = m(1_000).scene;
     let of = |i: usize| &scene.materials[scene.spheres[i].material.0 as usize];
     assert_eq!(scene.spheres.len(), 2);
     assert!(of(0).reflect.min_element() > 0.5 && of(1).transmit.min_element() > 0.5);
@@ -119,6 +119,6 @@ fn m_has_a_mirror_a_glass_sphere_a_ground_and_one_light() {
 
 #[test]
 fn neither_warns() {
-    assert_eq!(s().warnings, [""; 0]);
-    assert_eq!(m(1_000).warnings, [""; 0]);
+    assert_eq!(s().report.warnings, [""; 0]);
+    assert_eq!(m(1_000).report.warnings, [""; 0]);
 }

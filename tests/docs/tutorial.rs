@@ -6,11 +6,12 @@
 //! numpy is cut to a whole number when it is stored as `uint8`. Ours rounds instead, so the bytes
 //! may differ by 1; before that last step the two agree to within a thousandth.
 
+use envers::Loaded;
 use std::ops::{Add, Mul, Sub};
 use std::path::Path;
 
-use envers::load::load;
-use envers::render::{Options, render};
+use envers::Renderer;
+use envers::load;
 use envers::write::{Settings, png_bytes};
 
 const LONGUEUR: usize = 1000;
@@ -153,9 +154,9 @@ fn coloration(part: Part) -> Vec<f64> {
 /// Holds a scene's picture to the tutorial's.
 fn compare(name: &str, part: Part) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/tutorial").join(name);
-    let scene = load(&path).expect("the scene loads");
-    assert_eq!(scene.warnings, [""; 0]);
-    let film = render(&scene, &Options::default(), &|_| {}).expect("the scene renders").film;
+    let Loaded { scene, report, .. } = load(&path).expect("the scene loads");
+    assert_eq!(report.warnings, [""; 0]);
+    let film = Renderer::new(&scene).render().expect("the scene renders").film;
     let settings = Settings::of(&scene.film);
     let ours = png_bytes(&film, &settings);
     let theirs = coloration(part);

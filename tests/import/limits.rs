@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use envers::load::{Limit, Limits, Options, load_with};
+use envers::{Limit, Limits, LoadOptions};
 use envers_testing::{Folder, Model, data_uri, png};
 use serde_json::json;
 
@@ -38,9 +38,9 @@ impl Needs {
     /// Loads it under a limit; returns the warnings or the error where it does not load whole.
     fn loads(&self, most: u64) -> Result<(), String> {
         let limits = Limits::default().with(self.limit, most);
-        match load_with(&self.path(), &Options { limits, ..Options::default() }) {
-            Ok(scene) if scene.warnings.is_empty() => Ok(()),
-            Ok(scene) => Err(scene.warnings.join("\n")),
+        match LoadOptions::default().limits(limits).load(self.path()) {
+            Ok(scene) if scene.report.warnings.is_empty() => Ok(()),
+            Ok(scene) => Err(scene.report.warnings.join("\n")),
             Err(error) => Err(error.to_string()),
         }
     }

@@ -1,7 +1,8 @@
 //! The scenes that OBJ and MTL files become: each test one feature or one fault.
 
+use envers::Loaded;
 use envers::error::{Error, Place};
-use envers::scene::{AlphaMode, Material, Scene, ShininessMap, Texels, Transfer, Wrap};
+use envers::scene::{AlphaMode, Material, ShininessMap, Texels, Transfer, Wrap};
 use envers_testing::{Folder, png};
 use glam::{Vec2, Vec3};
 
@@ -10,71 +11,73 @@ use super::loading::{LoadFile, assert_warns};
 /// A triangle's vertices.
 const VERTICES: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
-fn load(text: impl AsRef<[u8]>) -> Scene {
+fn load(text: impl AsRef<[u8]>) -> Loaded {
     Folder::new().load("model.obj", text).unwrap()
 }
 
 /// Loads a triangle of material `m` with an MTL file, and gives its material.
-fn with_mtl(folder: &Folder, mtl: &str) -> (Scene, Material) {
+fn with_mtl(folder: &Folder, mtl: &str) -> (Loaded, Material) {
     folder.write("m.mtl", mtl);
     let text = format!("mtllib m.mtl\nusemtl m\n{VERTICES}f 1 2 3\n");
-    let scene = folder.load("model.obj", text).unwrap();
+    let loaded = folder.load("model.obj", text).unwrap();
+    let scene = &loaded.scene;
     let material = scene.materials[scene.instances[0].material.0 as usize].clone();
-    (scene, material)
+    (loaded, material)
 }
 
 fn fails(text: impl AsRef<[u8]>) -> Error {
-    Folder::new().load("model.obj", text).map(|s| s.triangle_count()).unwrap_err()
+    Folder::new().load("model.obj", text).map(|s| s.scene.triangle_count()).unwrap_err()
 }
 
 // Geometry
 
 #[test]
 fn triangle() {
-    let scene = load(format!("{VERTICES}f 1 2 3"));
+    let loaded = load(format!("{VERTICES}f 1 2 3"));
+    let scene = &loaded.scene;
     assert_eq!(scene.meshes[0].positions, [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert!(loaded.report.warnings.is_empty(), "{:?}", loaded.report.warnings);
 }
 
 #[test]
 fn negative_indices_count_back_from_the_face() {
-    let scene = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5");
+    let scene = load("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nv 5 5 5").scene;
     assert_eq!(scene.meshes[0].positions, [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
 }
 
 #[test]
 fn lines_of_an_old_mac() {
-    assert_eq!(load(format!("{VERTICES}f 1 2 3").replace('\n', "\r")).triangle_count(), 1);
+    assert_eq!(load(format!("{VERTICES}f 1 2 3").replace('\n', "\r")).scene.triangle_count(), 1);
 }
 
 #[test]
 fn a_vertex_with_a_weight_is_divided_by_it() {
-    let scene = load("v 0 0 0\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3");
+    let scene = load("v 0 0 0\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3").scene;
     assert_eq!(scene.meshes[0].positions[1], [1., 0., 0.]);
 }
 
 #[test]
 fn words_that_are_no_keywords_are_a_warning() {
-    let scene = load(format!("{VERTICES}foo 1\nlod 2\nf 1 2 3"));
-    assert_warns(&scene, "first word is none of Wavefront OBJ, at line 4 (`foo`)");
+    let loaded = load(format!("{VERTICES}foo 1\nlod 2\nf 1 2 3"));
+    assert_warns(&loaded, "first word is none of Wavefront OBJ, at line 4 (`foo`)");
 }
 
 #[test]
 fn faces_before_their_vertices() {
-    assert_eq!(load(format!("f 1 2 3\n{VERTICES}")).triangle_count(), 1);
+    assert_eq!(load(format!("f 1 2 3\n{VERTICES}")).scene.triangle_count(), 1);
 }
 
 #[test]
 fn quad_is_two_triangles() {
-    let scene = load("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4");
+    let scene = load("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4").scene;
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2], [0, 2, 3]]);
 }
 
 #[test]
 fn concave_polygon_stays_within_its_outline() {
     // An L: a fan from its first corner would cover what lies outside.
-    let scene = load("v 0 0 0\nv 0 2 0\nv 1 2 0\nv 1 1 0\nv 2 1 0\nv 2 0 0\nf 2 3 4 5 6 1");
+    let scene = load("v 0 0 0\nv 0 2 0\nv 1 2 0\nv 1 1 0\nv 2 1 0\nv 2 0 0\nf 2 3 4 5 6 1").scene;
     let mesh = &scene.meshes[0];
     let area: f32 = mesh
         .triangles
@@ -88,14 +91,15 @@ fn concave_polygon_stays_within_its_outline() {
 
 #[test]
 fn normals_and_flipped_texture_coordinates() {
-    let scene = load(format!("{VERTICES}vt 0 0\nvt 1 0.25\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1"));
+    let scene =
+        load(format!("{VERTICES}vt 0 0\nvt 1 0.25\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1")).scene;
     assert_eq!(scene.meshes[0].uvs, [[0., 1.], [1., 0.75], [0., 0.]]);
     assert_eq!(scene.meshes[0].normals, [[0., 0., 1.]; 3]);
 }
 
 #[test]
 fn without_normals_a_mesh_is_flat() {
-    assert!(load(format!("{VERTICES}f 1 2 3")).meshes[0].normals.is_empty());
+    assert!(load(format!("{VERTICES}f 1 2 3")).scene.meshes[0].normals.is_empty());
 }
 
 #[test]
@@ -103,16 +107,19 @@ fn smoothing_group_makes_normals() {
     // A roof: the normals at its ridge lie between those of its sides.
     let roof = "v 0 0 0\nv 0 0 2\nv 1 1 0\nv 1 1 2\nv 2 0 0\nv 2 0 2\n";
     let faces = "s 1\nf 1 2 4 3\nf 3 4 6 5";
-    let mesh = &load(format!("{roof}{faces}")).meshes[0];
+    let mesh = &load(format!("{roof}{faces}")).scene.meshes[0];
     let ridge = mesh.positions.iter().position(|p| *p == [1., 1., 0.]).unwrap();
     assert!((Vec3::from(mesh.normals[ridge]) - Vec3::Y).length() < 1e-6, "{:?}", mesh.normals);
-    assert!(load(format!("{roof}s off\n{faces}")).meshes[0].normals.len() == 6);
-    assert!(load(format!("{roof}{}", faces.replace("s 1", "s off"))).meshes[0].normals.is_empty());
+    assert!(load(format!("{roof}s off\n{faces}")).scene.meshes[0].normals.len() == 6);
+    assert!(
+        load(format!("{roof}{}", faces.replace("s 1", "s off"))).scene.meshes[0].normals.is_empty()
+    );
 }
 
 #[test]
 fn faces_with_and_without_normals_keep_what_they_have() {
-    let scene = load(format!("{VERTICES}vn 0 0 1\nf 1//1 2//1 3//1\nf 3 2 1\nf 2//1 3//1 1//1"));
+    let scene =
+        load(format!("{VERTICES}vn 0 0 1\nf 1//1 2//1 3//1\nf 3 2 1\nf 2//1 3//1 1//1")).scene;
     let lengths: Vec<_> =
         scene.meshes.iter().map(|m| (m.triangles.len(), m.normals.len())).collect();
     assert_eq!(lengths, [(2, 3), (1, 0)]);
@@ -120,7 +127,7 @@ fn faces_with_and_without_normals_keep_what_they_have() {
 
 #[test]
 fn vertex_colours_are_decoded_and_white_where_missing() {
-    let scene = load("v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3");
+    let scene = load("v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 0 0 0\nf 1 2 3").scene;
     let colors = &scene.meshes[0].colors;
     assert_eq!((colors[1], colors[2]), ([1.; 3], [0.; 3]));
     assert!((colors[0][1] - 0.214_041).abs() < 1e-5, "{colors:?}");
@@ -128,7 +135,7 @@ fn vertex_colours_are_decoded_and_white_where_missing() {
 
 #[test]
 fn vertex_colours_above_1_go_up_to_255() {
-    let scene = load("v 0 0 0 255 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3");
+    let scene = load("v 0 0 0 255 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3").scene;
     let colors = &scene.meshes[0].colors;
     assert_eq!(colors[0], [1.0, 0.0, 0.0]);
     assert!(colors[1][1] < 1e-3, "{colors:?}");
@@ -138,7 +145,8 @@ fn vertex_colours_above_1_go_up_to_255() {
 fn objects_and_materials_are_meshes() {
     let scene = load(format!(
         "{VERTICES}o a\nusemtl x\nf 1 2 3\nusemtl y\nf 1 2 3\nusemtl x\nf 3 2 1\no b\nf 1 2 3"
-    ));
+    ))
+    .scene;
     let parts: Vec<_> = scene
         .instances
         .iter()
@@ -156,7 +164,7 @@ fn objects_and_materials_are_meshes() {
 
 #[test]
 fn comments_continuations_and_line_ends() {
-    let scene = load("# a\r\nv 0 0 0 # b\r\nv 1 0 0# d e\r\nv 0 1 0\r\nf 1 \\\r\n2 3#c\r\n");
+    let scene = load("# a\r\nv 0 0 0 # b\r\nv 1 0 0# d e\r\nv 0 1 0\r\nf 1 \\\r\n2 3#c\r\n").scene;
     assert_eq!(scene.triangle_count(), 1);
 }
 
@@ -167,7 +175,7 @@ fn byte_order_mark_latin_1_and_utf_16() {
     let wide: Vec<u8> =
         [0xFEFF].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     for bytes in [format!("\u{feff}{text}").into_bytes(), latin, wide] {
-        let scene = load(bytes);
+        let scene = load(bytes).scene;
         assert_eq!(scene.meshes[0].name, "caf\u{e9}");
         assert_eq!(scene.meshes[0].positions[1], [1., 0., 0.]);
     }
@@ -175,16 +183,17 @@ fn byte_order_mark_latin_1_and_utf_16() {
 
 #[test]
 fn empty_usemtl_means_no_material() {
-    let scene = load(format!("usemtl\n{VERTICES}f 1 2 3"));
+    let scene = load(format!("usemtl\n{VERTICES}f 1 2 3")).scene;
     assert_eq!(scene.materials, [Material::default()]);
 }
 
 #[test]
 fn lines_and_points_are_counted_and_not_drawn() {
-    let scene = load(format!("{VERTICES}l 1 2\np 1\nl 2 3 1\nf 1 2 3"));
+    let loaded = load(format!("{VERTICES}l 1 2\np 1\nl 2 3 1\nf 1 2 3"));
+    let scene = &loaded.scene;
     assert_eq!(scene.triangle_count(), 1);
     assert_warns(
-        &scene,
+        &loaded,
         "3 points, lines or curves are left out: only faces are drawn, first at line 4",
     );
 }
@@ -224,27 +233,30 @@ fn compiled_object_file() {
 #[test]
 fn face_of_vertices_that_are_not_there_is_dropped() {
     for bad in ["f 0 1 2", "f 1 2 4", "f -4 1 2", "f 1 2 99999999999999999999"] {
-        let scene = load(format!("{VERTICES}f 1 2 3\n{bad}"));
+        let loaded = load(format!("{VERTICES}f 1 2 3\n{bad}"));
+        let scene = &loaded.scene;
         assert_eq!(scene.triangle_count(), 1, "{bad}");
-        assert_warns(&scene, "faces are left out: they name vertices that are not there");
+        assert_warns(&loaded, "faces are left out: they name vertices that are not there");
     }
 }
 
 #[test]
 fn face_with_normals_that_are_not_there_does_without() {
-    let scene = load(format!("{VERTICES}vn 0 0 1\nf 1//1 2//1 3//7"));
+    let loaded = load(format!("{VERTICES}vn 0 0 1\nf 1//1 2//1 3//7"));
+    let scene = &loaded.scene;
     assert!(scene.meshes[0].normals.is_empty());
-    assert_warns(&scene, "faces do without");
+    assert_warns(&loaded, "faces do without");
 }
 
 #[test]
 fn vertex_that_is_not_finite_drops_its_faces() {
     for bad in ["nan", "1e400", "-inf", "1.#QNAN", "3.1+e2"] {
-        let scene = load(format!("{VERTICES}v {bad} 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 3 4"));
+        let loaded = load(format!("{VERTICES}v {bad} 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 3 4"));
+        let scene = &loaded.scene;
         assert!(scene.triangle_count() >= 1, "{bad}");
         assert!(scene.meshes[0].positions.as_flattened().iter().all(|x| x.is_finite()));
-        assert_warns(&scene, "not finite, at line 4");
-        assert_warns(&scene, "a corner is not a finite number");
+        assert_warns(&loaded, "not finite, at line 4");
+        assert_warns(&loaded, "a corner is not a finite number");
     }
 }
 
@@ -269,9 +281,9 @@ fn colours_and_shininess() {
 
 #[test]
 fn what_a_material_does_not_say_is_a_matt_grey() {
-    let (scene, m) = with_mtl(&Folder::new(), "newmtl m");
+    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m");
     assert_eq!(m, Material { name: "m".into(), ..Material::default() });
-    assert!(scene.warnings.is_empty());
+    assert!(loaded.report.warnings.is_empty());
 }
 
 #[test]
@@ -301,8 +313,8 @@ fn mirrors_keep_their_colour_where_the_shininess_is_zero() {
 
 /// Returns the material `m` of an MTL file that loads without a warning.
 fn optics(mtl: &str) -> Material {
-    let (scene, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{mtl}"));
-    assert_eq!(scene.warnings, [""; 0], "{mtl}");
+    let (loaded, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{mtl}"));
+    assert_eq!(loaded.report.warnings, [""; 0], "{mtl}");
     m
 }
 
@@ -325,16 +337,16 @@ fn opacity_of_1_is_opaque_whatever_index_and_filter_say() {
 
 #[test]
 fn opacity_of_0_is_a_warning() {
-    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nd 0");
+    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nd 0");
     assert_eq!(m.transmit, Vec3::ONE);
-    assert_warns(&scene, "an opacity of 0");
+    assert_warns(&loaded, "an opacity of 0");
 }
 
 #[test]
 fn transparency_of_1_alone_is_opaque_with_a_warning() {
-    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1.000000\nillum 2");
+    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nTr 1.000000\nillum 2");
     assert_eq!(m.transmit, Vec3::ZERO);
-    assert_warns(&scene, "`Tr 1` and no `d`");
+    assert_warns(&loaded, "`Tr 1` and no `d`");
 }
 
 #[test]
@@ -387,25 +399,26 @@ fn glass_that_lets_nothing_through_is_none() {
 
 #[test]
 fn glass_of_a_mesh_that_is_not_closed_is_a_warning() {
-    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nTf 1 1 1\nillum 7");
-    assert_warns(&scene, "not closed at 3 edges");
+    let (loaded, _) = with_mtl(&Folder::new(), "newmtl m\nTf 1 1 1\nillum 7");
+    assert_warns(&loaded, "not closed at 3 edges");
 }
 
 #[test]
 fn broken_lines_of_an_mtl_file_are_ignored_with_a_warning() {
-    let (scene, m) = with_mtl(&Folder::new(), "newmtl m\nKd 1\nKs a b c\nNs\nKe 1 2\nillum x");
+    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nKd 1\nKs a b c\nNs\nKe 1 2\nillum x");
     assert_eq!(m.diffuse, Vec3::ONE);
     for what in ["`Ks` wants three numbers", "`Ns` wants a number", "`Ke`", "`illum`"] {
-        assert_warns(&scene, what);
+        assert_warns(&loaded, what);
     }
-    assert_warns(&scene, "m.mtl:3 (`Ks a b c`)");
+    assert_warns(&loaded, "m.mtl:3 (`Ks a b c`)");
 }
 
 #[test]
 fn missing_mtl_file_is_a_warning() {
-    let scene = load(format!("mtllib none.mtl\nusemtl m\n{VERTICES}f 1 2 3"));
+    let loaded = load(format!("mtllib none.mtl\nusemtl m\n{VERTICES}f 1 2 3"));
+    let scene = &loaded.scene;
     assert_eq!(scene.materials[0].diffuse, Material::default().diffuse);
-    assert_warns(&scene, "none.mtl");
+    assert_warns(&loaded, "none.mtl");
 }
 
 #[test]
@@ -413,11 +426,12 @@ fn an_mtl_file_of_the_models_name_takes_the_place_of_a_missing_one() {
     let folder = Folder::new();
     folder.write("model.mtl", "newmtl m\nKd 1 0 0");
     let text = |line: &str| format!("{line}\nusemtl m\n{VERTICES}f 1 2 3");
-    let scene = folder.load("model.obj", text("mtllib none.mtl")).unwrap();
+    let loaded = folder.load("model.obj", text("mtllib none.mtl")).unwrap();
+    let scene = &loaded.scene;
     assert_eq!(scene.materials[0].diffuse, Vec3::X);
-    assert_warns(&scene, "`none.mtl` are missing");
-    let scene = folder.load("model.obj", text("")).unwrap();
-    assert_eq!((scene.materials[0].diffuse, scene.warnings.len()), (Vec3::X, 0));
+    assert_warns(&loaded, "`none.mtl` are missing");
+    let scene = folder.load("model.obj", text("")).unwrap().scene;
+    assert_eq!((scene.materials[0].diffuse, loaded.report.warnings.len()), (Vec3::X, 0));
 }
 
 #[test]
@@ -426,15 +440,15 @@ fn files_are_found_in_any_case() {
     folder.write("Lib/M.mtl", "newmtl m\nmap_Kd TEX\\A.PNG");
     folder.write("Lib/Tex/a.Png", png(&[RED]));
     let text = format!("mtllib lib\\m.MTL\nusemtl m\n{VERTICES}f 1 2 3");
-    let scene = folder.load("model.obj", text).unwrap();
-    assert_eq!(scene.warnings, [""; 0]);
+    let Loaded { scene, report, .. } = folder.load("model.obj", text).unwrap();
+    assert_eq!(report.warnings, [""; 0]);
     assert_eq!(scene.textures[0].image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
 fn a_colour_that_is_a_spectrum_is_a_warning_with_its_line() {
-    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nKd spectral a.rfl");
-    assert_warns(&scene, "m.mtl:2 (`Kd spectral a.rfl`)");
+    let (loaded, _) = with_mtl(&Folder::new(), "newmtl m\nKd spectral a.rfl");
+    assert_warns(&loaded, "m.mtl:2 (`Kd spectral a.rfl`)");
 }
 
 #[test]
@@ -449,7 +463,7 @@ fn libraries_of_several_names_and_names_with_spaces() {
         "mtllib \"a b.mtl\"\nmtllib \"c.mtl\"",
     ] {
         let text = format!("{line}\n{VERTICES}usemtl x\nf 1 2 3\nusemtl y\nf 1 2 3");
-        let scene = folder.load("model.obj", text).unwrap();
+        let scene = folder.load("model.obj", text).unwrap().scene;
         let colors: Vec<_> = scene.materials.iter().map(|m| m.diffuse).collect();
         assert_eq!(colors, [Vec3::X, Vec3::Y], "{line}");
     }
@@ -469,7 +483,7 @@ fn texture_file_with_options_spaces_and_windows_paths() {
     ] {
         let folder = Folder::new();
         folder.write(file, png(&[RED]));
-        let (scene, m) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {value}"));
+        let (Loaded { scene, .. }, m) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {value}"));
         let map = &scene.textures[m.diffuse_map.unwrap().0 as usize];
         assert_eq!(map.image.texels, Texels::Bytes(vec![RED]), "{value}");
         assert_eq!(m.diffuse, Vec3::ONE);
@@ -481,25 +495,25 @@ fn texture_options_that_are_not_read_are_a_warning() {
     let folder = Folder::new();
     folder.write("a.png", png(&[RED]));
     for option in ["-mm 0.1 2", "-bm 0.5", "-imfchan z", "-imfchan r"] {
-        let (scene, _) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {option} a.png"));
-        assert_warns(&scene, &format!("the option `{}", option.split(' ').next().unwrap()));
+        let (loaded, _) = with_mtl(&folder, &format!("newmtl m\nmap_Kd {option} a.png"));
+        assert_warns(&loaded, &format!("the option `{}", option.split(' ').next().unwrap()));
     }
 }
 
 /// Loads a triangle whose material has maps that show `a.png`, of which there is nothing to say.
-fn mapped(pixel: [u8; 4], mtl: &str) -> (Scene, Material) {
+fn mapped(pixel: [u8; 4], mtl: &str) -> (Loaded, Material) {
     let folder = Folder::new();
     folder.write("a.png", png(&[pixel]));
-    let (scene, m) = with_mtl(&folder, &format!("newmtl m\n{mtl}"));
-    assert_eq!(scene.warnings, [""; 0], "{mtl}");
-    (scene, m)
+    let (loaded, m) = with_mtl(&folder, &format!("newmtl m\n{mtl}"));
+    assert_eq!(loaded.report.warnings, [""; 0], "{mtl}");
+    (loaded, m)
 }
 
 const GREY: [u8; 4] = [128, 128, 128, 255];
 
 #[test]
 fn texture_is_scaled_and_shifted_with_v_up() {
-    let (scene, _) = mapped(RED, "map_Kd -s 2 3 1 -o 0.25 0.5 a.png");
+    let (Loaded { scene, .. }, _) = mapped(RED, "map_Kd -s 2 3 1 -o 0.25 0.5 a.png");
     // v runs down here: the picture's lower left corner, (0, 1), is where u and v are 0.
     let at = |u, v| scene.textures[0].transform.transform_point2(Vec2::new(u, v));
     assert_eq!(at(0.0, 1.0), Vec2::new(0.25, 0.5));
@@ -509,7 +523,8 @@ fn texture_is_scaled_and_shifted_with_v_up() {
 #[test]
 fn picture_of_normals_is_a_normal_map() {
     for key in ["norm", "map_Kn"] {
-        let (scene, m) = mapped([128, 128, 255, 255], &format!("{key} -bm 0.5 a.png"));
+        let (Loaded { scene, .. }, m) =
+            mapped([128, 128, 255, 255], &format!("{key} -bm 0.5 a.png"));
         let map = m.normal_map.unwrap();
         assert_eq!(map.scale, 0.5, "{key}");
         assert_eq!(scene.textures[map.texture.0 as usize].transfer, Transfer::None);
@@ -528,10 +543,10 @@ fn bump_that_shows_normals_is_a_normal_map() {
 fn bump_that_shows_heights_is_a_warning() {
     let folder = Folder::new();
     folder.write("a.png", png(&[GREY]));
-    let (scene, m) = with_mtl(&folder, "newmtl m\nbump a.png");
+    let (loaded, m) = with_mtl(&folder, "newmtl m\nbump a.png");
     assert_eq!(m.normal_map, None);
-    assert_warns(&scene, "textures of heights (`bump`) are not read");
-    assert_eq!(scene.report.unsupported.len(), 1);
+    assert_warns(&loaded, "textures of heights (`bump`) are not read");
+    assert_eq!(loaded.report.unsupported.len(), 1);
 }
 
 #[test]
@@ -551,14 +566,14 @@ fn picture_of_opacity_covers_by_its_grey_or_its_alpha() {
 fn glass_with_a_picture_of_opacity_is_a_warning() {
     let folder = Folder::new();
     folder.write("a.png", png(&[GREY]));
-    let (scene, m) = with_mtl(&folder, "newmtl m\nillum 4\nTf 1 1 1\nmap_d a.png");
+    let (loaded, m) = with_mtl(&folder, "newmtl m\nillum 4\nTf 1 1 1\nmap_d a.png");
     assert_eq!((m.coverage, m.transmit), (None, Vec3::ONE));
-    assert_warns(&scene, "their materials are glass");
+    assert_warns(&loaded, "their materials are glass");
 }
 
 #[test]
 fn pictures_of_highlights_and_their_size() {
-    let (scene, m) = mapped(RED, "Ns 20\nmap_Ks a.png\nmap_Ns a.png");
+    let (Loaded { scene, .. }, m) = mapped(RED, "Ns 20\nmap_Ks a.png\nmap_Ns a.png");
     assert_eq!(m.specular, Vec3::ONE);
     assert_eq!(scene.textures[m.specular_map.unwrap().0 as usize].transfer, Transfer::Srgb);
     let Some(ShininessMap::Factor(map)) = m.shininess_map else { panic!("{m:?}") };
@@ -590,7 +605,8 @@ fn roughness_that_is_missing_is_that_of_the_shininess() {
 
 #[test]
 fn pictures_of_roughness_and_metalness_count_in_place_of_their_values() {
-    let (scene, m) = mapped(GREY, "Pr 0.1\nPm 0\nmap_Pr a.png\nmap_Pm -imfchan b a.png");
+    let (Loaded { scene, .. }, m) =
+        mapped(GREY, "Pr 0.1\nPm 0\nmap_Pr a.png\nmap_Pm -imfchan b a.png");
     let maps = m.metallic.unwrap();
     assert_eq!((maps.factors.roughness, maps.factors.metallic), (1.0, 1.0));
     assert_eq!((maps.roughness.unwrap().channel, maps.metallic.unwrap().channel), (0, 2));
@@ -609,15 +625,16 @@ fn metal_with_an_opacity_is_blended() {
 fn clamped_texture() {
     let folder = Folder::new();
     folder.write("a.png", png(&[RED]));
-    let (scene, _) = with_mtl(&folder, "newmtl m\nmap_Kd -clamp on a.png");
+    let (Loaded { scene, .. }, _) = with_mtl(&folder, "newmtl m\nmap_Kd -clamp on a.png");
     assert_eq!(scene.textures[0].wrap, [Wrap::Clamp; 2]);
 }
 
 #[test]
 fn missing_texture_is_a_warning_and_a_placeholder() {
-    let (scene, _) = with_mtl(&Folder::new(), "newmtl m\nmap_Kd none.png");
+    let (loaded, _) = with_mtl(&Folder::new(), "newmtl m\nmap_Kd none.png");
+    let scene = &loaded.scene;
     assert!(scene.textures[0].image.name.contains("missing"));
-    assert_warns(&scene, "none.png");
+    assert_warns(&loaded, "none.png");
 }
 
 #[test]
@@ -626,5 +643,5 @@ fn texture_of_two_materials_is_stored_once() {
     folder.write("a.png", png(&[RED]));
     folder.write("m.mtl", "newmtl x\nmap_Kd a.png\nnewmtl y\nmap_Kd a.png");
     let text = format!("mtllib m.mtl\n{VERTICES}usemtl x\nf 1 2 3\nusemtl y\nf 1 2 3");
-    assert_eq!(folder.load("model.obj", text).unwrap().textures.len(), 1);
+    assert_eq!(folder.load("model.obj", text).unwrap().scene.textures.len(), 1);
 }

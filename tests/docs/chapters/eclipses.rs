@@ -6,11 +6,13 @@ use super::book::{root, tutorial};
 
 #[test]
 fn program_and_scene_have_the_same_bodies_and_frames() {
-    let scene = envers::load::load(&root().join("assets/scenes/tutorial/6-4-orbit.toml"));
+    let scene = envers::load(&root().join("assets/scenes/tutorial/6-4-orbit.toml"));
     let scene = scene.expect("the scene loads");
-    let [sun, planet, moon] = &scene.spheres[..] else { panic!("the scene has three spheres") };
+    let [sun, planet, moon] = &scene.scene.spheres[..] else {
+        panic!("the scene has three spheres")
+    };
     let point = |p: glam::DVec3| format!("({}, {}, {})", p.x, p.y, p.z);
-    let animation = scene.animation.as_ref().expect("it is animated");
+    let animation = scene.scene.animation.as_ref().expect("it is animated");
     let [frames, fps] = [f64::from(animation.frames), animation.fps];
     let of_scene = [sun, planet, moon].map(|sphere| point(sphere.center)).join(" ")
         + &format!(" {} {} {frames} {fps}", planet.radius, moon.radius);

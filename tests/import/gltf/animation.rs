@@ -1,6 +1,7 @@
 //! A file's own animation: rigid nodes, and what is said where its data is damaged.
 
 use super::*;
+use envers::Loaded;
 use envers::scene::LightKind;
 use glam::DVec3;
 use serde_json::Value;
@@ -49,13 +50,13 @@ fn near(a: DVec3, b: [f64; 3]) -> bool {
 #[test]
 fn linear_translation_is_a_straight_line() {
     let model = animated("translation", "VEC3", &[0., 2.], &[0., 0., 0., 4., 0., 2.], "LINEAR");
-    assert!(near(at(&model.load().unwrap(), 0.5, [0.; 3]), [1., 0., 0.5]));
+    assert!(near(at(&model.load().unwrap().scene, 0.5, [0.; 3]), [1., 0., 0.5]));
 }
 
 #[test]
 fn step_translation_stays_until_the_next_key() {
     let model = animated("translation", "VEC3", &[0., 2.], &[0., 0., 0., 4., 0., 2.], "STEP");
-    assert!(near(at(&model.load().unwrap(), 1.9, [0.; 3]), [0.; 3]));
+    assert!(near(at(&model.load().unwrap().scene, 1.9, [0.; 3]), [0.; 3]));
 }
 
 #[test]
@@ -63,7 +64,7 @@ fn spline_has_its_tangents_before_and_after_each_value() {
     // x = t³ − t: values 0 and 6, slopes −1 at 0 and 11 at 2.
     let values = [0., 0., 0., 0., 0., 0., -1., 0., 0., 11., 0., 0., 6., 0., 0., 0., 0., 0.];
     let model = animated("translation", "VEC3", &[0., 2.], &values, "CUBICSPLINE");
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     for t in [0.25, 1.0, 1.5] {
         assert!(near(at(&scene, t, [0.; 3]), [t * t * t - t, 0., 0.]), "{t}");
     }
@@ -75,14 +76,14 @@ fn rotation_goes_along_the_sphere() {
     let quarter = [0., 0., 0., 1., 0., 0., half, half];
     let model = animated("rotation", "VEC4", &[0., 3.], &quarter, "LINEAR");
     let (sin, cos) = (std::f64::consts::FRAC_PI_2 / 3.0).sin_cos();
-    assert!(near(at(&model.load().unwrap(), 1.0, [1., 0., 0.]), [cos, sin, 0.]));
+    assert!(near(at(&model.load().unwrap().scene, 1.0, [1., 0., 0.]), [cos, sin, 0.]));
 }
 
 #[test]
 fn scale_comes_before_what_the_node_itself_says_of_the_rest() {
     let mut model = animated("scale", "VEC3", &[0., 1.], &[1., 1., 1., 3., 3., 3.], "LINEAR");
     model.json["nodes"][0]["translation"] = json!([10, 0, 0]);
-    assert!(near(at(&model.load().unwrap(), 0.5, [1., 0., 0.]), [12., 0., 0.]));
+    assert!(near(at(&model.load().unwrap().scene, 0.5, [1., 0., 0.]), [12., 0., 0.]));
 }
 
 #[test]
@@ -90,7 +91,7 @@ fn a_child_moves_with_its_parent() {
     let mut model = animated("translation", "VEC3", &[0., 1.], &[0., 0., 0., 0., 4., 0.], "LINEAR");
     model.json["nodes"] =
         json!([{"children": [1], "scale": [2, 2, 2]}, {"mesh": 0, "translation": [1, 0, 0]}]);
-    assert!(near(at(&model.load().unwrap(), 0.5, [0.; 3]), [2., 2., 0.]));
+    assert!(near(at(&model.load().unwrap().scene, 0.5, [0.; 3]), [2., 2., 0.]));
 }
 
 #[test]
@@ -103,7 +104,7 @@ fn a_light_and_a_camera_move_with_their_node() {
         json!([{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}]);
     model.json["nodes"][0]["camera"] = 0.into();
     model.json["nodes"][0]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
-    let scene = model.load().unwrap().at(0.5).unwrap();
+    let scene = model.load().unwrap().scene.at(0.5).unwrap();
     assert!(near(scene.cameras[0].position, [0., 2., 0.]));
     let LightKind::Point { position, .. } = scene.lights[0].kind else { panic!("a point light") };
     assert!(near(position, [0., 2., 0.]));
@@ -112,14 +113,14 @@ fn a_light_and_a_camera_move_with_their_node() {
 #[test]
 fn a_bare_model_has_the_frames_of_its_animation_at_24_a_second() {
     let model = animated("translation", "VEC3", &[0., 2.5], &[0.; 6], "LINEAR");
-    let animation = model.load().unwrap().animation.unwrap();
+    let animation = model.load().unwrap().scene.animation.unwrap();
     assert_eq!((animation.frames, animation.fps), (60, 24.0));
 }
 
 #[test]
 fn an_animation_of_years_has_as_many_frames_as_can_be() {
     let model = animated("translation", "VEC3", &[0., 1e30], &[0.; 6], "LINEAR");
-    assert_eq!(model.load().unwrap().animation.unwrap().frames, 1_000_000);
+    assert_eq!(model.load().unwrap().scene.animation.unwrap().frames, 1_000_000);
 }
 
 #[test]
@@ -128,7 +129,7 @@ fn the_first_animation_is_played() {
     let mut second = model.json["animations"][0].clone();
     second["channels"] = json!([]);
     model.json["animations"].as_array_mut().unwrap().push(second);
-    assert!(near(at(&model.load().unwrap(), 0.5, [0.; 3]), [1., 0., 0.]));
+    assert!(near(at(&model.load().unwrap().scene, 0.5, [0.; 3]), [1., 0., 0.]));
 }
 
 #[test]
@@ -136,7 +137,7 @@ fn what_is_flat_at_one_time_is_not_there_then() {
     let scale = [0., 0., 0., 1., 1., 1.];
     let mut model = animated("scale", "VEC3", &[0., 1.], &scale, "LINEAR");
     model.json["nodes"][0]["scale"] = json!([0, 0, 0]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let there = |time| scene.at(time).unwrap().instances.len();
     assert_eq!([0.0, 0.5].map(there), [0, 1]);
 }
@@ -146,15 +147,16 @@ fn a_channel_of_an_extension_without_a_node_is_passed_over() {
     let mut model = animated("translation", "VEC3", &[0., 1.], &[0., 0., 0., 2., 0., 0.], "LINEAR");
     let pointer = json!({"sampler": 0, "target": {"path": "pointer", "extensions": {}}});
     model.json["animations"][0]["channels"].as_array_mut().unwrap().insert(0, pointer);
-    assert!(near(at(&model.load().unwrap(), 0.5, [0.; 3]), [1., 0., 0.]));
+    assert!(near(at(&model.load().unwrap().scene, 0.5, [0.; 3]), [1., 0., 0.]));
 }
 
 /// The model loads, stands still, and says so once.
 #[track_caller]
 fn assert_left_out(model: &Model) {
-    let scene = model.load().unwrap();
-    assert_warns(&scene, "animation channels are left out");
-    assert_eq!((scene.animation, scene.instances.len()), (None, 1));
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
+    assert_warns(&loaded, "animation channels are left out");
+    assert_eq!((&scene.animation, scene.instances.len()), (&None, 1));
 }
 
 #[test]
@@ -224,7 +226,7 @@ fn the_same_keys_named_a_million_times_take_no_memory() {
 }
 
 /// Loads a scene file beside an animated model that rises by 4 in a second.
-fn scene_file(text: &str, name: Option<&str>) -> envers::error::Result<Scene> {
+fn scene_file(text: &str, name: Option<&str>) -> envers::Result<Loaded> {
     let mut model = animated("translation", "VEC3", &[0., 1.], &[0., 0., 0., 0., 4., 0.], "LINEAR");
     let mut still = model.json["animations"][0].clone();
     still["channels"] = json!([]);
@@ -241,27 +243,28 @@ const FRAMES: &str = "[animation]\nframes = 24\n";
 
 #[test]
 fn a_scene_file_plays_the_animation_that_it_names_where_it_places_the_model() {
-    let scene = scene_file(FRAMES, Some("rise")).unwrap();
+    let scene = scene_file(FRAMES, Some("rise")).unwrap().scene;
     assert!(near(at(&scene, 0.5, [1., 0., 0.]), [12., 4., 0.]));
 }
 
 #[test]
 fn a_model_that_moves_by_itself_goes_round_as_well() {
     let orbit = "[[animation.orbit]]\nobject = \"m\"\naround = [0, 0, 0]\nperiod = 2\n";
-    let scene = scene_file(&format!("{FRAMES}{orbit}"), Some("rise")).unwrap();
+    let scene = scene_file(&format!("{FRAMES}{orbit}"), Some("rise")).unwrap().scene;
     assert!(near(at(&scene, 0.5, [0.; 3]), [0., 4., -10.]));
 }
 
 #[test]
 fn a_models_animation_begins_again_in_a_longer_one() {
-    let scene = scene_file(FRAMES, Some("rise")).unwrap();
+    let scene = scene_file(FRAMES, Some("rise")).unwrap().scene;
     assert_eq!(at(&scene, 3.25, [0.; 3]), at(&scene, 0.25, [0.; 3]));
 }
 
 #[test]
 fn a_scene_file_without_animation_plays_none_and_says_so() {
-    let scene = scene_file("", Some("rise")).unwrap();
-    assert_warns(&scene, "its animation is not played");
+    let loaded = scene_file("", Some("rise")).unwrap();
+    let scene = &loaded.scene;
+    assert_warns(&loaded, "its animation is not played");
     assert_eq!(scene.animation, None);
 }
 

@@ -30,21 +30,22 @@ fn texels(scene: &Scene) -> ([u32; 2], &Texels) {
 /// A scene whose picture could not be had, and why.
 #[track_caller]
 fn assert_placeholder(picture: &[u8], why: &str) {
-    let scene = showing(picture).load().unwrap();
-    assert_eq!(scene.report.placeholders.len(), 1);
-    assert_warns(&scene, why);
+    let loaded = showing(picture).load().unwrap();
+    assert_eq!(loaded.report.placeholders.len(), 1);
+    assert_warns(&loaded, why);
 }
 
 #[test]
 fn picture_is_unpacked() {
-    let scene = showing(&ktx([8, 4], COLOR)).load().unwrap();
+    let scene = showing(&ktx([8, 4], COLOR)).load().unwrap().scene;
     assert_eq!(texels(&scene), ([8, 4], &Texels::Bytes(vec![COLOR; 32])));
 }
 
 #[test]
 fn picture_of_floats_stays_one() {
     // 0.5, 1, 4 and 1.
-    let scene = showing(&ktx_of_floats([4, 4], [0x3800, 0x3C00, 0x4400, 0x3C00])).load().unwrap();
+    let scene =
+        showing(&ktx_of_floats([4, 4], [0x3800, 0x3C00, 0x4400, 0x3C00])).load().unwrap().scene;
     assert_eq!(texels(&scene), ([4, 4], &Texels::Floats(vec![[0.5, 1.0, 4.0, 1.0]; 16])));
 }
 
@@ -60,13 +61,13 @@ fn picture_may_be_packed_once_more_by_zstandard() {
     let mut packed = [header, &frame].concat();
     packed[44] = 2;
     packed[88] = frame.len() as u8;
-    let scene = showing(&packed).load().unwrap();
+    let scene = showing(&packed).load().unwrap().scene;
     assert_eq!(texels(&scene), ([8, 4], &Texels::Bytes(vec![COLOR; 32])));
 }
 
 #[test]
 fn picture_may_end_within_a_block() {
-    let scene = showing(&ktx([5, 3], COLOR)).load().unwrap();
+    let scene = showing(&ktx([5, 3], COLOR)).load().unwrap().scene;
     assert_eq!(texels(&scene), ([5, 3], &Texels::Bytes(vec![COLOR; 15])));
 }
 
@@ -77,7 +78,7 @@ fn picture_of_the_extension_comes_before_the_plain_one() {
     let plain = json!({"bufferView": view, "mimeType": "image/png"});
     model.json["images"].as_array_mut().unwrap().push(plain);
     model.json["textures"][0]["source"] = 1.into();
-    assert_eq!(texels(&model.load().unwrap()).0, [4, 4]);
+    assert_eq!(texels(&model.load().unwrap().scene).0, [4, 4]);
 }
 
 #[test]

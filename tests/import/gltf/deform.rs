@@ -1,6 +1,7 @@
 //! Morph targets, skins, and instances of one node.
 
 use super::*;
+use envers::Loaded;
 use envers::scene::animation::Animated;
 use serde_json::Value;
 
@@ -22,9 +23,9 @@ fn corner(scene: &Scene, time: f64) -> [f32; 3] {
 fn a_mesh_is_morphed_by_its_own_weights() {
     let mut model = morphing();
     model.json["meshes"][0]["weights"] = json!([0.5, 1]);
-    let scene = model.load().unwrap();
+    let Loaded { scene, report, .. } = model.load().unwrap();
     assert_eq!(scene.meshes[0].positions[0], [2.0, 0.0, 0.5]);
-    assert!(scene.warnings.is_empty() && scene.report.balances(), "{:?}", scene.warnings);
+    assert!(report.warnings.is_empty() && report.balances(), "{:?}", report.warnings);
 }
 
 #[test]
@@ -33,10 +34,10 @@ fn weights_of_a_node_come_before_those_of_its_mesh() {
     model.json["meshes"][0]["weights"] = json!([1, 1]);
     model.json["nodes"] = json!([{"mesh": 0, "weights": [0, 0]}, {"mesh": 0}]);
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
-    let scene = model.load().unwrap();
+    let Loaded { scene, report, .. } = model.load().unwrap();
     let first = |mesh: usize| scene.meshes[mesh].positions[0];
     assert_eq!((first(0), first(1)), ([0.0; 3], [2.0, 0.0, 1.0]));
-    assert!(scene.report.balances(), "{}", scene.report);
+    assert!(report.balances(), "{}", report);
 }
 
 #[test]
@@ -47,7 +48,7 @@ fn normals_are_morphed_too() {
     model.primitive()["attributes"]["NORMAL"] = normals.into();
     model.primitive()["targets"] = json!([{"NORMAL": turn}]);
     model.json["meshes"][0]["weights"] = json!([1]);
-    assert_eq!(model.load().unwrap().meshes[0].normals[0], [1.0, 0.0, 1.0]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].normals[0], [1.0, 0.0, 1.0]);
 }
 
 #[test]
@@ -63,7 +64,7 @@ fn morph_target_that_is_sparse() {
         .accessor(json!({"componentType": 5126, "type": "VEC3", "count": 3, "sparse": sparse}));
     model.primitive()["targets"] = json!([{"POSITION": target}]);
     model.json["meshes"][0]["weights"] = json!([1]);
-    let positions = &model.load().unwrap().meshes[0].positions;
+    let positions = &model.load().unwrap().scene.meshes[0].positions;
     assert_eq!(*positions, [[0., 0., 0.], [1., 0., 1.], [0., 1., 0.]]);
 }
 
@@ -90,7 +91,7 @@ fn animate_weights(model: &mut Model, values: &[f32], interpolation: &str) {
 fn weights_move_in_straight_lines() {
     let mut model = morphing();
     animate_weights(&mut model, &[0., 0., 1., 0.5], "LINEAR");
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!(corner(&scene, 0.0), [0.0; 3]);
     assert_eq!(corner(&scene, 0.5), [0.5, 0.0, 0.5]);
 }
@@ -101,14 +102,14 @@ fn weights_move_in_splines() {
     let values = [0., 0., 0., 0., 0., 0., 0., 0., 1., 0.5, 0., 0.];
     animate_weights(&mut model, &values, "CUBICSPLINE");
     // With slopes of 0 a spline is at 5/32 a quarter of its way.
-    assert_eq!(corner(&model.load().unwrap(), 0.25), [0.15625, 0.0, 0.15625]);
+    assert_eq!(corner(&model.load().unwrap().scene, 0.25), [0.15625, 0.0, 0.15625]);
 }
 
 #[test]
 fn weights_begin_again_with_the_animation() {
     let mut model = morphing();
     animate_weights(&mut model, &[0., 0., 1., 0.], "LINEAR");
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!(corner(&scene, 3.25), corner(&scene, 0.25));
 }
 
@@ -116,7 +117,7 @@ fn weights_begin_again_with_the_animation() {
 fn a_mesh_that_keeps_its_shape_stays_the_same_one() {
     let mut model = morphing();
     animate_weights(&mut model, &[0., 0., 1., 0.], "STEP");
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let mut poses = envers::scene::animation::Poses::new(&scene);
     let first = poses.pose(0.25).unwrap().meshes[0].clone();
     let second = poses.pose(0.5).unwrap().meshes[0].clone();
@@ -127,9 +128,10 @@ fn a_mesh_that_keeps_its_shape_stays_the_same_one() {
 fn weights_for_another_number_of_targets_leave_the_channel_out() {
     let mut model = morphing();
     animate_weights(&mut model, &[0., 0., 1.], "LINEAR");
-    let scene = model.load().unwrap();
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
     assert!(scene.animation.is_none());
-    assert_warns(&scene, "animation channels are left out");
+    assert_warns(&loaded, "animation channels are left out");
 }
 
 /// A triangle of which one corner hangs on each of three joints, which stand at `places`.
@@ -157,9 +159,10 @@ fn standing(scene: &Scene) -> [[f64; 3]; 3] {
 
 #[test]
 fn a_skin_stands_where_its_joints_are_and_not_its_node() {
-    let scene = skinned([[0., 0., 5.], [0., 0., 6.], [0., 0., 7.]]).load().unwrap();
+    let Loaded { scene, report, .. } =
+        skinned([[0., 0., 5.], [0., 0., 6.], [0., 0., 7.]]).load().unwrap();
     assert_eq!(standing(&scene), [[0., 0., 5.], [1., 0., 6.], [0., 1., 7.]]);
-    assert!(scene.warnings.is_empty() && scene.report.balances(), "{:?}", scene.warnings);
+    assert!(report.warnings.is_empty() && report.balances(), "{:?}", report.warnings);
 }
 
 #[test]
@@ -169,14 +172,14 @@ fn bind_matrices_bring_vertices_to_their_joints() {
     let binds = model.floats("MAT4", &[down; 3].concat());
     model.accessor_mut(binds)["count"] = 3.into();
     model.json["skins"][0]["inverseBindMatrices"] = binds.into();
-    assert_eq!(standing(&model.load().unwrap())[0], [0., 0., 4.]);
+    assert_eq!(standing(&model.load().unwrap().scene)[0], [0., 0., 4.]);
 }
 
 #[test]
 fn joints_that_no_scene_shows_are_posed_even_so() {
     let mut model = skinned([[0., 0., 5.]; 3]);
     model.json["scenes"][0]["nodes"] = json!([0]);
-    assert_eq!(standing(&model.load().unwrap())[0], [0., 0., 5.]);
+    assert_eq!(standing(&model.load().unwrap().scene)[0], [0., 0., 5.]);
 }
 
 fn animate_joint(model: &mut Model) {
@@ -193,7 +196,7 @@ fn animate_joint(model: &mut Model) {
 fn a_skin_moves_with_its_joints() {
     let mut model = skinned([[0.; 3]; 3]);
     animate_joint(&mut model);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let moved = standing(&scene.at(0.5).unwrap());
     assert_eq!(moved, [[0., 0., 0.], [1., 0., 4.], [0., 1., 0.]]);
 }
@@ -216,7 +219,7 @@ fn a_skin_moves_where_a_scene_places_it() {
         file = "m.glb"
         translate = [0, 0, 3]
     "#;
-    let scene = folder.load("s.toml", scene).unwrap();
+    let scene = folder.load("s.toml", scene).unwrap().scene;
     let movers = scene.animation.as_ref().unwrap().movers.iter();
     assert_eq!(movers.filter(|m| matches!(m, Animated::Mesh { .. })).count(), 1);
     let posed = scene.at(0.5).unwrap();
@@ -232,7 +235,7 @@ fn a_skin_in_a_scene_without_animation_stands_as_its_file_places_it() {
     let mut model = skinned([[0., 0., 5.]; 3]);
     animate_joint(&mut model);
     folder.write("m.glb", model.glb());
-    let scene = folder.load("s.toml", "[[model]]\nfile = \"m.glb\"\n").unwrap();
+    let scene = folder.load("s.toml", "[[model]]\nfile = \"m.glb\"\n").unwrap().scene;
     assert_eq!(standing(&scene)[0], [0., 0., 5.]);
 }
 
@@ -282,7 +285,7 @@ fn one_node_has_many_instances() {
     let attributes = json!({"TRANSLATION": places, "SCALE": scales});
     model.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
     model.json["nodes"][0]["translation"] = json!([0, 0, 1]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 2));
     let corner = |i: usize| scene.instances[i].to_world([1.0, 0.0, 0.0]).to_array();
     assert_eq!((corner(0), corner(1)), ([2., 0., 1.], [3., 2., 1.]));

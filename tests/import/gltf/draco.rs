@@ -1,8 +1,8 @@
 //! KHR_draco_mesh_compression.
 
 use draco_core::{DataType, GeometryAttributeType as Kind};
-use envers::load::{Limit, Limits, Options};
-use envers::scene::DropReason;
+use envers::Loaded;
+use envers::{DropReason, Limit, Limits, LoadOptions};
 
 use super::*;
 use envers_testing::packed::{DRACO, bytes, draco, packed};
@@ -36,14 +36,14 @@ fn corners(scene: &Scene) -> Vec<[[i32; 3]; 3]> {
 #[test]
 fn triangles_are_those_that_were_packed() {
     let (a, b, c, d) = ([0, 0, 0], [1000, 0, 0], [1000, 1000, 0], [0, 1000, 0]);
-    assert_eq!(corners(&square().load().unwrap()), [[a, b, c], [a, c, d]]);
+    assert_eq!(corners(&square().load().unwrap().scene), [[a, b, c], [a, c, d]]);
 }
 
 #[test]
 fn triangles_of_a_strip_are_packed_as_triangles() {
     let mut model = square();
     model.primitive()["mode"] = 5.into();
-    assert_eq!(corners(&model.load().unwrap()), corners(&square().load().unwrap()));
+    assert_eq!(corners(&model.load().unwrap().scene), corners(&square().load().unwrap().scene));
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn attributes_stay_with_their_vertices() {
         ],
         &HALVES,
     );
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let mesh = &scene.meshes[0];
     for (i, [x, y, _]) in mesh.positions.iter().enumerate() {
         let was = SQUARE.chunks(3).position(|p| p[0] == *x && p[1] == *y).unwrap();
@@ -84,7 +84,7 @@ fn bytes_are_normalised_as_their_accessor_says() {
     }
     let ids = json!({"POSITION": 0, "COLOR_0": 1});
     model.primitive()["extensions"] = json!({ DRACO: {"bufferView": view, "attributes": ids} });
-    assert_eq!(model.load().unwrap().meshes[0].colors, [[1.0, 0.0, 0.0]; 4]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].colors, [[1.0, 0.0, 0.0]; 4]);
 }
 
 #[test]
@@ -92,9 +92,9 @@ fn faces_are_counted_as_those_of_other_meshes() {
     let mut positions = SQUARE;
     positions[9..].copy_from_slice(&SQUARE[..3]);
     let model = packed(&[("POSITION", Kind::Position, 3, &positions)], &HALVES);
-    let scene = model.load().unwrap();
-    assert_eq!((scene.report.read, scene.report.handed_over), (2, 1));
-    assert_eq!(scene.report.dropped, [(DropReason::Degenerate, 1)].into());
+    let Loaded { report, .. } = model.load().unwrap();
+    assert_eq!((report.read, report.handed_over), (2, 1));
+    assert_eq!(report.dropped, [(DropReason::Degenerate, 1)].into());
 }
 
 /// Returns the same model with other data.
@@ -119,8 +119,9 @@ fn where_data_are_damaged_those_that_are_not_packed_are_read() {
     let positions = model.floats("VEC3", &SQUARE[..9]);
     model.primitive()["attributes"]["POSITION"] = positions.into();
     model.primitive().as_object_mut().unwrap().remove("indices");
-    let scene = model.load().unwrap();
-    assert_warns(&scene, "what is not packed is read instead");
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
+    assert_warns(&loaded, "what is not packed is read instead");
     assert_eq!(scene.triangle_count(), 1);
 }
 
@@ -137,8 +138,8 @@ fn more_triangles_than_the_limit_are_an_error_that_names_it() {
     let folder = Folder::new();
     let path = folder.write("model.glb", square().glb());
     let limits = Limits::default().with(Limit::Triangles, 1);
-    let options = Options { limits, ..Options::default() };
-    let error = envers::load::load_with(&path, &options).unwrap_err().to_string();
+    let options = LoadOptions::default().limits(limits);
+    let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("larger than the limits allow"), "{error}");
 }
 
@@ -150,7 +151,7 @@ fn each_attribute_that_is_unpacked_counts_towards_the_elements() {
     let folder = Folder::new();
     let path = folder.write("model.glb", model.glb());
     let limits = Limits::default().with(Limit::Elements, 100);
-    let options = Options { limits, ..Options::default() };
-    let error = envers::load::load_with(&path, &options).unwrap_err().to_string();
+    let options = LoadOptions::default().limits(limits);
+    let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("elements"), "{error}");
 }

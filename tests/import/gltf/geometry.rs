@@ -1,21 +1,22 @@
 //! Triangles, accessors and vertex attributes.
 
 use super::*;
+use envers::Loaded;
 use proptest::prelude::*;
 
 #[test]
 fn triangle_without_indices() {
-    let scene = Model::triangle().load().unwrap();
+    let Loaded { scene, report, .. } = Model::triangle().load().unwrap();
     assert_eq!(scene.meshes[0].positions, [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]]);
     assert_eq!(scene.meshes[0].triangles, [[0, 1, 2]]);
-    assert!(scene.warnings.is_empty(), "{:?}", scene.warnings);
+    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
 }
 
 #[test]
 fn glb_is_the_same_as_gltf() {
     let model = Model::triangle();
-    let scene = Folder::new().load("model.glb", model.glb()).unwrap();
-    assert_eq!(scene.meshes, model.load().unwrap().meshes);
+    let scene = Folder::new().load("model.glb", model.glb()).unwrap().scene;
+    assert_eq!(scene.meshes, model.load().unwrap().scene.meshes);
 }
 
 #[test]
@@ -26,7 +27,7 @@ fn indices_of_one_two_and_four_bytes() {
             [3u32, 1, 0].iter().flat_map(|i| i.to_le_bytes()[..size].to_vec()).collect();
         let indices = model.typed(component, "SCALAR", size, &bytes);
         model.primitive()["indices"] = indices.into();
-        assert_eq!(model.load().unwrap().meshes[0].triangles, [[3, 1, 0]], "{size} bytes");
+        assert_eq!(model.load().unwrap().scene.meshes[0].triangles, [[3, 1, 0]], "{size} bytes");
     }
 }
 
@@ -34,7 +35,7 @@ fn indices_of_one_two_and_four_bytes() {
 fn strip_winds_all_its_triangles_alike() {
     let mut model = Model::parabola(5);
     model.primitive()["mode"] = 5.into();
-    assert_eq!(model.load().unwrap().meshes[0].triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].triangles, [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
 }
 
 #[test]
@@ -43,7 +44,7 @@ fn fan_with_indices() {
     let indices = model.shorts(&[3, 0, 1, 2]);
     model.primitive()["indices"] = indices.into();
     model.primitive()["mode"] = 6.into();
-    assert_eq!(model.load().unwrap().meshes[0].triangles, [[0, 1, 3], [1, 2, 3]]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].triangles, [[0, 1, 3], [1, 2, 3]]);
 }
 
 #[test]
@@ -51,9 +52,10 @@ fn points_and_lines_are_counted_and_not_drawn() {
     for (mode, lost) in [(0, 3), (1, 2), (2, 3), (3, 2)] {
         let mut model = Model::triangle();
         model.primitive()["mode"] = mode.into();
-        let scene = model.load().unwrap();
+        let loaded = model.load().unwrap();
+        let scene = &loaded.scene;
         assert_eq!(scene.triangle_count(), 0);
-        assert_warns(&scene, &format!("{lost} points, lines or curves are left out"));
+        assert_warns(&loaded, &format!("{lost} points, lines or curves are left out"));
     }
 }
 
@@ -69,7 +71,7 @@ fn interleaved_attributes() {
     let normals = model.accessor(shared);
     model.accessor_mut(normals)["byteOffset"] = 12.into();
     model.primitive()["attributes"] = json!({"POSITION": positions, "NORMAL": normals});
-    let mesh = &model.load().unwrap().meshes[0];
+    let mesh = &model.load().unwrap().scene.meshes[0];
     assert_eq!(mesh.positions, [[0.; 3], [1.; 3], [2.; 3]]);
     assert_eq!(mesh.normals, [[0., 0., 1.]; 3]);
 }
@@ -80,7 +82,7 @@ fn normalised_bytes_are_texture_coordinates_from_0_to_1() {
     let uvs = model.typed(5121, "VEC2", 1, &[0, 255, 51, 0, 0, 0]);
     model.accessor_mut(uvs)["normalized"] = true.into();
     model.primitive()["attributes"]["TEXCOORD_0"] = uvs.into();
-    assert_eq!(model.load().unwrap().meshes[0].uvs, [[0., 1.], [0.2, 0.], [0., 0.]]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].uvs, [[0., 1.], [0.2, 0.], [0., 0.]]);
 }
 
 #[test]
@@ -91,7 +93,7 @@ fn quantised_positions() {
         [0i16, 0, 0, 300, 0, 0, 0, -7, 0].iter().flat_map(|x| x.to_le_bytes()).collect();
     let positions = model.typed(5122, "VEC3", 2, &bytes);
     model.primitive()["attributes"]["POSITION"] = positions.into();
-    assert_eq!(model.load().unwrap().meshes[0].positions[2], [0., -7., 0.]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].positions[2], [0., -7., 0.]);
 }
 
 #[test]
@@ -105,7 +107,7 @@ fn sparse_accessor_replaces_elements() {
         "indices": {"bufferView": indices, "componentType": 5121},
         "values": {"bufferView": values},
     });
-    let positions = &model.load().unwrap().meshes[0].positions;
+    let positions = &model.load().unwrap().scene.meshes[0].positions;
     assert_eq!(*positions, [[0., 0., 0.], [1., 0., 0.], [5., 6., 7.]]);
 }
 
@@ -114,7 +116,7 @@ fn accessor_without_a_view_is_zero() {
     let mut model = Model::triangle();
     let colors = model.accessor(json!({"componentType": 5126, "type": "VEC3", "count": 3}));
     model.primitive()["attributes"]["COLOR_0"] = colors.into();
-    assert_eq!(model.load().unwrap().meshes[0].colors, [[0.; 3]; 3]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].colors, [[0.; 3]; 3]);
 }
 
 #[test]
@@ -123,12 +125,12 @@ fn vertex_colours_with_alpha_in_bytes() {
     let colors = model.typed(5121, "VEC4", 1, &[255, 0, 51, 9, 0, 0, 0, 9, 255, 255, 255, 9]);
     model.accessor_mut(colors)["normalized"] = true.into();
     model.primitive()["attributes"]["COLOR_0"] = colors.into();
-    assert_eq!(model.load().unwrap().meshes[0].colors[0], [1., 0., 0.2]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].colors[0], [1., 0., 0.2]);
 }
 
 #[test]
 fn without_normals_a_mesh_is_flat() {
-    assert!(Model::triangle().load().unwrap().meshes[0].normals.is_empty());
+    assert!(Model::triangle().load().unwrap().scene.meshes[0].normals.is_empty());
 }
 
 #[test]
@@ -136,9 +138,10 @@ fn attribute_of_another_length_is_ignored_with_a_warning() {
     let mut model = Model::triangle();
     let normals = model.floats("VEC3", &[0., 0., 1.]);
     model.primitive()["attributes"]["NORMAL"] = normals.into();
-    let scene = model.load().unwrap();
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
     assert!(scene.meshes[0].normals.is_empty());
-    assert_warns(&scene, "meshes[0].primitives[0].attributes.NORMAL (1 for 3 vertices)");
+    assert_warns(&loaded, "meshes[0].primitives[0].attributes.NORMAL (1 for 3 vertices)");
 }
 
 #[test]
@@ -149,7 +152,7 @@ fn primitives_of_a_mesh_are_meshes_with_their_own_material() {
     model.primitive()["material"] = 1.into();
     second["material"] = 0.into();
     model.json["meshes"][0]["primitives"].as_array_mut().unwrap().push(second);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let names = scene.instances.iter().map(|i| &*scene.materials[i.material.0 as usize].name);
     assert_eq!(names.collect::<Vec<_>>(), ["b", "a"]);
 }
@@ -195,12 +198,12 @@ proptest! {
         let indices: Vec<u8> = indices.iter().map(|i| i % points.len() as u8).collect();
         let [packed, apart] =
             [0, gap].map(|gap| spread_out(&points, &indices, size, gap).load().unwrap());
-        prop_assert_eq!(packed.meshes, apart.meshes);
+        prop_assert_eq!(packed.scene.meshes, apart.scene.meshes);
     }
 }
 
 #[test]
 fn a_vrm_file_is_a_binary_one() {
-    let scene = Folder::new().load("avatar.vrm", Model::triangle().glb()).unwrap();
+    let scene = Folder::new().load("avatar.vrm", Model::triangle().glb()).unwrap().scene;
     assert_eq!(scene.triangle_count(), 1);
 }

@@ -1,5 +1,6 @@
 //! Lights, cameras, and what stands still.
 
+use envers::Loaded;
 use std::f32::consts::PI;
 
 use envers::scene::{LightKind, Projection};
@@ -13,7 +14,7 @@ fn with_light(light: serde_json::Value, node: serde_json::Value) -> Scene {
     model.json["nodes"] = json!([{"mesh": 0}, node]);
     model.json["nodes"][1]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
-    model.load().unwrap()
+    model.load().unwrap().scene
 }
 
 /// Counts the lights that are the file's own: a bare model gets a little ambient light besides.
@@ -59,6 +60,10 @@ fn spot_of_any_cone_is_valid() {
 }
 
 fn with_camera(camera: serde_json::Value) -> Scene {
+    load_with_camera(camera).scene
+}
+
+fn load_with_camera(camera: serde_json::Value) -> Loaded {
     let mut model = Model::triangle();
     model.json["cameras"] = json!([camera]);
     model.json["nodes"] =
@@ -87,8 +92,8 @@ fn orthographic_camera_sees_twice_its_ymag() {
 
 #[test]
 fn camera_that_cannot_see_is_left_out_with_a_warning() {
-    let scene =
-        with_camera(json!({"type": "perspective", "perspective": {"yfov": 7.0, "znear": 1}}));
-    assert_eq!(scene.cameras[0].name, "framing");
-    assert_warns(&scene, "cameras[0]");
+    let loaded =
+        load_with_camera(json!({"type": "perspective", "perspective": {"yfov": 7.0, "znear": 1}}));
+    assert_eq!(loaded.scene.cameras[0].name, "framing");
+    assert_warns(&loaded, "cameras[0]");
 }

@@ -1,12 +1,13 @@
 //! Materials on a Phong shader.
 
 use super::*;
+use envers::Loaded;
 use envers::scene::{ShadingParams, Transfer};
 use envers::surface::{self, TextureContext};
 
 #[test]
 fn primitive_without_material_is_a_neutral_grey() {
-    let scene = Model::triangle().load().unwrap();
+    let scene = Model::triangle().load().unwrap().scene;
     assert_eq!(*material(&scene), Material::default());
 }
 
@@ -16,7 +17,7 @@ fn metallic_roughness_on_phong() {
     model.material(json!({"pbrMetallicRoughness": {
         "baseColorFactor": [0.5, 0.25, 1.0, 1.0], "metallicFactor": 0.25, "roughnessFactor": 0.5,
     }}));
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let m = material(&scene);
     assert!(close(m.diffuse, [0.375, 0.1875, 0.75]), "{}", m.diffuse);
     assert!(close(m.specular, [0.155, 0.0925, 0.28]), "{}", m.specular);
@@ -25,7 +26,7 @@ fn metallic_roughness_on_phong() {
 }
 
 /// A triangle with texture coordinates and these pictures, of one pixel each, as textures.
-fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Scene {
+fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Loaded {
     let mut model = Model::triangle();
     let uvs = model.floats("VEC2", &[0.0; 6]);
     model.primitive()["attributes"]["TEXCOORD_0"] = uvs.into();
@@ -39,8 +40,9 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Scene {
 }
 
 /// Returns the shading parameters of the material at a point of this vertex colour.
-fn tinted(scene: &Scene, tint: Vec3) -> ShadingParams {
-    assert_eq!(scene.warnings, [""; 0]);
+fn tinted(loaded: &Loaded, tint: Vec3) -> ShadingParams {
+    let Loaded { scene, report, .. } = loaded;
+    assert_eq!(report.warnings, [""; 0]);
     surface::shading_params(
         scene,
         material(scene),
@@ -48,53 +50,53 @@ fn tinted(scene: &Scene, tint: Vec3) -> ShadingParams {
     )
 }
 
-fn finish(scene: &Scene) -> ShadingParams {
-    tinted(scene, Vec3::ONE)
+fn finish(loaded: &Loaded) -> ShadingParams {
+    tinted(loaded, Vec3::ONE)
 }
 
 #[test]
 fn metal_and_roughness_are_green_and_blue_of_their_texture() {
-    let scene = pictured(
+    let loaded = pictured(
         &[[0, 128, 51, 255]],
         json!({"pbrMetallicRoughness": {
             "metallicRoughnessTexture": {"index": 0}, "roughnessFactor": 255.0 / 256.0,
         }}),
     );
-    let m = finish(&scene);
+    let m = finish(&loaded);
     assert!(close(m.diffuse, [0.8; 3]), "{}", m.diffuse);
     assert!((m.shininess - 30.0).abs() < 1e-3, "{}", m.shininess);
 }
 
 #[test]
 fn a_metal_is_coloured_by_its_base_colour_texture() {
-    let scene = pictured(
+    let loaded = pictured(
         &[[255, 0, 0, 255]],
         json!({"pbrMetallicRoughness": {
             "baseColorTexture": {"index": 0}, "baseColorFactor": [0.5, 1.0, 1.0, 1.0],
             "roughnessFactor": 0.0,
         }}),
     );
-    let m = finish(&scene);
+    let m = finish(&loaded);
     assert!(close(m.specular, [0.5, 0.0, 0.0]) && close(m.reflect, [0.5, 0.0, 0.0]));
 }
 
 #[test]
 fn a_metal_is_coloured_by_its_vertices() {
-    let scene = pictured(&[], json!({}));
-    assert!(close(tinted(&scene, Vec3::Y).specular, [0.0, 1.0, 0.0]));
+    let loaded = pictured(&[], json!({}));
+    assert!(close(tinted(&loaded, Vec3::Y).specular, [0.0, 1.0, 0.0]));
 }
 
 #[test]
 fn specular_factor_and_colour_change_what_is_no_metal() {
     let specular = json!({"specularFactor": 0.5, "specularColorFactor": [1.0, 0.5, 0.0]});
-    let scene = pictured(
+    let loaded = pictured(
         &[],
         json!({
             "pbrMetallicRoughness": {"metallicFactor": 0.0},
             "extensions": {"KHR_materials_specular": specular},
         }),
     );
-    assert!(close(finish(&scene).specular, [0.02, 0.01, 0.0]));
+    assert!(close(finish(&loaded).specular, [0.02, 0.01, 0.0]));
 }
 
 #[test]
@@ -102,14 +104,14 @@ fn specular_textures_are_alpha_and_colour() {
     let specular = json!({
         "specularTexture": {"index": 0}, "specularColorTexture": {"index": 1},
     });
-    let scene = pictured(
+    let loaded = pictured(
         &[[9, 9, 9, 51], [255, 255, 0, 255]],
         json!({
             "pbrMetallicRoughness": {"metallicFactor": 0.0},
             "extensions": {"KHR_materials_specular": specular},
         }),
     );
-    assert!(close(finish(&scene).specular, [0.008, 0.008, 0.0]));
+    assert!(close(finish(&loaded).specular, [0.008, 0.008, 0.0]));
 }
 
 #[test]
@@ -119,7 +121,8 @@ fn occlusion_is_red_by_its_strength() {
         json!({
             "occlusionTexture": {"index": 0, "strength": 0.5},
         }),
-    );
+    )
+    .scene;
     let share = surface::occlusion(&scene, material(&scene), &TextureContext::default());
     // 1 + 0.5 · (0.2 − 1).
     assert!((share - 0.6).abs() < 1e-6, "{share}");
@@ -135,7 +138,7 @@ fn a_normal_texture_has_its_scale_and_makes_tangents() {
     model.json["images"] = json!([{"uri": data_uri(&png(&[[128, 128, 255, 255]]))}]);
     model.json["textures"] = json!([{"source": 0}]);
     model.material(json!({"normalTexture": {"index": 0, "scale": 0.5}}));
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!(material(&scene).normal_map.unwrap().scale, 0.5);
     assert_eq!(scene.meshes[0].tangents, [[1., 0., 0., 1.]; 3]);
     let texture = material(&scene).normal_map.unwrap().texture;
@@ -152,12 +155,12 @@ fn tangents_of_the_file_are_kept() {
     model.json["images"] = json!([{"uri": data_uri(&png(&[[128, 128, 255, 255]]))}]);
     model.json["textures"] = json!([{"source": 0}]);
     model.material(json!({"normalTexture": {"index": 0}}));
-    assert_eq!(model.load().unwrap().meshes[0].tangents, [[0., 1., 0., -1.]; 3]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].tangents, [[0., 1., 0., -1.]; 3]);
 }
 
 #[test]
 fn without_a_normal_texture_there_are_no_tangents() {
-    let scene = pictured(&[[9; 4]], json!({"occlusionTexture": {"index": 0}}));
+    let scene = pictured(&[[9; 4]], json!({"occlusionTexture": {"index": 0}})).scene;
     assert!(scene.meshes[0].tangents.is_empty());
 }
 
@@ -168,7 +171,7 @@ fn emission_with_its_strength() {
         "emissiveFactor": [1.0, 0.5, 0.0],
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}},
     }));
-    assert!(close(material(&model.load().unwrap()).emission, [4.0, 2.0, 0.0]));
+    assert!(close(material(&model.load().unwrap().scene).emission, [4.0, 2.0, 0.0]));
 }
 
 #[test]
@@ -178,7 +181,7 @@ fn unlit_is_emission_alone() {
         "pbrMetallicRoughness": {"baseColorFactor": [0.1, 0.2, 0.3, 1.0]},
         "extensions": {"KHR_materials_unlit": {}},
     }));
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let m = material(&scene);
     assert!(close(m.emission, [0.1, 0.2, 0.3]));
     assert_eq!((m.diffuse, m.specular), (Vec3::ZERO, Vec3::ZERO));
@@ -186,19 +189,19 @@ fn unlit_is_emission_alone() {
 
 #[test]
 fn unlit_is_coloured_by_its_vertices() {
-    let scene = pictured(
+    let loaded = pictured(
         &[],
         json!({
             "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1.0]},
             "extensions": {"KHR_materials_unlit": {}},
         }),
     );
-    assert!(close(tinted(&scene, Vec3::Y).emission, [0.0, 0.5, 0.0]));
+    assert!(close(tinted(&loaded, Vec3::Y).emission, [0.0, 0.5, 0.0]));
 }
 
 #[test]
 fn specular_glossiness_texture_is_colour_and_gloss() {
-    let scene = pictured(
+    let loaded = pictured(
         &[[255, 0, 0, 128]],
         json!({"extensions": {
             "KHR_materials_pbrSpecularGlossiness": {
@@ -206,7 +209,7 @@ fn specular_glossiness_texture_is_colour_and_gloss() {
             },
         }}),
     );
-    let m = finish(&scene);
+    let m = finish(&loaded);
     assert!(close(m.specular, [1.0, 0.0, 0.0]) && (m.shininess - 30.0).abs() < 1e-3);
 }
 
@@ -217,7 +220,7 @@ fn specular_glossiness() {
         "diffuseFactor": [0.1, 0.2, 0.3, 1.0], "specularFactor": [0.4, 0.5, 0.6],
         "glossinessFactor": 0.5,
     }}}));
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let m = material(&scene);
     assert!(close(m.diffuse, [0.1, 0.2, 0.3]) && close(m.specular, [0.4, 0.5, 0.6]));
     assert!((m.shininess - 30.0).abs() < 1e-4);

@@ -1,8 +1,9 @@
 //! The tree of nodes.
 
+use envers::Loaded;
 use glam::DVec3;
 
-use envers::load::{Limit, Limits, Options, load_with};
+use envers::{Limit, Limits, LoadOptions};
 
 use super::*;
 
@@ -14,7 +15,7 @@ fn child_transform_stands_within_its_parents() {
         {"children": [1], "translation": [10, 0, 0], "rotation": [0, 0, half, half]},
         {"mesh": 0, "translation": [1, 0, 0], "scale": [2, 3, 4]},
     ]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     // The second corner: scaled to (2, 0, 0), moved to (3, 0, 0), turned to (0, 3, 0), moved.
     let corner = scene.instances[0].to_world([1., 0., 0.]);
     assert!((corner - DVec3::new(10., 3., 0.)).length() < 1e-7, "{corner}");
@@ -24,7 +25,7 @@ fn child_transform_stands_within_its_parents() {
 fn matrix_is_read_by_columns() {
     let mut model = Model::triangle();
     model.json["nodes"][0]["matrix"] = json!([0, 2, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 7, 8, 9, 1]);
-    let corner = model.load().unwrap().instances[0].to_world([1., 0., 0.]);
+    let corner = model.load().unwrap().scene.instances[0].to_world([1., 0., 0.]);
     assert_eq!(corner, DVec3::new(7., 10., 9.));
 }
 
@@ -33,7 +34,7 @@ fn mesh_of_two_nodes_is_stored_once() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [0, 0, 5]}]);
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!((scene.meshes.len(), scene.instances.len()), (1, 2));
 }
 
@@ -44,7 +45,7 @@ fn default_scene_is_shown_alone() {
     model.json["scenes"] = json!([{"nodes": [1, 2]}, {"nodes": [2]}]);
     for (scene, instances) in [(json!(0), 2), (json!(1), 1), (json!(null), 2)] {
         model.json["scene"] = scene;
-        assert_eq!(model.load().unwrap().instances.len(), instances);
+        assert_eq!(model.load().unwrap().scene.instances.len(), instances);
     }
 }
 
@@ -53,7 +54,7 @@ fn without_scenes_all_nodes_are_shown() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"children": [1]}, {"mesh": 0}, {"mesh": 0}]);
     model.json.as_object_mut().unwrap().retain(|key, _| !key.starts_with("scene"));
-    assert_eq!(model.load().unwrap().instances.len(), 2);
+    assert_eq!(model.load().unwrap().scene.instances.len(), 2);
 }
 
 #[test]
@@ -65,17 +66,18 @@ fn chain_of_a_hundred_thousand_nodes() {
     let folder = Folder::new();
     model.load_in(&folder).unwrap_err();
     let limits = Limits::default().with(Limit::Depth, 100_000);
-    let options = Options { limits, ..Options::default() };
-    assert_eq!(load_with(&folder.path("model.gltf"), &options).unwrap().triangle_count(), 1);
+    let options = LoadOptions::default().limits(limits);
+    assert_eq!(options.load(&folder.path("model.gltf")).unwrap().scene.triangle_count(), 1);
 }
 
 #[test]
 fn scale_of_zero_is_not_drawn_with_a_warning() {
     let mut model = Model::triangle();
     model.json["nodes"][0]["scale"] = json!([1, 0, 1]);
-    let scene = model.load().unwrap();
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
     assert!(scene.instances.is_empty());
-    assert_warns(&scene, "their scale is 0 along some direction, at nodes[0].mesh");
+    assert_warns(&loaded, "their scale is 0 along some direction, at nodes[0].mesh");
 }
 
 #[test]
@@ -83,10 +85,11 @@ fn child_that_stands_among_the_roots_is_placed_by_its_parent() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"mesh": 0}, {"children": [0], "translation": [5, 0, 0]}]);
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
-    let scene = model.load().unwrap();
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
     assert_eq!(scene.instances.len(), 1);
     assert_eq!(scene.instances[0].transform.translation.x, 5.0);
-    assert_warns(&scene, "stand twice");
+    assert_warns(&loaded, "stand twice");
 }
 
 #[test]
@@ -100,8 +103,8 @@ fn a_node_that_is_not_visible_hides_all_that_hangs_on_it() {
         {"mesh": 0, "translation": [5, 0, 0], "extensions": visible(true)},
     ]);
     model.json["scenes"] = json!([{"nodes": [0, 2]}]);
-    let scene = model.load().unwrap();
-    assert_eq!(scene.warnings, [""; 0]);
+    let Loaded { scene, report, .. } = model.load().unwrap();
+    assert_eq!(report.warnings, [""; 0]);
     assert_eq!(scene.instances.len(), 1);
     assert_eq!(scene.instances[0].transform.translation, DVec3::new(5.0, 0.0, 0.0));
 }
@@ -112,6 +115,6 @@ fn extensions_of_what_is_not_seen_are_passed_over_also_where_they_are_required()
     let names = json!(["OMI_physics_body", "EXT_structural_metadata", "KHR_audio_emitter"]);
     model.json["extensionsUsed"] = names.clone();
     model.json["extensionsRequired"] = names;
-    let scene = model.load().unwrap();
-    assert_eq!(scene.warnings, [""; 0]);
+    let Loaded { report, .. } = model.load().unwrap();
+    assert_eq!(report.warnings, [""; 0]);
 }

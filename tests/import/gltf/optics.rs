@@ -1,6 +1,7 @@
 //! Metals that mirror, transmission, volumes, alpha.
 
 use super::*;
+use envers::Loaded;
 use envers::geometry::PrimitiveId;
 use envers::scene::ShadingParams;
 use envers::surface::TextureContext;
@@ -11,8 +12,8 @@ use serde_json::Value;
 fn made(source: Value) -> Material {
     let mut model = Model::triangle();
     model.material(source);
-    let scene = model.load().unwrap();
-    let said: Vec<&String> = scene.warnings.iter().filter(|w| !w.contains("not closed")).collect();
+    let Loaded { scene, report, .. } = model.load().unwrap();
+    let said: Vec<&String> = report.warnings.iter().filter(|w| !w.contains("not closed")).collect();
     assert_eq!(said, [""; 0]);
     material(&scene).clone()
 }
@@ -40,7 +41,7 @@ fn pictured(pixel: [u8; 4], mut source: Value) -> Scene {
     let uvs = model.floats("VEC2", &[0.0; 6]);
     model.primitive()["attributes"]["TEXCOORD_0"] = uvs.into();
     model.material(source);
-    model.load().unwrap()
+    model.load().unwrap().scene
 }
 
 fn metal(roughness: f32) -> Value {
@@ -172,7 +173,7 @@ fn a_volume_at_no_distance_absorbs_nothing() {
         // The standard wants it above 0, which is a warning.
         let mut model = Model::triangle();
         model.material(glass([1.0; 4], extensions));
-        let scene = model.load().unwrap();
+        let scene = model.load().unwrap().scene;
         assert_eq!(material(&scene).absorption, Vec3::ZERO);
     }
 }
@@ -204,9 +205,10 @@ fn alpha_beside_transmission_is_left_out_with_a_warning() {
     source["alphaMode"] = "BLEND".into();
     let mut model = Model::triangle();
     model.material(source);
-    let scene = model.load().unwrap();
-    assert_eq!((material(&scene).transmit, material(&scene).ior), (Vec3::ONE, 1.5));
-    assert_warns(&scene, "the alpha is left out");
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
+    assert_eq!((material(scene).transmit, material(scene).ior), (Vec3::ONE, 1.5));
+    assert_warns(&loaded, "the alpha is left out");
 }
 
 #[test]
@@ -222,7 +224,7 @@ fn transmission_and_volume_can_be_required() {
     model.json["extensionsRequired"] =
         json!(["KHR_materials_transmission", "KHR_materials_volume", "KHR_materials_ior"]);
     model.json["extensionsUsed"] = model.json["extensionsRequired"].clone();
-    assert_eq!(model.load().unwrap().warnings, [""; 0]);
+    assert_eq!(model.load().unwrap().report.warnings, [""; 0]);
 }
 
 /// Returns the shading parameters of the material.
@@ -239,7 +241,7 @@ fn a_transmission_texture_counts_point_by_point() {
         "transmissionFactor": 0.5, "transmissionTexture": {"index": 0},
     }});
     model.material(glass([1.0; 4], extension));
-    assert!(close(finish(&model.load().unwrap()).transmit, [0.1; 3]));
+    assert!(close(finish(&model.load().unwrap().scene).transmit, [0.1; 3]));
 }
 
 #[test]
@@ -249,7 +251,7 @@ fn blended_alpha_is_seen_straight_through() {
     source["emissiveFactor"] = json!([1.0, 1.0, 1.0]);
     let mut model = Model::triangle();
     model.material(source);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let (m, f) = (material(&scene), finish(&scene));
     assert_eq!((f.transmit, m.thin, m.ior), (Vec3::splat(0.75), true, 1.0));
     assert!(close(f.diffuse, [1.0, 0.5, 0.25]) && close(f.emission, [0.25; 3]));
@@ -267,7 +269,7 @@ fn the_alpha_of_vertices_is_blended() {
     let colors = model.floats("VEC4", &[1., 1., 1., 0.5, 1., 1., 1., 0.5, 1., 1., 1., 0.5]);
     model.primitive()["attributes"]["COLOR_0"] = colors.into();
     model.material(json!({"alphaMode": "BLEND"}));
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!(scene.meshes[0].alphas, [0.5; 3]);
     assert!(material(&scene).coverage.is_some());
 }

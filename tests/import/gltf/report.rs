@@ -1,7 +1,7 @@
 //! The counts in a file's load report.
 
 use super::*;
-use envers::scene::{DropReason, LoadReport};
+use envers::{DropReason, LoadReport};
 
 fn report(model: &Model) -> LoadReport {
     let report = model.load().unwrap().report;

@@ -24,7 +24,7 @@ const RED: [u8; 4] = [255, 0, 0, 255];
 
 #[test]
 fn picture_in_a_data_uri() {
-    let scene = textured(json!({"uri": data_uri(&png(&[RED]))})).load().unwrap();
+    let scene = textured(json!({"uri": data_uri(&png(&[RED]))})).load().unwrap().scene;
     assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]));
 }
 
@@ -33,7 +33,7 @@ fn picture_in_a_buffer_view_without_a_mime_type() {
     let mut model = textured(json!({}));
     let view = model.view(&png(&[RED]));
     model.json["images"][0]["bufferView"] = view.into();
-    assert_eq!(diffuse_map(&model.load().unwrap()).image.texels, Texels::Bytes(vec![RED]));
+    assert_eq!(diffuse_map(&model.load().unwrap().scene).image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn picture_in_a_file_whose_name_is_encoded() {
         let folder = Folder::new();
         let name = uri.replace('\\', "/").replace("%20", " ").replace("%C3%A9", "é");
         folder.write(&name, png(&[RED]));
-        let scene = textured(json!({"uri": uri})).load_in(&folder).unwrap();
+        let scene = textured(json!({"uri": uri})).load_in(&folder).unwrap().scene;
         assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]), "{uri}");
     }
 }
@@ -51,31 +51,34 @@ fn picture_in_a_file_whose_name_is_encoded() {
 fn picture_in_a_file_with_a_percent_sign_of_its_own() {
     let folder = Folder::new();
     folder.write("50%20.png", png(&[RED]));
-    let scene = textured(json!({"uri": "50%20.png"})).load_in(&folder).unwrap();
+    let scene = textured(json!({"uri": "50%20.png"})).load_in(&folder).unwrap().scene;
     assert_eq!(diffuse_map(&scene).image.texels, Texels::Bytes(vec![RED]));
 }
 
 #[test]
 fn missing_picture_is_a_warning_and_a_placeholder() {
-    let scene = textured(json!({"uri": "none.png"})).load().unwrap();
-    assert!(diffuse_map(&scene).image.name.contains("missing"));
-    assert_warns(&scene, "none.png");
+    let loaded = textured(json!({"uri": "none.png"})).load().unwrap();
+    let scene = &loaded.scene;
+    assert!(diffuse_map(scene).image.name.contains("missing"));
+    assert_warns(&loaded, "none.png");
 }
 
 #[test]
 fn damaged_picture_is_a_warning_and_a_placeholder() {
     let mut bytes = png(&[RED]);
     bytes.truncate(40);
-    let scene = textured(json!({"uri": data_uri(&bytes)})).load().unwrap();
-    assert!(diffuse_map(&scene).image.name.contains("missing"));
-    assert_warns(&scene, "images[0]");
+    let loaded = textured(json!({"uri": data_uri(&bytes)})).load().unwrap();
+    let scene = &loaded.scene;
+    assert!(diffuse_map(scene).image.name.contains("missing"));
+    assert_warns(&loaded, "images[0]");
 }
 
 #[test]
 fn image_with_nothing_in_it_is_a_warning_and_a_placeholder() {
-    let scene = textured(json!({})).load().unwrap();
-    assert!(diffuse_map(&scene).image.name.contains("missing"));
-    assert_warns(&scene, "neither a URI nor a buffer view");
+    let loaded = textured(json!({})).load().unwrap();
+    let scene = &loaded.scene;
+    assert!(diffuse_map(scene).image.name.contains("missing"));
+    assert_warns(&loaded, "neither a URI nor a buffer view");
 }
 
 #[test]
@@ -83,7 +86,7 @@ fn sampler_gives_wrap_and_filter() {
     let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
     model.json["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648, "magFilter": 9728}]);
     model.json["textures"][0]["sampler"] = 0.into();
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     assert_eq!(diffuse_map(&scene).wrap, [Wrap::Clamp, Wrap::Mirror]);
     assert_eq!(diffuse_map(&scene).filter, Filter::Nearest);
 }
@@ -94,7 +97,7 @@ fn material_chooses_its_set_of_texture_coordinates() {
     let second = model.floats("VEC2", &[0.5; 6]);
     model.primitive()["attributes"]["TEXCOORD_1"] = second.into();
     model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["texCoord"] = 1.into();
-    assert_eq!(model.load().unwrap().meshes[0].uvs, [[0.5; 2]; 3]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].uvs, [[0.5; 2]; 3]);
 }
 
 /// Returns the places of the corners of the triangle on the picture of a texture.
@@ -109,7 +112,7 @@ fn texture_transform_moves_the_coordinates() {
     let mut model = textured(json!({"uri": data_uri(&png(&[RED]))}));
     model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
         json!({"KHR_texture_transform": {"offset": [0.25, 0.5], "scale": [2, -1]}});
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let expected = [[0.25, 0.5], [2.25, 0.5], [0.25, -0.5]];
     assert_eq!(on_picture(&scene, diffuse_map(&scene)), expected);
 }
@@ -128,7 +131,7 @@ fn every_slot_has_its_own_transform_and_set() {
     material["occlusionTexture"] = moved(2.0, 0);
     material["emissiveTexture"] = moved(3.0, 3);
     material["emissiveFactor"] = json!([1, 1, 1]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let m = super::material(&scene);
     let first = |id: TextureId| on_picture(&scene, &scene.textures[id.0 as usize])[0];
     assert_eq!(first(m.normal_map.unwrap().texture), [1.5, 0.5]);
@@ -153,7 +156,7 @@ fn a_picture_is_decoded_once_however_many_textures_show_it() {
     model.json["textures"] = json!([{"source": 0}, {"source": 1}]);
     model.json["materials"][0]["emissiveTexture"] = json!({"index": 1});
     model.json["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
-    let scene = model.load().unwrap();
+    let scene = model.load().unwrap().scene;
     let m = super::material(&scene);
     let ids = [m.metallic.as_ref().unwrap().base.unwrap(), m.emission_map.unwrap()];
     let [a, b] = ids.map(|id| &scene.textures[id.0 as usize].image);
@@ -175,7 +178,7 @@ fn mipmaps_are_used_unless_the_sampler_says_otherwise() {
             model.json["samplers"][0]["minFilter"] = filter.into();
         }
         model.json["textures"][0]["sampler"] = 0.into();
-        assert_eq!(diffuse_map(&model.load().unwrap()).mipmap, mipmap, "{filter:?}");
+        assert_eq!(diffuse_map(&model.load().unwrap().scene).mipmap, mipmap, "{filter:?}");
     }
 }
 
@@ -183,7 +186,7 @@ fn mipmaps_are_used_unless_the_sampler_says_otherwise() {
 fn texture_coordinates_are_kept_for_other_materials() {
     let mut model = textured(json!({"uri": "none.png"}));
     model.primitive().as_object_mut().unwrap().remove("material");
-    assert_eq!(model.load().unwrap().meshes[0].uvs.len(), 3);
+    assert_eq!(model.load().unwrap().scene.meshes[0].uvs.len(), 3);
 }
 
 #[test]
@@ -194,10 +197,11 @@ fn missing_pictures_that_are_no_colours_change_nothing() {
         "pbrMetallicRoughness": {"metallicRoughnessTexture": texture},
         "normalTexture": texture,
     }));
-    let scene = model.load().unwrap();
-    assert_warns(&scene, "none.png");
-    assert_eq!(scene.report.placeholders.len(), 1);
-    let material = material(&scene);
+    let loaded = model.load().unwrap();
+    let scene = &loaded.scene;
+    assert_warns(&loaded, "none.png");
+    assert_eq!(loaded.report.placeholders.len(), 1);
+    let material = material(scene);
     assert_eq!(material.normal_map, None);
     let roughness = material.metallic.as_ref().unwrap().roughness.unwrap().texture;
     let image = &scene.textures[roughness.0 as usize].image;

@@ -7,7 +7,7 @@ use serde_json::Value;
 fn complaints(key: &str, part: Value) -> Vec<String> {
     let mut model = Model::triangle();
     model.json[key] = part;
-    let mut warnings = model.load().unwrap().warnings;
+    let mut warnings = model.load().unwrap().report.warnings;
     warnings.retain(|w| w.contains("not valid glTF"));
     warnings
 }

@@ -1,7 +1,7 @@
 //! KHR_materials_variants.
 
 use super::*;
-use envers::load::{Options, load_with};
+use envers::{LoadOptions, Loaded};
 
 /// The extension of a primitive, from pairs of a material and the variants that have it.
 fn mapped(mappings: &[(usize, &[usize])]) -> serde_json::Value {
@@ -22,14 +22,16 @@ fn model() -> Model {
     model
 }
 
-fn load(folder: &Folder, file: &str, variant: Option<&str>) -> envers::error::Result<Scene> {
-    let variant = variant.map(str::to_owned);
-    load_with(&folder.path(file), &Options { variant, ..Options::default() })
+fn load(folder: &Folder, file: &str, variant: Option<&str>) -> envers::Result<Loaded> {
+    let options = LoadOptions::default();
+    let options = if let Some(name) = variant { options.variant(name) } else { options };
+    options.load(folder.path(file))
 }
 
 /// The diffuse colour of the only material in use.
-fn shown(scene: &Scene) -> [f32; 3] {
-    assert_eq!(scene.warnings, [""; 0]);
+fn shown(loaded: &Loaded) -> [f32; 3] {
+    let Loaded { scene, report, .. } = loaded;
+    assert_eq!(report.warnings, [""; 0]);
     assert_eq!(scene.materials.len(), 1);
     material(scene).diffuse.to_array()
 }
@@ -69,8 +71,8 @@ fn a_primitive_without_the_variant_keeps_its_default() {
 
 #[test]
 fn the_report_names_the_variants() {
-    let scene = load(&in_folder(&model()), "a.glb", None).unwrap();
-    let names: Vec<&str> = scene.report.variants.iter().map(String::as_str).collect();
+    let Loaded { report, .. } = load(&in_folder(&model()), "a.glb", None).unwrap();
+    let names: Vec<&str> = report.variants.iter().map(String::as_str).collect();
     assert_eq!(names, ["day", "dusk", "night", "noon"]);
 }
 
@@ -116,7 +118,7 @@ fn pictures_of_other_variants_are_not_opened() {
             json!({"index": texture});
     }
     let folder = in_folder(&model);
-    let warnings = |variant| load(&folder, "a.glb", variant).unwrap().warnings;
+    let warnings = |variant| load(&folder, "a.glb", variant).unwrap().report.warnings;
     assert_eq!(warnings(Some("day")), [""; 0]);
     assert_eq!(warnings(None), [""; 0]);
     let said = warnings(Some("night"));
@@ -129,7 +131,7 @@ fn a_model_of_a_scene_file_shows_its_own_variant() {
     let text = "[[model]]\nfile = \"a.glb\"\nvariant = \"day\"\n\
                 [[model]]\nfile = \"a.glb\"\n[[model]]\nfile = \"a.glb\"\nvariant = \"night\"\n";
     folder.write("s.toml", text);
-    let scene = load(&folder, "s.toml", None).unwrap();
+    let scene = load(&folder, "s.toml", None).unwrap().scene;
     assert_eq!(colors(&scene), [[1.0, 0.0, 0.0], [0.0; 3], [0.0, 1.0, 0.0]]);
 }
 
@@ -140,7 +142,7 @@ fn the_loads_variant_is_that_of_models_that_name_none() {
     let text = "[[model]]\nfile = \"a.glb\"\nvariant = \"day\"\n\
                 [[model]]\nfile = \"a.glb\"\n[[model]]\nfile = \"plain.glb\"\n";
     folder.write("s.toml", text);
-    let scene = load(&folder, "s.toml", Some("night")).unwrap();
+    let scene = load(&folder, "s.toml", Some("night")).unwrap().scene;
     assert_eq!(colors(&scene), [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.8; 3]]);
 }
 

@@ -1,5 +1,6 @@
 //! The schema, the documentation and the parser say the same.
 
+use envers::Loaded;
 use std::collections::BTreeMap;
 
 use envers::load::schema;
@@ -191,7 +192,7 @@ fn the_examples_in_the_documents_load_without_a_warning() {
         }
         let file = super::File::new(&example);
         std::fs::write(file.beside("room.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-        let scene = file.load().unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(scene.warnings, Vec::<String>::new());
+        let Loaded { report, .. } = file.load().unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(report.warnings, Vec::<String>::new());
     }
 }

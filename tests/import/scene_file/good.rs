@@ -154,7 +154,7 @@ fn a_picture_that_nothing_shows_is_named_and_not_read() {
     let material = "[[material]]\nname = \"a\"\ndiffuse_map = \"dot.png\"\n";
     let file = File::new(format!("{}{material}", super::CAMERA));
     std::fs::write(file.beside("dot.png"), "no picture").unwrap();
-    let mut scene = file.load().unwrap();
+    let mut scene = file.load().unwrap().scene;
     let image = scene.textures[0].image.clone();
     assert!(!image.is_read() && image.name.ends_with("dot.png"), "{image:?}");
     let ball = envers::scene::Sphere::new(glam::DVec3::ZERO, 1.0, envers::scene::MaterialId(0));
@@ -175,7 +175,7 @@ fn pictures_of_a_model_in_another_material_are_not_read() {
         std::fs::write(file.beside("m.mtl"), "newmtl m\nmap_Kd dot.png\n").unwrap();
         let text = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
         std::fs::write(file.beside("m.obj"), text).unwrap();
-        let scene = file.load().unwrap();
+        let scene = file.load().unwrap().scene;
         assert_eq!(scene.textures[0].image.is_read(), read, "{models}");
     }
 }
@@ -192,7 +192,8 @@ fn with_dot(keys: &str) -> File {
 
 #[test]
 fn a_normal_map_is_linear_and_other_maps_are_srgb() {
-    let scene = with_dot("normal_map = \"dot.png\"\nspecular_map = \"dot.png\"\n").load().unwrap();
+    let scene =
+        with_dot("normal_map = \"dot.png\"\nspecular_map = \"dot.png\"\n").load().unwrap().scene;
     let material = &scene.materials[0];
     let transfer = |id: envers::scene::TextureId| scene.textures[id.0 as usize].transfer;
     assert_eq!(transfer(material.normal_map.unwrap().texture), Transfer::None);
@@ -209,14 +210,15 @@ fn filters_of_pictures() {
         ("mipmap", (Filter::Linear, true)),
     ] {
         let scene = with_dot(&format!("diffuse_map = \"dot.png\"\nfilter = \"{filter}\"\n"));
-        let scene = scene.load().unwrap();
+        let scene = scene.load().unwrap().scene;
         assert_eq!((scene.textures[0].filter, scene.textures[0].mipmap), expected);
     }
 }
 
 #[test]
 fn blended_alpha_makes_a_thin_sheet() {
-    let scene = with_dot("diffuse_map = \"dot.png\"\nalpha_mode = \"blend\"\n").load().unwrap();
+    let scene =
+        with_dot("diffuse_map = \"dot.png\"\nalpha_mode = \"blend\"\n").load().unwrap().scene;
     let material = &scene.materials[0];
     assert_eq!(material.coverage.unwrap().mode, AlphaMode::Blend);
     assert_eq!((material.thin, material.ior), (true, 1.0));
@@ -225,7 +227,7 @@ fn blended_alpha_makes_a_thin_sheet() {
 #[test]
 fn a_mask_on_a_sphere_is_blended() {
     let scene = with_dot("diffuse_map = \"dot.png\"\nalpha_mode = \"mask\"\nalpha_cutoff = 0.7\n");
-    let scene = scene.load().unwrap();
+    let scene = scene.load().unwrap().scene;
     assert_eq!(scene.materials[0].coverage.unwrap().mode, AlphaMode::Mask { cutoff: 0.7 });
     let of_ball = scene.spheres[0].material;
     assert_eq!(scene.materials[of_ball.0 as usize].coverage.unwrap().mode, AlphaMode::Blend);
@@ -240,7 +242,7 @@ fn a_picture_named_twice_is_read_once() {
     let file = File::new(text);
     let dot = image::RgbaImage::from_pixel(1, 1, image::Rgba([1, 2, 3, 255]));
     dot.save(file.beside("dot.png")).unwrap();
-    let scene = file.load().unwrap();
+    let scene = file.load().unwrap().scene;
     assert_eq!(scene.textures.len(), 1);
     assert_eq!(scene.textures[0].transfer, Transfer::Srgb);
     assert_eq!(scene.materials[0].diffuse_map, scene.materials[0].emission_map);
@@ -340,9 +342,10 @@ fn a_byte_order_mark_and_windows_line_ends_are_no_matter() {
 
 #[test]
 fn a_diffuse_colour_in_bytes_is_a_warning() {
-    let scene = seen("[[material]]\nname = \"blue\"\ndiffuse = [52, 84, 216]\n");
+    let text = "[[material]]\nname = \"blue\"\ndiffuse = [52, 84, 216]\n";
+    let warnings = File::new(&format!("{}{text}", super::CAMERA)).load().unwrap().report.warnings;
     let expected = "scene.toml:5:11: the material `blue` scatters more light than it gets";
-    assert!(scene.warnings[0].contains(expected), "{:?}", scene.warnings);
+    assert!(warnings[0].contains(expected), "{warnings:?}");
 }
 
 #[test]

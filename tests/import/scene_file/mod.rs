@@ -7,10 +7,11 @@ mod models;
 mod motion;
 mod random;
 
+use envers::Loaded;
 use std::path::{Path, PathBuf};
 
 use envers::error::{Error, Place};
-use envers::load::load;
+use envers::load;
 use envers::scene::Scene;
 
 /// A camera in two lines, for scenes that are about something else.
@@ -37,14 +38,14 @@ impl File {
         self.folder.path().join(name)
     }
 
-    fn load(&self) -> Result<Scene, Error> {
+    fn load(&self) -> Result<Loaded, Error> {
         load(&self.path())
     }
 }
 
 /// The scene that a text describes.
 fn scene(text: &str) -> Scene {
-    File::new(text).load().unwrap_or_else(|e| panic!("{e}\n{text}"))
+    File::new(text).load().unwrap_or_else(|e| panic!("{e}\n{text}")).scene
 }
 
 /// Loads a text with the camera in front.

@@ -1,5 +1,6 @@
 //! Models in scene files.
 
+use envers::Loaded;
 use envers::scene::{LightKind, Scene};
 use glam::DVec3;
 
@@ -34,7 +35,7 @@ fn file(text: &str) -> File {
 }
 
 fn scene(text: &str) -> Scene {
-    file(text).load().unwrap_or_else(|e| panic!("{e}\n{text}"))
+    file(text).load().unwrap_or_else(|e| panic!("{e}\n{text}")).scene
 }
 
 #[test]
@@ -62,11 +63,12 @@ fn a_file_named_twice_is_stored_once_however_it_is_written() {
 
 #[test]
 fn warnings_of_a_model_name_it_and_come_once() {
-    let scene = scene("[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"two.obj\"\n");
-    assert!(!scene.warnings.is_empty());
-    assert!(scene.warnings.iter().all(|w| w.contains("two.obj: ")), "{:?}", scene.warnings);
-    let alone = envers::load::load(&file("").beside("two.obj")).unwrap();
-    assert_eq!(scene.warnings.len(), alone.warnings.len());
+    let text = "[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"two.obj\"\n";
+    let warnings = file(text).load().unwrap().report.warnings;
+    assert!(!warnings.is_empty());
+    assert!(warnings.iter().all(|w| w.contains("two.obj: ")), "{warnings:?}");
+    let Loaded { report, .. } = envers::load(&file("").beside("two.obj")).unwrap();
+    assert_eq!(warnings.len(), report.warnings.len());
 }
 
 #[test]
@@ -140,7 +142,7 @@ fn a_model_of_a_material_that_is_not_there_is_refused() {
 #[test]
 fn defaults_of_a_model_are_what_missing_keys_mean() {
     let [bare, full] = super::docs::written_out("[[model]]", "model", "file = \"eye.gltf\"")
-        .map(|text| Scene { warnings: Vec::new(), ..scene(&text) })
+        .map(|text| scene(&text))
         .map(|scene| format!("{scene:?}"));
     assert_eq!(bare, full);
 }

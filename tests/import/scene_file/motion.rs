@@ -167,7 +167,7 @@ fn tracks_change_a_cameras_view_and_lens() {
 fn with_model(text: &str) -> Scene {
     let file = File::new(format!("{CAMERA}{FRAMES}{text}"));
     std::fs::write(file.beside("m.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    file.load().unwrap_or_else(|e| panic!("{e}"))
+    file.load().unwrap_or_else(|e| panic!("{e}")).scene
 }
 
 #[test]
