@@ -18,9 +18,9 @@ const ORDER: [&str; 13] = [
     "surface",
     "shading",
     "film",
+    "write",
     "integrator",
     "render",
-    "write",
     "measure",
     "cli",
 ];
