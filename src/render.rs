@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, PixelRecord, Scratch, Tiling};
+use crate::integrator::{Counts, Integrator, PixelRecord, RefineStrip, Scratch, Tiling};
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
@@ -257,15 +257,19 @@ pub fn with_intersector(
     of_strips.resize_with(strips, Default::default);
     let first_pass = film.pixels.par_chunks_mut(strip).zip(of_strips).enumerate();
     first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, seen))| {
-        tell(integrator.strip(i * rows, pixels, seen, scratch));
+        tell(integrator.render_strip(i * rows, pixels, seen, scratch));
     });
     if passes == 2 {
         let doubtful = integrator.pixels_to_refine(&film.pixels, &seen);
         let pixels = film.pixels.par_chunks_mut(strip).enumerate();
         let parts = pixels.zip(seen.par_chunks(strip).zip(doubtful.par_chunks(strip)));
-        parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (seen, doubtful))| {
-            tell(integrator.refine(i * rows, (pixels, seen, doubtful), scratch));
-        });
+        parts.for_each_init(
+            Scratch::default,
+            |scratch, ((i, pixels), (records, needs_samples))| {
+                let strip = RefineStrip { first_row: i * rows, pixels, records, needs_samples };
+                tell(integrator.refine_strip(strip, scratch));
+            },
+        );
     }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
     (film, counts, start.elapsed())
