@@ -169,9 +169,9 @@ impl<'a> Integrator<'a> {
         let weight = 1.0 / self.samples.steps[0] as f32;
         let threshold = self.contrast_threshold.unwrap_or(0.0);
         let rows = self.tiling.rows;
-        let mut needs_samples = vec![false; pixels.len()];
-        let strips = needs_samples.par_chunks_mut(width * rows).enumerate();
-        strips.for_each(|(strip, needs_samples)| {
+        let mut refined = vec![false; pixels.len()];
+        let strips = refined.par_chunks_mut(width * rows).enumerate();
+        strips.for_each(|(strip, refined)| {
             let [mut row, mut below] = [ContrastRow::default(), ContrastRow::default()];
             let set = |row: &mut ContrastRow, y: usize| {
                 let range = y * width..(y + 1) * width;
@@ -179,7 +179,7 @@ impl<'a> Integrator<'a> {
             };
             // Each row is compared with the one below, from the row above the strip on.
             let first = strip * rows;
-            let end = (first + needs_samples.len() / width).min(height);
+            let end = (first + refined.len() / width).min(height);
             set(&mut row, first.saturating_sub(1));
             for y in first.saturating_sub(1)..end {
                 let is_last = y + 1 == height;
@@ -189,13 +189,13 @@ impl<'a> Integrator<'a> {
                 let next = (!is_last).then_some(&mut below);
                 row.mark_contrast(self.arch, next, threshold);
                 if y >= first {
-                    let written = &mut needs_samples[(y - first) * width..][..width];
+                    let written = &mut refined[(y - first) * width..][..width];
                     written.copy_from_slice(&row.disagrees);
                 }
                 std::mem::swap(&mut row, &mut below);
             }
         });
-        needs_samples
+        refined
     }
 
     /// Finds the closest hits of rays.

@@ -52,7 +52,7 @@ pub struct RefineStrip<'a> {
     /// The records of the pixels.
     pub records: &'a [PixelRecord],
     /// True for each pixel that gets more samples.
-    pub needs_samples: &'a [bool],
+    pub refined: &'a [bool],
 }
 
 /// A pixel that gets more samples.
@@ -194,13 +194,13 @@ impl Integrator<'_> {
 
     /// Takes more samples of the pixels of a strip that need them, and makes all sums means.
     pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
-        let RefineStrip { first_row, pixels, records, needs_samples } = strip;
+        let RefineStrip { first_row, pixels, records, refined } = strip;
         let width = self.scene.film.size[0] as usize;
         let steps = &self.samples.steps;
         let weights: Vec<f32> = steps.iter().map(|&samples| 1.0 / samples as f32).collect();
         let mut counts = Counts::default();
         // Pixels without contrast have all their samples.
-        for (pixel, _) in pixels.iter_mut().zip(needs_samples).filter(|(_, needs)| !**needs) {
+        for (pixel, _) in pixels.iter_mut().zip(refined).filter(|(_, refined)| !**refined) {
             pixel.iter_mut().for_each(|value| *value *= weights[0]);
         }
         // The others are taken in the order in which tiles order their rays.
@@ -208,7 +208,7 @@ impl Integrator<'_> {
         for column in (0..width).step_by(self.tiling.columns) {
             self.set_tile([column, first_row], pixels.len() / width, scratch);
             for run in &scratch.tile.runs {
-                let run = scratch.tile.run_in_strip(run, width).filter(|&i| needs_samples[i]);
+                let run = scratch.tile.run_in_strip(run, width).filter(|&i| refined[i]);
                 active.extend(run.map(|index| ActivePixel { index, record: records[index] }));
             }
         }
