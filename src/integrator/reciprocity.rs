@@ -1,12 +1,13 @@
-//! The return of light by its own way: a path through mirrors and glass is worth the same from
-//! either end.
+//! Tests of reciprocity: a path through mirrors and glass has the same throughput from either end.
 
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
-use super::bodies::InteriorList;
-use super::follow::{PathState, SpawnedRay};
-use super::shade::SpecularHit;
+use super::nested_dielectrics::InteriorList;
+use super::null_interfaces::is_null_interface;
+use super::secondary_rays::spawn_at_hit;
+use super::surface_evaluation::{SpecularHit, shading_params_at};
+use super::wave::PathState;
 use super::{Integrator, Tiling};
 use crate::film::View;
 use crate::geometry::{PrimitiveId, Ray};
@@ -14,68 +15,73 @@ use crate::intersect::{BruteForce, Coherence, Precision};
 use crate::scene::{Camera, Material, Plane, Projection, Scene, Sphere};
 use crate::surface::{RayCone, Surface};
 
-/// A path: the surfaces that it met, whether it went through each, its share of the light, and
-/// where it came out.
+/// A path of light: the surfaces that it hit, its throughput, and its end.
 #[derive(Clone, Debug)]
-struct Walk {
-    met: Vec<(PrimitiveId, bool)>,
+struct LightPath {
+    /// The primitives, each with true if the path went through it.
+    hits: Vec<(PrimitiveId, bool)>,
     throughput: DVec3,
     position: DVec3,
     direction: DVec3,
     /// The bodies at its end.
-    inside: InteriorList,
+    interior: InteriorList,
     /// A point farther on, with nothing in between.
     end: DVec3,
 }
 
-/// Follows light from `origin` along `direction` over as many surfaces as there are choices: to go
-/// through, or to be reflected. Where there is but one way, it takes that.
-fn walk(
+/// Traces light from `origin` along `direction` over as many surfaces as there are choices: to be
+/// refracted, or to be reflected. Where there is only one way, it takes that.
+fn trace_path(
     integrator: &Integrator<'_>,
     origin: DVec3,
     direction: DVec3,
-    inside: InteriorList,
+    interior: InteriorList,
     choices: &[bool],
-) -> Option<Walk> {
+) -> Option<LightPath> {
     let mut ray = Ray::new(origin, direction);
-    let mut path =
-        PathState { sample: 0, depth: 0, throughput: DVec3::ONE, inside, cone: RayCone::default() };
-    let mut met = Vec::new();
+    let mut path = PathState {
+        sample: 0,
+        depth: 0,
+        throughput: DVec3::ONE,
+        interior,
+        cone: RayCone::default(),
+    };
+    let dielectrics = &integrator.media.dielectrics;
+    let mut hits = Vec::new();
     let mut position = origin;
-    for &through in choices {
+    for &refract in choices {
         let (surface, hit) = loop {
             let mut hit = [None];
             integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut hit);
             let hit = hit[0]?;
-            path.throughput *= integrator.absorbed(&ray, hit.t, &path.inside);
+            path.throughput *= dielectrics.transmittance(&ray, hit.t, &path.interior);
             let surface = Surface::new(integrator.scene, &ray, &hit);
-            let around = integrator.bodies.around(hit.id, surface.side, &path.inside);
+            let media = dielectrics.interface(hit.id, surface.side, &path.interior);
             let material = &integrator.scene.materials[surface.material.0 as usize];
-            if !integrator.is_clear(material, &material.shading_params(), &around) {
+            if !is_null_interface(integrator, material, &material.shading_params(), &media) {
                 break (surface, hit);
             }
             ray = ray.continue_past(&hit, surface.side.opposite());
-            path.inside = around.behind;
+            path.interior = media.transmitted;
         };
-        // Of the two rays at most: the share that goes the chosen way, of all that goes there.
-        let mut sent: Vec<SpawnedRay> = Vec::new();
-        let finish = integrator.finish_at(&ray, &hit, &surface, &path.cone);
-        let bounce = SpecularHit { ray: 0, surface, finish };
-        integrator.send_on(&ray, &hit, &bounce, &path, &mut |next| sent.push(next));
-        let chosen = sent.iter().position(|next| next.is_refracted == through).unwrap_or(0);
-        let next = (!sent.is_empty()).then(|| sent.swap_remove(chosen))?;
-        met.push((bounce.surface.id, next.is_refracted));
-        position = bounce.surface.position;
+        // Of two rays at most, the one that goes the chosen way.
+        let params = shading_params_at(integrator, &ray, &hit, &surface, &path.cone);
+        let specular = SpecularHit { ray: 0, surface, params };
+        let [reflected, refracted] = spawn_at_hit(integrator, &ray, &hit, &specular, &path);
+        let next = if refract { refracted.or(reflected) } else { reflected.or(refracted) }?;
+        hits.push((surface.id, next.is_refracted));
+        position = surface.position;
         (ray, path) = (next.ray, next.path);
     }
     let mut next = [None];
     integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut next);
     let end = ray.at((ray.start_t() + next[0]?.t) * 0.5);
-    let (direction, throughput, inside) = (ray.direction.normalize(), path.throughput, path.inside);
-    Some(Walk { met, throughput, position, direction, inside, end })
+    let direction = ray.direction.normalize();
+    let (throughput, interior) = (path.throughput, path.interior);
+    Some(LightPath { hits, throughput, position, direction, interior, end })
 }
 
-/// Mirrors, glass of three kinds, a pane and water, about the origin.
+/// Returns mirrors, glass of three kinds, a pane and water, about the origin.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     let black = || Material { diffuse: Vec3::ZERO, ..Material::default() };
@@ -111,17 +117,23 @@ fn scene() -> Scene {
     scene
 }
 
-/// By how much the relative change of a path exceeds that of its start, at least 1: what rounding
-/// at its start grows to.
-fn condition(integrator: &Integrator<'_>, walked: &Walk, origin: DVec3, to: DVec3) -> Option<f64> {
-    let choices: Vec<bool> = walked.met.iter().map(|(_, through)| *through).collect();
-    let inside = integrator.bodies.holding(origin, integrator.scene, integrator.intersector);
+/// Returns the condition number of a path, at least 1: the ratio of its relative change to that of its
+/// start, by which rounding at its start grows.
+fn condition(
+    integrator: &Integrator<'_>,
+    path: &LightPath,
+    origin: DVec3,
+    to: DVec3,
+) -> Option<f64> {
+    let choices: Vec<bool> = path.hits.iter().map(|(_, through)| *through).collect();
+    let interior =
+        integrator.media.dielectrics.interior_at(origin, integrator.scene, integrator.intersector);
     let mut worst: f64 = 1.0;
     for nudge in [DVec3::X, DVec3::Y, DVec3::Z] {
         let direction = to + nudge * (1e-8 * to.length());
-        let other = walk(integrator, origin, direction, inside.clone(), &choices)?;
-        let change = (other.throughput / walked.throughput - 1.0).abs().max_element();
-        let turned = (other.direction - walked.direction).length();
+        let other = trace_path(integrator, origin, direction, interior.clone(), &choices)?;
+        let change = (other.throughput / path.throughput - 1.0).abs().max_element();
+        let turned = (other.direction - path.direction).length();
         worst = worst.max(change.max(turned) * 1e8);
     }
     Some(worst)
@@ -130,7 +142,7 @@ fn condition(integrator: &Integrator<'_>, walked: &Walk, origin: DVec3, to: DVec
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, max_global_rejects: 10_000, ..ProptestConfig::default() })]
     #[test]
-    fn a_path_is_worth_the_same_from_either_end(
+    fn a_path_has_the_same_throughput_from_either_end(
         origin in prop::array::uniform3(-4.0..4.0f64),
         target in prop::array::uniform3(-1.5..1.5f64),
         choices in prop::collection::vec(any::<bool>(), 1..7),
@@ -143,8 +155,9 @@ proptest! {
         let origin = DVec3::from(origin);
         let to = DVec3::from(target) - origin;
         prop_assume!(to.length() > 0.1);
-        let holding = |point| integrator.bodies.holding(point, &scene, &intersector);
-        let there = walk(&integrator, origin, to, holding(origin), &choices);
+        let dielectrics = &integrator.media.dielectrics;
+        let interior_at = |point| dielectrics.interior_at(point, &scene, &intersector);
+        let there = trace_path(&integrator, origin, to, interior_at(origin), &choices);
         prop_assume!(there.is_some());
         let Some(there) = there else { unreachable!() };
         prop_assume!(there.throughput.min_element() > 1e-6);
@@ -155,19 +168,19 @@ proptest! {
         prop_assume!(there_by.is_some_and(|c| c < 100.0));
         // Back from a point beyond the last surface, within the same bodies.
         let end = there.end;
-        prop_assume!(holding(end) == there.inside);
-        let beyond = integrator.absorbed(&Ray::segment(there.position, end), 1.0, &there.inside);
-        let ways: Vec<bool> = there.met.iter().rev().map(|(_, through)| *through).collect();
-        let back = walk(&integrator, end, -there.direction, holding(end), &ways).unwrap();
+        prop_assume!(interior_at(end) == there.interior);
+        let beyond = dielectrics.transmittance(&Ray::segment(there.position, end), 1.0, &there.interior);
+        let ways: Vec<bool> = there.hits.iter().rev().map(|(_, through)| *through).collect();
+        let back = trace_path(&integrator, end, -there.direction, interior_at(end), &ways).unwrap();
         let condition = condition(&integrator, &back, end, -there.direction);
         prop_assume!(condition.is_some_and(|c| c < 100.0));
-        let mut met = back.met.clone();
-        met.reverse();
-        prop_assert_eq!(&met, &there.met);
+        let mut hits = back.hits.clone();
+        hits.reverse();
+        prop_assert_eq!(&hits, &there.hits);
         // From its last surface the way back goes on to the origin.
-        let rest = integrator.absorbed(&Ray::segment(back.position, origin), 1.0, &back.inside);
+        let rest = dielectrics.transmittance(&Ray::segment(back.position, origin), 1.0, &back.interior);
         let ratio = (back.throughput * rest) / (there.throughput * beyond);
         let off = (ratio - 1.0).abs().max_element();
-        prop_assert!(off < 1e-12, "{off:e} over {:?}", there.met);
+        prop_assert!(off < 1e-12, "{off:e} over {:?}", there.hits);
     }
 }

@@ -1,23 +1,27 @@
-//! Where in a pixel its samples lie, and in which order they are taken.
+//! The sample pattern: the positions of a pixel's samples, in the order in which they are taken.
 
 use crate::scene::FilmSettings;
 
-/// Where the samples of a pixel lie, as offsets from its upper left corner; of an adaptive picture
-/// those that every pixel has.
+/// The most steps of a pattern: a side of 256 samples has five odd factors, two steps each.
+pub(super) const MAX_STEPS: usize = 12;
+
+/// Returns the positions of a pixel's samples, as offsets from its upper left corner; of an adaptive
+/// picture those that every pixel has.
 ///
 /// A square number of samples forms a regular grid; any other a lattice of points, evenly spaced
 /// along x and by the golden ratio along y.
 pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
-    placed(film, regular(film.spp).offsets)
+    from_corner(film, regular(film.spp).offsets)
 }
 
-/// How many samples a pixel can have, ascending: the first number is that of every pixel; at each of
-/// the others it is seen whether there is need of more.
+/// Returns the numbers of samples that a pixel can have, ascending: the first is that of every pixel;
+/// at each of the others it is decided which pixels need more.
 pub fn sample_steps(film: &FilmSettings) -> Vec<usize> {
-    SamplePattern::of(film).steps
+    SamplePattern::new(film).steps
 }
 
-fn placed(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+/// Converts offsets from the sample position of a film into offsets from the pixel's corner.
+fn from_corner(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     let corner = film.sample_position.offset();
     offsets.iter_mut().flatten().for_each(|x| *x += corner);
     offsets
@@ -25,99 +29,101 @@ fn placed(film: &FilmSettings, mut offsets: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 
 /// The samples of a pixel in the order in which they are taken.
 pub(super) struct SamplePattern {
-    /// Where they lie: at first relative to the pixel's sample position, then to its corner.
+    /// The offsets of the samples from the pixel's corner; while the pattern is built, from the
+    /// film's sample position.
     pub offsets: Vec<[f64; 2]>,
-    /// How many there are after each step, ascending: where one may stop.
+    /// The numbers of samples after which one may stop, ascending.
     pub steps: Vec<usize>,
 }
 
 impl SamplePattern {
-    /// The samples of a film. The first step is those that every pixel has.
-    pub fn of(film: &FilmSettings) -> Self {
-        let series = match film.adaptive {
+    /// Builds the pattern of a film. The first step is the samples that every pixel has.
+    pub fn new(film: &FilmSettings) -> Self {
+        let pattern = match film.adaptive {
             None => Self { steps: vec![film.spp as usize], ..regular(film.spp) },
             Some(adaptive) => progressive(film.spp, adaptive.max),
         };
-        Self { offsets: placed(film, series.offsets), ..series }
+        Self { offsets: from_corner(film, pattern.offsets), ..pattern }
     }
 }
 
-/// Regular samples: their mean is 0, and they stay within the pixel's square. Of a grid the coarser
-/// grids within it come first.
+/// Returns regular samples: their mean is 0, and they stay within the pixel's square. In a grid the
+/// coarser grids within it come first.
 fn regular(spp: u32) -> SamplePattern {
     let side = spp.isqrt();
     if side * side == spp {
         let (cells, steps) = grid(side);
-        let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
-        return SamplePattern {
-            offsets: cells.into_iter().map(|cell| cell.map(place)).collect(),
-            steps,
-        };
+        let center = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
+        let offsets = cells.into_iter().map(|cell| cell.map(center)).collect();
+        return SamplePattern { offsets, steps };
     }
     let n = f64::from(spp);
-    let golden = (5f64.sqrt() - 1.0) / 2.0;
-    let lattice = |i: u32| (f64::from(i) * golden).fract();
+    let golden_ratio = (5f64.sqrt() - 1.0) / 2.0;
+    let lattice = |i: u32| (f64::from(i) * golden_ratio).fract();
     // The lattice's y are not symmetric; their mean is taken out, and the rest drawn together so
     // that no sample leaves the square.
     let mean = (0..spp).map(lattice).sum::<f64>() / n;
-    let reach = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
-    let place = |i| [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / reach)];
-    SamplePattern { offsets: (0..spp).map(place).collect(), steps: vec![spp as usize] }
+    let half_height = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
+    let offset = |i| [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / half_height)];
+    SamplePattern { offsets: (0..spp).map(offset).collect(), steps: vec![spp as usize] }
 }
 
-/// The cells of a square grid, in an order that begins with the coarser grids within it, and how
-/// many cells there are after each step.
+/// Returns the cells of a square grid, in an order that begins with the coarser grids within it, and
+/// the number of cells after each step.
 ///
 /// A grid whose side is an odd multiple of another's has the centres of the other's cells. After
 /// them come the corners of each such cell, where what the centre missed is found soonest.
 fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
     let (mut cells, mut steps) = (Vec::new(), Vec::new());
+    // The next coarser grid, and the corners of its cells.
     if let Some(factor) = (3..=side).step_by(2).find(|&factor| side.is_multiple_of(factor)) {
-        let (coarse, within) = grid(side / factor);
+        let (coarse, coarse_steps) = grid(side / factor);
         let (middle, last) = (factor / 2, factor - 1);
         for [dx, dy] in [[middle, middle], [0, 0], [last, last], [0, last], [last, 0]] {
             cells.extend(coarse.iter().map(|[x, y]| [x * factor + dx, y * factor + dy]));
         }
-        steps = within;
+        steps = coarse_steps;
         steps.push(cells.len());
     }
-    let mut is_there = vec![false; side as usize * side as usize];
+    // The other cells, row by row.
+    let mut is_taken = vec![false; side as usize * side as usize];
     let index = |[x, y]: [u32; 2]| y as usize * side as usize + x as usize;
-    cells.iter().for_each(|&cell| is_there[index(cell)] = true);
+    cells.iter().for_each(|&cell| is_taken[index(cell)] = true);
     let rows = (0..side).flat_map(|y| (0..side).map(move |x| [x, y]));
-    cells.extend(rows.filter(|&cell| !is_there[index(cell)]));
+    cells.extend(rows.filter(|&cell| !is_taken[index(cell)]));
     if steps.last() != Some(&cells.len()) {
         steps.push(cells.len());
     }
     (cells, steps)
 }
 
-/// Samples that begin with `min` regular ones and end as `max` regular ones.
+/// Returns samples that begin with `min` regular ones and end as `max` regular ones.
 ///
 /// Where the regular ones of `max` begin with those of `min`, it is exactly these. Otherwise, of
 /// `max` regular ones, those nearest to the `min` are replaced by them, and the next to be taken are
 /// four around each, far from it.
 fn progressive(min: u32, max: u32) -> SamplePattern {
-    let (first, all) = (regular(min).offsets, regular(max));
-    if all.offsets.starts_with(&first) {
-        let steps = all.steps.into_iter().filter(|&step| step >= first.len()).collect();
-        return SamplePattern { offsets: all.offsets, steps };
+    let (first, full) = (regular(min).offsets, regular(max));
+    if full.offsets.starts_with(&first) {
+        let steps = full.steps.into_iter().filter(|&step| step >= first.len()).collect();
+        return SamplePattern { offsets: full.offsets, steps };
     }
-    let mut rest = all.offsets;
-    let mut take = |[x, y]: [f64; 2]| {
+    let mut rest = full.offsets;
+    let mut remove_nearest = |[x, y]: [f64; 2]| {
         let distance = |[a, b]: [f64; 2]| (a - x) * (a - x) + (b - y) * (b - y);
         let nearest =
             (0..rest.len()).min_by(|&i, &j| distance(rest[i]).total_cmp(&distance(rest[j])));
         nearest.map(|i| rest.remove(i))
     };
-    for &at in &first {
-        take(at);
+    for &offset in &first {
+        remove_nearest(offset);
     }
     let (mut offsets, mut steps) = (first.clone(), vec![first.len()]);
+    // Four around each of the first.
     if max > 5 * min {
-        let reach = 0.5 / f64::from(min).sqrt();
-        for [dx, dy] in [[-reach, -reach], [reach, reach], [-reach, reach], [reach, -reach]] {
-            offsets.extend(first.iter().filter_map(|[x, y]| take([x + dx, y + dy])));
+        let d = 0.5 / f64::from(min).sqrt();
+        for [dx, dy] in [[-d, -d], [d, d], [-d, d], [d, -d]] {
+            offsets.extend(first.iter().filter_map(|[x, y]| remove_nearest([x + dx, y + dy])));
         }
         steps.push(offsets.len());
     }
@@ -153,7 +159,7 @@ mod tests {
         }
     }
 
-    /// In one order, to be compared as sets.
+    /// Returns samples in one order, to be compared as sets.
     fn sorted(mut samples: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         samples.sort_by(|a, b| a[1].total_cmp(&b[1]).then(a[0].total_cmp(&b[0])));
         samples
@@ -162,8 +168,8 @@ mod tests {
     #[test]
     fn a_square_number_of_samples_is_every_cell_of_a_grid_once() {
         for side in [1u32, 2, 3, 5, 6, 7, 9, 15, 22] {
-            let place = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
-            let rows = (0..side).flat_map(|y| (0..side).map(move |x| [place(x), place(y)]));
+            let center = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
+            let rows = (0..side).flat_map(|y| (0..side).map(move |x| [center(x), center(y)]));
             assert_eq!(sorted(regular(side * side).offsets), rows.collect::<Vec<_>>(), "{side}");
         }
     }

@@ -1,4 +1,4 @@
-//! Which body fills which place.
+//! Tests of which body fills which point.
 
 use super::*;
 use crate::intersect::{BruteForce, Precision};
@@ -9,7 +9,7 @@ fn glass(ior: f64, priority: i32) -> Material {
     Material { transmit: Vec3::ONE, ior, priority, ..Material::default() }
 }
 
-/// Water below y = 0, a glass ball across its surface, a bubble in the ball, an opaque ball.
+/// Returns water below y = 0, a glass ball across its surface, a bubble in the ball, an opaque ball.
 fn pond(priority_of_water: i32) -> Scene {
     let mut scene = Scene::default();
     let water = scene.add_material(glass(1.33, priority_of_water));
@@ -24,13 +24,13 @@ fn pond(priority_of_water: i32) -> Scene {
 }
 
 fn ior_at(scene: &Scene, point: DVec3) -> f64 {
-    let bodies = NestedDielectrics::of(scene);
+    let dielectrics = NestedDielectrics::new(scene);
     let intersector = BruteForce::new(scene, Precision::Fast);
-    bodies.medium(&bodies.holding(point, scene, &intersector)).ior
+    dielectrics.medium(&dielectrics.interior_at(point, scene, &intersector)).ior
 }
 
 #[test]
-fn the_smaller_of_two_bodies_fills_where_both_are() {
+fn the_smaller_of_two_bodies_fills_their_overlap() {
     let scene = pond(0);
     let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
     assert_eq!([at(0.0, 9.0), at(0.0, -9.0)], [1.0, 1.33]);
@@ -38,44 +38,47 @@ fn the_smaller_of_two_bodies_fills_where_both_are() {
 }
 
 #[test]
-fn a_greater_priority_goes_before_size() {
+fn priority_goes_before_size() {
     let scene = pond(1);
     let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
     assert_eq!([at(0.0, -1.5), at(0.0, -0.5), at(0.0, 1.5)], [1.33, 1.33, 1.5]);
 }
 
 #[test]
-fn a_surface_within_a_body_that_goes_before_it_is_hidden() {
+fn a_surface_within_a_body_of_higher_priority_is_hidden() {
     let scene = pond(0);
-    let bodies = NestedDielectrics::of(&scene);
-    let ball = bodies.around(PrimitiveId::sphere(0), Side::Front, &InteriorList::default());
+    let dielectrics = NestedDielectrics::new(&scene);
+    let ball = dielectrics.interface(PrimitiveId::sphere(0), Side::Front, &InteriorList::default());
     assert!(!ball.is_hidden);
-    let water = bodies.around(PrimitiveId::plane(0), Side::Front, &ball.behind);
+    let water = dielectrics.interface(PrimitiveId::plane(0), Side::Front, &ball.transmitted);
     assert!(water.is_hidden);
-    let out = bodies.around(PrimitiveId::sphere(0), Side::Back, &water.behind);
+    let out = dielectrics.interface(PrimitiveId::sphere(0), Side::Back, &water.transmitted);
     assert!(!out.is_hidden);
-    assert_eq!([&out.before, &out.behind].map(|i| bodies.medium(i).ior), [1.5, 1.33]);
+    assert_eq!([&out.incident, &out.transmitted].map(|i| dielectrics.medium(i).ior), [1.5, 1.33]);
 }
 
 #[test]
-fn what_is_no_body_changes_nothing() {
+fn an_opaque_object_changes_no_interior_list() {
     let scene = pond(0);
-    let bodies = NestedDielectrics::of(&scene);
-    let inside = InteriorList::default().with(1);
-    let around = bodies.around(PrimitiveId::sphere(2), Side::Front, &inside);
-    assert_eq!((&around.before, &around.behind), (&inside, &inside));
-    assert!(!around.is_hidden);
+    let dielectrics = NestedDielectrics::new(&scene);
+    let interior = InteriorList::default().inserted(1);
+    let media = dielectrics.interface(PrimitiveId::sphere(2), Side::Front, &interior);
+    assert_eq!((&media.incident, &media.transmitted), (&interior, &interior));
+    assert!(!media.is_hidden);
 }
 
 #[test]
 fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
     let scene = pond(0);
-    let bodies = NestedDielectrics::of(&scene);
-    let around = bodies.around(PrimitiveId::sphere(0), Side::Back, &InteriorList::default());
-    assert_eq!([&around.before, &around.behind].map(|i| bodies.medium(i).ior), [1.5, 1.0]);
+    let dielectrics = NestedDielectrics::new(&scene);
+    let media = dielectrics.interface(PrimitiveId::sphere(0), Side::Back, &InteriorList::default());
+    assert_eq!(
+        [&media.incident, &media.transmitted].map(|i| dielectrics.medium(i).ior),
+        [1.5, 1.0]
+    );
 }
 
-/// A corner of a cube, of glass.
+/// Returns a corner of a cube, of glass.
 fn corner(transform: DAffine3) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(glass(1.5, 0));
@@ -89,23 +92,25 @@ fn corner(transform: DAffine3) -> Scene {
 }
 
 #[test]
-fn eye_within_a_closed_mesh_is_in_it_and_eye_beside_it_is_not() {
+fn a_point_within_a_closed_mesh_is_in_it_and_one_beside_it_is_not() {
     let scene = corner(DAffine3::IDENTITY);
     assert_eq!(ior_at(&scene, DVec3::splat(0.5)), 1.5);
     assert_eq!(ior_at(&scene, DVec3::splat(-0.5)), 1.0);
     assert_eq!(ior_at(&scene, DVec3::splat(3.0)), 1.0);
 }
 
-/// What a ray into the corner at (½, ½, ½) finds behind the first surface that it meets.
+/// Returns the index of refraction behind the first surface that a ray to (½, ½, ½) hits.
 fn ior_behind(scene: &Scene, origin: DVec3) -> f64 {
-    let bodies = NestedDielectrics::of(scene);
+    let dielectrics = NestedDielectrics::new(scene);
     let intersector = BruteForce::new(scene, Precision::Fast);
     let ray = Ray::new(origin, DVec3::splat(0.5) - origin);
     let mut hit = [None];
     intersector.closest(&[ray], Coherence::Incoherent, &mut hit);
-    let hit = hit[0].expect("the ray meets the corner");
+    let hit = hit[0].expect("the ray hits the corner");
     let side = Surface::new(scene, &ray, &hit).side;
-    bodies.medium(&bodies.around(hit.id, side, &InteriorList::default()).behind).ior
+    dielectrics
+        .medium(&dielectrics.interface(hit.id, side, &InteriorList::default()).transmitted)
+        .ior
 }
 
 #[test]

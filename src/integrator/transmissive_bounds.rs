@@ -1,21 +1,22 @@
-//! Where light may go through anything on its way to a surface.
+//! The bounding boxes of transmissive objects: shadow rays outside them need not look for glass.
 
 use crate::geometry::{Bounds, LANES, Lanes, Ray16, RayBatch};
 use crate::scene::{MaterialId, Scene};
 
-/// More boxes than these are taken as one.
-const MOST: usize = 64;
+/// The greatest number of boxes; more are united into one.
+const MAX_BOXES: usize = 64;
 
-/// The boxes of what lets light through: a ray that comes into none need not look for it.
+/// The boxes of the objects that let light through.
 #[derive(Debug)]
 pub(super) struct TransmissiveBounds {
     boxes: Vec<Bounds>,
-    /// Whether a plane lets light through, which is everywhere.
-    everywhere: bool,
+    /// True if a plane lets light through: planes have no box.
+    is_unbounded: bool,
 }
 
 impl TransmissiveBounds {
-    pub fn of(scene: &Scene) -> Self {
+    /// Returns the boxes of a scene.
+    pub fn new(scene: &Scene) -> Self {
         let transmits =
             |id: MaterialId| scene.materials.get(id.0 as usize).is_some_and(|m| m.may_transmit());
         let spheres = scene.spheres.iter().filter(|s| transmits(s.material)).map(|s| s.bounds());
@@ -25,56 +26,47 @@ impl TransmissiveBounds {
             .filter(|i| transmits(i.material))
             .map(|i| scene.meshes[i.mesh.0 as usize].bounds().transformed(&i.transform));
         let mut boxes: Vec<Bounds> = spheres.chain(instances).collect();
-        if boxes.len() > MOST {
+        if boxes.len() > MAX_BOXES {
             boxes = vec![boxes.into_iter().fold(Bounds::EMPTY, Bounds::union)];
         }
-        Self { boxes, everywhere: scene.planes.iter().any(|plane| transmits(plane.material)) }
+        Self { boxes, is_unbounded: scene.planes.iter().any(|plane| transmits(plane.material)) }
     }
 
-    /// Whether each ray certainly comes into none of the boxes before it ends; the last sixteen may
-    /// be filled up with any answers.
-    pub fn of_all(&self, rays: &RayBatch, arch: pulp::Arch, clear: &mut Vec<bool>) {
-        clear.clear();
-        arch.dispatch(Ask { clearance: self, rays, clear });
+    /// Finds the rays that certainly end before they enter any box. There is an answer, any, also for
+    /// the lanes beyond the end of the batch.
+    pub fn find_clear(&self, arch: pulp::Arch, rays: &RayBatch, is_clear: &mut Vec<bool>) {
+        is_clear.clear();
+        arch.dispatch(
+            #[inline(always)]
+            || {
+                for block in rays.blocks() {
+                    is_clear.extend_from_slice(&self.clear_lanes(block));
+                }
+            },
+        );
     }
 
-    /// Each quotient is right to a few ulp, and so, along the ray, is the place where it enters or
+    /// Returns which of sixteen rays enter no box.
+    ///
+    /// Each quotient is right to a few ulp, and so, along the ray, is the point where it enters or
     /// leaves: the boxes are widened by a thousand times that.
     #[inline(always)]
-    fn of_sixteen(&self, lines: &Ray16) -> Lanes<bool> {
-        let mut clear = [!self.everywhere; LANES];
+    fn clear_lanes(&self, rays: &Ray16) -> Lanes<bool> {
+        let mut is_clear = [!self.is_unbounded; LANES];
         for bounds in &self.boxes {
-            let reach = bounds.max_abs();
+            let extent = bounds.max_abs();
             for i in 0..LANES {
-                let (origin, direction) = lines.origin_and_direction(i);
-                let pad = 1e-12 * (reach + origin.abs().max_element());
-                let a = (bounds.lower - pad - origin) / direction;
-                let b = (bounds.upper + pad - origin) / direction;
+                let (origin, direction) = rays.origin_and_direction(i);
+                let padding = 1e-12 * (extent + origin.abs().max_element());
+                let a = (bounds.lower - padding - origin) / direction;
+                let b = (bounds.upper + padding - origin) / direction;
                 // `min` and `max` pass over the NaN of 0/0.
                 let enters = a.min(b).max_element().max(0.0);
-                let leaves = a.max(b).min_element().min(lines.tmax[i]);
-                clear[i] &= enters > leaves;
+                let leaves = a.max(b).min_element().min(rays.tmax[i]);
+                is_clear[i] &= enters > leaves;
             }
         }
-        clear
-    }
-}
-
-/// [`TransmissiveBounds::of_all`], compiled for what the processor can do at once.
-struct Ask<'a> {
-    clearance: &'a TransmissiveBounds,
-    rays: &'a RayBatch,
-    clear: &'a mut Vec<bool>,
-}
-
-impl pulp::WithSimd for Ask<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        for lines in self.rays.blocks() {
-            self.clear.extend_from_slice(&self.clearance.of_sixteen(lines));
-        }
+        is_clear
     }
 }
 
@@ -86,11 +78,11 @@ mod tests {
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
 
-    fn is_clear(clearance: &TransmissiveBounds, ray: &Ray) -> bool {
-        let (mut rays, mut clear) = (RayBatch::default(), Vec::new());
+    fn is_clear(bounds: &TransmissiveBounds, ray: &Ray) -> bool {
+        let (mut rays, mut is_clear) = (RayBatch::default(), Vec::new());
         rays.push(ray);
-        clearance.of_all(&rays, pulp::Arch::new(), &mut clear);
-        clear[0]
+        bounds.find_clear(pulp::Arch::new(), &rays, &mut is_clear);
+        is_clear[0]
     }
 
     fn glass(scene: &mut Scene) -> MaterialId {
@@ -99,7 +91,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_ray_is_clear_that_meets_glass(
+        fn no_ray_that_hits_glass_is_clear(
             centers in prop::collection::vec(prop::array::uniform3(-9.0..9.0f64), 1..90),
             origin in prop::array::uniform3(-20.0..20.0f64),
             inside in prop::array::uniform3(-0.5..0.5f64),
@@ -112,28 +104,28 @@ mod tests {
             let target = scene.spheres[0].center + DVec3::from(inside);
             let ray = Ray::segment(DVec3::from(origin), target);
             let ray = Ray { direction: ray.direction * ends, ..ray };
-            prop_assert!(!is_clear(&TransmissiveBounds::of(&scene), &ray));
+            prop_assert!(!is_clear(&TransmissiveBounds::new(&scene), &ray));
         }
     }
 
     #[test]
-    fn a_ray_beside_the_glass_or_that_ends_before_it_is_clear() {
+    fn a_ray_beside_glass_or_that_ends_before_it_is_clear() {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glass));
-        let clearance = TransmissiveBounds::of(&scene);
-        let clear = |from: DVec3, to: DVec3| is_clear(&clearance, &Ray::segment(from, to));
+        let bounds = TransmissiveBounds::new(&scene);
+        let clear = |from: DVec3, to: DVec3| is_clear(&bounds, &Ray::segment(from, to));
         assert!(clear(DVec3::new(2.0, -5.0, 0.0), DVec3::new(2.0, 5.0, 0.0)));
         assert!(clear(DVec3::Y * 5.0, DVec3::Y * 1.5));
         assert!(!clear(DVec3::Y * 5.0, DVec3::Y * 0.5));
     }
 
     #[test]
-    fn nothing_is_clear_of_a_plane_of_glass() {
+    fn no_ray_is_clear_of_a_plane_of_glass() {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
         let ray = Ray::segment(DVec3::Y, DVec3::Y * 2.0);
-        assert!(!is_clear(&TransmissiveBounds::of(&scene), &ray));
+        assert!(!is_clear(&TransmissiveBounds::new(&scene), &ray));
     }
 }
