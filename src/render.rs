@@ -13,7 +13,7 @@ use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
 use crate::scene::Scene;
-use crate::scene::animation::Poses;
+use crate::scene::animation::PosedScene;
 
 /// How to make a picture; size, samples and background stand in the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -103,7 +103,7 @@ pub fn render(
 ) -> Result<Rendering> {
     scene.check()?;
     check_camera(scene, options.camera)?;
-    let posed = scene.animation.is_some().then(|| scene.at(0.0)).transpose()?;
+    let posed = scene.animation.is_some().then(|| scene.at_time(0.0)).transpose()?;
     let scene = posed.as_ref().unwrap_or(scene);
     in_pool(options.threads, || {
         let threads = rayon::current_num_threads();
@@ -149,7 +149,7 @@ pub fn render_frames(
         .with_quality(quality(scene, options));
         // Where lights and cameras alone move, one intersector serves all frames.
         let mut still: Option<Box<dyn Intersector + '_>> = None;
-        let mut poses = Poses::new(scene);
+        let mut poses = PosedScene::new(scene);
         for (i, &time) in times.iter().enumerate() {
             poses.pose(time)?;
             if scene.animation.is_some() {

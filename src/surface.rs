@@ -83,7 +83,7 @@ impl Surface {
         Ray {
             origin: self.position,
             direction: arrival.toward,
-            tmax: if arrival.bounded { 1.0 } else { f64::INFINITY },
+            tmax: if arrival.is_bounded { 1.0 } else { f64::INFINITY },
             departure: Some(Departure { id: self.id, side }),
             continuation: None,
         }
@@ -96,7 +96,7 @@ fn base(id: PrimitiveId, position: DVec3, normal: DVec3, material: MaterialId) -
 
 fn on_sphere(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let sphere = &scene.spheres[hit.id.primitive as usize];
-    let normal = normal_of_sphere(sphere.center, ray.at(hit.t));
+    let normal = normal_of_sphere(sphere.center, ray.position(hit.t));
     // Put back on the sphere: the point along the ray is off by rounding of the whole distance.
     let position = sphere.center + normal * sphere.radius;
     base(hit.id, position, normal, sphere.material)
@@ -110,7 +110,7 @@ fn normal_of_sphere(center: DVec3, point: DVec3) -> DVec3 {
 
 fn on_plane(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let plane = &scene.planes[hit.id.primitive as usize];
-    let position = on_the_plane(plane.point, plane.normal, ray.at(hit.t));
+    let position = on_the_plane(plane.point, plane.normal, ray.position(hit.t));
     base(hit.id, position, plane.normal, plane.material)
 }
 

@@ -44,7 +44,7 @@ fn picture(
     assert_eq!(scene.warnings, [""; 0], "{name}");
     scene.film.spp = spp;
     scene.film.max_depth = depth.unwrap_or(scene.film.max_depth);
-    (render(&scene, options, &|_| {}).expect(name).film, Settings::of(&scene.film))
+    (render(&scene, options, &|_| {}).expect(name).film, Settings::from_film(&scene.film))
 }
 
 #[test]

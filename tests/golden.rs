@@ -27,7 +27,7 @@ fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) ->
     scene.film.spp = spp;
     let options = Options { backend, ..Options::default() };
     let film = render(&scene, &options, &|_| {}).expect("the scene renders").film;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     RgbImage::from_raw(width, height, png_bytes(&film, &settings)).expect("ok: three bytes a pixel")
 }
 

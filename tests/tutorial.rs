@@ -156,7 +156,7 @@ fn compare(name: &str, part: Part) {
     let scene = load(&path).expect("the scene loads");
     assert_eq!(scene.warnings, [""; 0]);
     let film = render(&scene, &Options::default(), &|_| {}).expect("the scene renders").film;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     let ours = png_bytes(&film, &settings);
     let theirs = coloration(part);
     assert_eq!(ours.len(), theirs.len());

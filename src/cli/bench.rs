@@ -100,7 +100,7 @@ pub fn run(arguments: &Bench) -> Outcome {
     let [json, csv, plot, html] = &files;
     output::write_json(json, &found)?;
     for (path, text) in [(csv, found.csv()), (plot, svg), (html, page)] {
-        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        write::write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     }
     output::print(&format!("{found}{}\n", html.display()))?;
     Ok(Verdict::Good)

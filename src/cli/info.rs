@@ -64,14 +64,14 @@ impl Motion {
         let mut motion = Self {
             frames: animation.frames,
             fps: animation.fps,
-            seconds: animation.seconds(),
+            seconds: animation.duration(),
             spheres: 0,
             instances: 0,
             meshes: 0,
             lights: 0,
             cameras: 0,
         };
-        for mover in &animation.movers {
+        for mover in &animation.objects {
             *match mover {
                 Animated::Sphere { .. } => &mut motion.spheres,
                 Animated::Instance { .. } => &mut motion.instances,
@@ -110,7 +110,7 @@ pub fn run(arguments: &Info) -> Outcome {
     let scene = load::load_with(&arguments.scene, &arguments.loading.options(None))?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
-    let summary = summarize(&scene.at(0.0)?, motion);
+    let summary = summarize(&scene.at_time(0.0)?, motion);
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&report::printable(&summary.to_string()))?;
         summary.warnings.iter().for_each(|w| report::warning(w));
@@ -130,7 +130,7 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
     let mut warnings = scene.warnings.clone();
     warnings
         .extend(precision_warnings::precision_warnings(scene, Backend::default() != Backend::Rust));
-    let needs = SceneFeatures::of(scene);
+    let needs = SceneFeatures::from_scene(scene);
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
@@ -141,10 +141,10 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
         materials: scene.materials.len(),
         textures: scene.textures.len(),
         lights: scene.lights.iter().map(|l| named(light_kind(&l.kind), &l.name)).collect(),
-        cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
+        cameras: scene.cameras.iter().map(|c| named(lens(&c.projection), &c.name)).collect(),
         animation,
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
-        needed: needs.done().map(|(work, why)| (work.name(), why)).collect(),
+        needed: needs.used().map(|(work, why)| (work.name(), why)).collect(),
         skipped: needs.skipped().map(|(work, why)| (work.name(), why)).collect(),
         report: (&scene.report).into(),
         faces: scene.report.to_string(),

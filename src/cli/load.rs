@@ -82,7 +82,7 @@ impl Tracing {
     /// As there.
     pub fn load(&self) -> Result<(Scene, usize)> {
         let (scene, camera) = self.load_animated()?;
-        Ok((scene.at(0.0)?, camera))
+        Ok((scene.at_time(0.0)?, camera))
     }
 
     /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
@@ -113,7 +113,7 @@ impl Tracing {
                 let error = Error::input("the scene has no animation, and so no --time");
                 return Err(error.at(&self.scene).help("leave --time out"));
             }
-            scene = scene.at(time).map_err(|e| e.at(&self.scene))?;
+            scene = scene.at_time(time).map_err(|e| e.at(&self.scene))?;
         }
         Ok((scene, camera))
     }

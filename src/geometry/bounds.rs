@@ -16,13 +16,13 @@ impl Bounds {
     pub const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
 
     /// The least box around some points.
-    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, Self::with)
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::union_point)
     }
 
     /// The least box around this one and a point.
     #[inline]
-    pub fn with(self, point: DVec3) -> Self {
+    pub fn union_point(self, point: DVec3) -> Self {
         Self { lower: self.lower.min(point), upper: self.upper.max(point) }
     }
 
@@ -75,7 +75,7 @@ impl Bounds {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        Self::of((0..8).map(|i| {
+        Self::from_points((0..8).map(|i| {
             let pick = |bit: usize, low: f64, high: f64| if i & bit == 0 { low } else { high };
             transform.transform_point3(DVec3::new(
                 pick(1, self.lower.x, self.upper.x),

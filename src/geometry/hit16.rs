@@ -25,7 +25,7 @@ impl PrimitiveId16 {
     /// A triangle of the first mesh.
     pub const MESHES: u32 = 3;
 
-    pub(super) const NOTHING: Self =
+    pub(super) const EMPTY: Self =
         Self { geometry: [0; LANES], primitive: [0; LANES], instance: [0; LANES] };
 
     /// The id in lane `i`.
@@ -69,11 +69,11 @@ pub struct Hit16 {
 }
 
 impl Hit16 {
-    const NOTHING: Self = Self {
+    const MISSES: Self = Self {
         t: [f64::INFINITY; LANES],
         u: [0.0; LANES],
         v: [0.0; LANES],
-        id: PrimitiveId16::NOTHING,
+        id: PrimitiveId16::EMPTY,
     };
 
     /// The hit in lane `i`.
@@ -85,7 +85,7 @@ impl Hit16 {
     /// Keeps plane `index` from lane `at` on where it counts rather than what is there; `ts` are its
     /// distances, no number where it is not met.
     #[inline(always)]
-    pub fn merge_plane<const W: usize>(&mut self, index: u32, ts: &[f64; W], at: usize) {
+    pub fn merge_plane_hits<const W: usize>(&mut self, index: u32, ts: &[f64; W], at: usize) {
         for i in 0..W {
             let (t, best) = (ts[i], self.t[at + i]);
             // Of two at the same distance a sphere counts before a plane, and that before a mesh.
@@ -137,7 +137,7 @@ impl HitBatch {
     pub fn resize(&mut self, count: usize) -> &mut [Hit16] {
         let blocks = count.div_ceil(LANES);
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Hit16::NOTHING);
+            self.blocks.resize(blocks, Hit16::MISSES);
         }
         self.len = count;
         let all = &mut self.blocks[..blocks];

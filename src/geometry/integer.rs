@@ -48,7 +48,7 @@ pub struct Scale {
 
 impl Scale {
     /// The coarsest scale on which all the numbers are integers.
-    pub fn of(numbers: impl IntoIterator<Item = f64>) -> Self {
+    pub fn common(numbers: impl IntoIterator<Item = f64>) -> Self {
         let (mut low, mut high) = (i32::MAX, i32::MIN);
         for (m, e) in numbers.into_iter().map(decode).filter(|&(m, _)| m != 0) {
             low = low.min(e);

@@ -100,7 +100,7 @@ impl Ray {
 
     /// The point at `t`.
     #[inline]
-    pub fn at(&self, t: f64) -> DVec3 {
+    pub fn position(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
     }
 }

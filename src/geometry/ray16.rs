@@ -23,7 +23,7 @@ pub struct Ray16 {
 }
 
 impl Ray16 {
-    const NONE: Self =
+    const EMPTY: Self =
         Self { origin: [[0.0; LANES]; 3], direction: [[0.0; LANES]; 3], tmax: [0.0; LANES] };
 
     /// Origin and direction in lane `i`.
@@ -45,7 +45,7 @@ pub struct Departure16 {
 }
 
 impl Departure16 {
-    const NOTHING: Self = Self { id: PrimitiveId16::NOTHING, is_back: [false; LANES] };
+    const NONE: Self = Self { id: PrimitiveId16::EMPTY, is_back: [false; LANES] };
 
     fn set(&mut self, i: usize, from: Option<Departure>) {
         self.id.set(i, from.map(|from| from.id));
@@ -102,7 +102,7 @@ impl RayBatch {
 
     fn reserve(&mut self, blocks: usize) {
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Ray16::NONE);
+            self.blocks.resize(blocks, Ray16::EMPTY);
         }
     }
 
@@ -113,7 +113,7 @@ impl RayBatch {
         self.reserve(i / LANES + 1);
         self.len += 1;
         if ray.departure.is_some() || !self.departures.is_empty() {
-            self.departures.resize(i / LANES + 1, Departure16::NOTHING);
+            self.departures.resize(i / LANES + 1, Departure16::NONE);
             self.departures[i / LANES].set(i % LANES, ray.departure);
         }
         if ray.continuation.is_some() || !self.continuations.is_empty() {
@@ -135,7 +135,7 @@ impl RayBatch {
             && self.continuations.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        self.departures.resize(block + 1, Departure16::NOTHING);
+        self.departures.resize(block + 1, Departure16::NONE);
         self.len += LANES;
         (&mut self.blocks[block], &mut self.departures[block])
     }
@@ -147,7 +147,7 @@ impl RayBatch {
     pub fn set(&mut self, i: usize, ray: &Ray) {
         assert!(i < self.len, "ray {i} of {}", self.len);
         if ray.departure.is_some() && self.departures.is_empty() {
-            self.departures.resize(self.len.div_ceil(LANES), Departure16::NOTHING);
+            self.departures.resize(self.len.div_ceil(LANES), Departure16::NONE);
         }
         if let Some(left) = self.departures.get_mut(i / LANES) {
             left.set(i % LANES, ray.departure);

@@ -18,7 +18,7 @@ impl PixelCone {
     pub fn of(rays: &RayGenerator, film: &FilmSettings) -> Self {
         let most = film.adaptive.map_or(film.spp, |adaptive| adaptive.max);
         let share = 1.0 / f64::from(most).sqrt();
-        Self { width: rays.pixel().map(|width| width * share) }
+        Self { width: rays.pixel_size().map(|width| width * share) }
     }
 }
 

@@ -123,8 +123,8 @@ impl<'a> Integrator<'a> {
             View::Beauty => scene.film.clone(),
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
-        let rays = camera.rays(scene.film.size);
-        let needs = SceneFeatures::of(scene);
+        let rays = camera.ray_generator(scene.film.size);
+        let needs = SceneFeatures::from_scene(scene);
         let must = |work| needs.uses(work);
         let bodies = NestedDielectrics::of(scene);
         let eye = match bodies.is_empty() {

@@ -70,7 +70,7 @@ fn walk(
     }
     let mut next = [None];
     integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut next);
-    let end = ray.at((ray.start_t() + next[0]?.t) * 0.5);
+    let end = ray.position((ray.start_t() + next[0]?.t) * 0.5);
     let (direction, throughput, inside) = (ray.direction.normalize(), path.throughput, path.inside);
     Some(Walk { met, throughput, position, direction, inside, end })
 }

@@ -95,7 +95,7 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     }
     defaults::materials::settle(&mut scene);
     scene.check().map_err(|e| e.at(path))?;
-    let open = watertight::warn_of_open_dielectrics(&scene);
+    let open = watertight::open_dielectric_warnings(&scene);
     scene.warnings.extend(open);
     Ok(scene)
 }

@@ -26,7 +26,7 @@ pub enum Projection {
 
 impl Projection {
     /// The same kind of lens with another angle, in radians, distance or height.
-    pub fn with(self, value: f64) -> Self {
+    pub fn with_value(self, value: f64) -> Self {
         match self {
             Projection::FovY(_) => Projection::FovY(value),
             Projection::FovX(_) => Projection::FovX(value),
@@ -50,7 +50,7 @@ pub struct Camera {
     /// The picture's up, `right × forward`.
     pub up: DVec3,
     /// How much it sees.
-    pub lens: Projection,
+    pub projection: Projection,
 }
 
 impl Camera {
@@ -70,16 +70,16 @@ impl Camera {
         }
         let right = right.normalize();
         let up = right.cross(forward);
-        Ok(Self { name: String::new(), position, forward, right, up, lens })
+        Ok(Self { name: String::new(), position, forward, right, up, projection: lens })
     }
 
     /// The camera moved and turned, so that it sees the placed scene as it saw the scene; only a
     /// mirror or a shear it does not follow. None when the transform is too uneven to leave it an
     /// up.
-    pub fn placed(&self, transform: &DAffine3) -> Option<Self> {
+    pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
         let forward = transform.transform_vector3(self.forward).try_normalize()?;
         let up = transform.transform_vector3(self.up);
-        let lens = match self.lens {
+        let lens = match self.projection {
             Projection::OrthoHeight(height) => Projection::OrthoHeight(height * up.length()),
             lens => lens,
         };
@@ -89,9 +89,9 @@ impl Camera {
     }
 
     /// The rays of a picture of `size` pixels.
-    pub fn rays(&self, size: [u32; 2]) -> RayGenerator {
+    pub fn ray_generator(&self, size: [u32; 2]) -> RayGenerator {
         let [width, height] = size.map(f64::from);
-        let focal = match self.lens {
+        let focal = match self.projection {
             Projection::FovY(angle) => height * 0.5 / (angle * 0.5).tan(),
             Projection::FovX(angle) => width * 0.5 / (angle * 0.5).tan(),
             Projection::FocalPx { focal, width: of } => focal * width / f64::from(of),
@@ -101,7 +101,7 @@ impl Camera {
                     per_pixel: [self.right, -self.up].map(|axis| axis * (world / height)),
                     forward: self.forward,
                     middle: [width * 0.5, height * 0.5],
-                    parallel: true,
+                    is_parallel: true,
                 };
             }
         };
@@ -110,7 +110,7 @@ impl Camera {
             per_pixel: [self.right, -self.up],
             forward: self.forward * focal,
             middle: [width * 0.5, height * 0.5],
-            parallel: false,
+            is_parallel: false,
         }
     }
 }
@@ -125,19 +125,19 @@ pub struct RayGenerator {
     per_pixel: [DVec3; 2],
     forward: DVec3,
     middle: [f64; 2],
-    parallel: bool,
+    is_parallel: bool,
 }
 
 impl RayGenerator {
     /// The one point that all rays start from, if there is one.
     pub fn eye(&self) -> Option<DVec3> {
-        (!self.parallel).then_some(self.origin)
+        (!self.is_parallel).then_some(self.origin)
     }
 
     /// The width of a pixel one unit of a ray's t away, and where the ray starts, in world units.
-    pub fn pixel(&self) -> [f64; 2] {
+    pub fn pixel_size(&self) -> [f64; 2] {
         let width = self.per_pixel[0].length();
-        if self.parallel { [0.0, width] } else { [width, 0.0] }
+        if self.is_parallel { [0.0, width] } else { [width, 0.0] }
     }
 
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
@@ -145,7 +145,7 @@ impl RayGenerator {
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let offset =
             self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
-        let (moved, turned) = match self.parallel {
+        let (moved, turned) = match self.is_parallel {
             true => (offset, DVec3::ZERO),
             false => (DVec3::ZERO, offset),
         };
@@ -175,7 +175,7 @@ mod tests {
     fn tutorial_camera_gives_the_tutorials_directions() {
         let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, lens).unwrap();
-        let ray = camera.rays([1000, 500]).ray(3.0, 7.0);
+        let ray = camera.ray_generator([1000, 500]).ray(3.0, 7.0);
         assert_eq!(ray.direction, DVec3::new(3.0 - 500.0, 7.0 - 250.0, 500.0));
     }
 
@@ -190,7 +190,7 @@ mod tests {
     fn ninety_degrees_see_as_far_up_as_ahead() {
         let camera =
             Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::FovY(FRAC_PI_2)).unwrap();
-        let top = camera.rays([200, 100]).ray(100.0, 0.0).direction.normalize();
+        let top = camera.ray_generator([200, 100]).ray(100.0, 0.0).direction.normalize();
         assert!((top.y + top.z).abs() < 1e-15, "{top}");
     }
 
@@ -198,7 +198,7 @@ mod tests {
     fn focal_length_scales_with_the_width() {
         let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::Y, lens).unwrap();
-        let corner = |w: u32| camera.rays([w, w / 2]).ray(0.0, 0.0).direction.normalize();
+        let corner = |w: u32| camera.ray_generator([w, w / 2]).ray(0.0, 0.0).direction.normalize();
         assert!((corner(1000) - corner(250)).length() < 1e-15);
     }
 
@@ -207,7 +207,7 @@ mod tests {
         let camera =
             Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::OrthoHeight(2.0))
                 .unwrap();
-        let rays = camera.rays([100, 100]);
+        let rays = camera.ray_generator([100, 100]);
         let (a, b) = (rays.ray(0.0, 0.0), rays.ray(100.0, 50.0));
         assert_eq!(a.direction, b.direction);
         assert_eq!((a.origin, b.origin), (DVec3::new(-1.0, 1.0, 0.0), DVec3::X));

@@ -6,9 +6,9 @@ use crate::scene::{AlphaMode, Coverage, Scene, Texture, TexturePoint};
 impl Coverage {
     /// The alpha at a point, where that of the mesh's vertices is `vertex`.
     #[inline]
-    pub fn at(&self, textures: &[Texture], point: &TexturePoint, vertex: f32) -> f32 {
+    pub fn evaluate(&self, textures: &[Texture], point: &TexturePoint, vertex: f32) -> f32 {
         let map = self.map.map_or(1.0, |map| {
-            textures[map.texture.0 as usize].at(point)[usize::from(map.channel)]
+            textures[map.texture.0 as usize].sample(point)[usize::from(map.channel)]
         });
         let alpha = self.alpha * map * vertex;
         // What is not a number becomes 0.
@@ -37,7 +37,7 @@ impl Scene {
         let weights = [1.0 - u - v, u, v];
         let uv = mesh.uv(id.primitive, weights);
         let point = TexturePoint { uv, ..TexturePoint::default() };
-        coverage.at(&self.textures, &point, mesh.alpha(id.primitive, weights)) < cutoff
+        coverage.evaluate(&self.textures, &point, mesh.alpha(id.primitive, weights)) < cutoff
     }
 
     /// Whether the material of an instance cuts holes into its mesh.
@@ -56,7 +56,7 @@ mod tests {
     /// A triangle whose picture is solid on its left half only.
     fn half() -> Scene {
         let mut scene = Scene::default();
-        let image = Image::bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);
+        let image = Image::from_bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);
         let texture = Texture { filter: Filter::Nearest, ..Texture::new(image.into()) };
         let map = Some(Channel { texture: scene.add_texture(texture), channel: 3 });
         let coverage = Coverage { alpha: 1.0, map, mode: AlphaMode::Mask { cutoff: 0.5 } };

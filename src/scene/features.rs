@@ -91,12 +91,12 @@ pub struct SceneFeatures {
 
 impl SceneFeatures {
     /// What a checked scene needs.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let materials: Vec<&Material> = scene.materials_in_use().collect();
         let mut uses = vec![0u64; scene.meshes.len()];
         scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
         let standing = || scene.meshes.iter().zip(&uses).filter(|(_, uses)| **uses > 0);
-        let shown = pictures(scene, materials.iter().copied()).len() as u64;
+        let shown = images_in(scene, materials.iter().copied()).len() as u64;
         let made_of = |is: fn(&Material) -> bool| {
             (materials.iter().filter(|m| is(m)).count() as u64, materials.len() as u64)
         };
@@ -107,7 +107,7 @@ impl SceneFeatures {
             Feature::Spheres => count(scene.spheres.len()),
             Feature::Instances => among(uses.iter().filter(|&&n| n > 1).count(), meshes),
             Feature::Planes => count(scene.planes.len()),
-            Feature::Pictures => (shown, pictures(scene, scene.materials.iter()).len() as u64),
+            Feature::Pictures => (shown, images_in(scene, scene.materials.iter()).len() as u64),
             Feature::Uv => made_of(Material::is_textured),
             Feature::Mipmaps => {
                 let averaged = |id: TextureId| scene.textures[id.0 as usize].mipmap;
@@ -144,7 +144,7 @@ impl SceneFeatures {
     }
 
     /// The work that is done though the scene may have no need of it, with what it is done for.
-    pub fn done(&self) -> impl Iterator<Item = (Feature, String)> {
+    pub fn used(&self) -> impl Iterator<Item = (Feature, String)> {
         self.filtered(true)
     }
 
@@ -186,7 +186,7 @@ impl SceneFeatures {
 }
 
 /// The pictures that materials show, each once.
-pub(in crate::scene) fn pictures<'a>(
+pub(in crate::scene) fn images_in<'a>(
     scene: &'a Scene,
     materials: impl Iterator<Item = &'a Material>,
 ) -> Vec<&'a Image> {
@@ -204,7 +204,7 @@ mod tests {
     use glam::{DAffine3, DVec3};
 
     fn skipped(scene: &Scene) -> Vec<&'static str> {
-        SceneFeatures::of(scene).skipped().map(|(work, _)| work.name()).collect()
+        SceneFeatures::from_scene(scene).skipped().map(|(work, _)| work.name()).collect()
     }
 
     fn ball() -> Scene {
@@ -225,13 +225,13 @@ mod tests {
 
     #[test]
     fn an_empty_scene_needs_nothing() {
-        assert_eq!(SceneFeatures::of(&Scene::default()).done().count(), 0);
+        assert_eq!(SceneFeatures::from_scene(&Scene::default()).used().count(), 0);
     }
 
     #[test]
     fn a_ball_needs_user_geometry_and_no_more() {
-        let needs = SceneFeatures::of(&ball());
-        let done: Vec<_> = needs.done().collect();
+        let needs = SceneFeatures::from_scene(&ball());
+        let done: Vec<_> = needs.used().collect();
         assert_eq!(done, [(Feature::Spheres, "1 of 1 spheres are user geometry".to_owned())]);
     }
 

@@ -62,7 +62,7 @@ impl SamplePosition {
 
 /// More samples where neighbouring ones disagree: in what they hit, in its normal, or in colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adaptive {
+pub struct AdaptiveSampling {
     /// The most samples of a pixel, no fewer than every pixel has.
     pub max: u32,
     /// From which difference on two colours disagree, in [0, 1]: in any channel, of the square
@@ -70,7 +70,7 @@ pub struct Adaptive {
     pub threshold: f32,
 }
 
-impl Adaptive {
+impl AdaptiveSampling {
     /// The threshold where none is asked for.
     pub const THRESHOLD: f32 = 0.1;
 }
@@ -83,7 +83,7 @@ pub struct FilmSettings {
     /// Samples per pixel, at least 1.
     pub spp: u32,
     /// Where a pixel gets more than these, if any does.
-    pub adaptive: Option<Adaptive>,
+    pub adaptive: Option<AdaptiveSampling>,
     /// How the PNG encodes what the tone curve leaves.
     pub transfer: Transfer,
     /// The PNG's radiance is multiplied with 2 to the power of this.

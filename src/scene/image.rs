@@ -18,23 +18,23 @@ pub struct Image {
     /// `width · height` pixels.
     pub texels: Texels,
     /// The reduced pictures, by how colours are encoded: sRGB, linear. Made when first asked for.
-    reduced: [OnceLock<Mipmap>; 2],
+    mipmaps: [OnceLock<Mipmap>; 2],
 }
 
 impl Image {
     /// A picture of `width` times `height` pixels.
     pub fn new(name: impl Into<String>, [width, height]: [u32; 2], texels: Texels) -> Self {
-        Self { name: name.into(), width, height, texels, reduced: Default::default() }
+        Self { name: name.into(), width, height, texels, mipmaps: Default::default() }
     }
 
     /// A picture of 8 bits a channel.
-    pub fn bytes(name: impl Into<String>, size: [u32; 2], texels: Vec<Texel>) -> Self {
+    pub fn from_bytes(name: impl Into<String>, size: [u32; 2], texels: Vec<Texel>) -> Self {
         Self::new(name, size, Texels::Bytes(texels))
     }
 
     /// A picture that was not read. A scene in which a material in use shows it is not valid.
     pub fn unread(name: impl Into<String>) -> Self {
-        Self::bytes(name, [0; 2], Vec::new())
+        Self::from_bytes(name, [0; 2], Vec::new())
     }
 
     /// Whether it was read.
@@ -46,7 +46,7 @@ impl Image {
     ///
     /// # Panics
     /// When there is no such channel.
-    pub fn is_full(&self, channel: usize) -> bool {
+    pub fn is_channel_full(&self, channel: usize) -> bool {
         match &self.texels {
             Texels::Bytes(texels) => texels.iter().all(|t| t[channel] == u8::MAX),
             Texels::Words(texels) => texels.iter().all(|t| t[channel] == u16::MAX),
@@ -55,12 +55,12 @@ impl Image {
     }
 
     /// Ever smaller copies of it, for colours that are encoded so.
-    pub fn reduced(&self, transfer: Transfer) -> &Mipmap {
+    pub fn mipmap(&self, transfer: Transfer) -> &Mipmap {
         let of = match transfer {
-            Transfer::Srgb => &self.reduced[0],
-            Transfer::None => &self.reduced[1],
+            Transfer::Srgb => &self.mipmaps[0],
+            Transfer::None => &self.mipmaps[1],
         };
-        of.get_or_init(|| Mipmap::of(&self.texels, [self.width, self.height], transfer))
+        of.get_or_init(|| Mipmap::new(&self.texels, [self.width, self.height], transfer))
     }
 }
 
@@ -77,7 +77,7 @@ mod tests {
 
     #[test]
     fn a_channel_is_full_where_no_pixel_has_less() {
-        let image = Image::bytes("", [2, 1], vec![[255, 0, 0, 255], [255, 0, 0, 254]]);
-        assert_eq!([0, 3].map(|channel| image.is_full(channel)), [true, false]);
+        let image = Image::from_bytes("", [2, 1], vec![[255, 0, 0, 255], [255, 0, 0, 254]]);
+        assert_eq!([0, 3].map(|channel| image.is_channel_full(channel)), [true, false]);
     }
 }

@@ -85,7 +85,7 @@ pub struct IncidentLight {
     /// directional light, whose shadow rays have no end.
     pub toward: DVec3,
     /// Whether a shadow ray ends at `toward` rather than going on.
-    pub bounded: bool,
+    pub is_bounded: bool,
     /// What arrives, falloff and cone included.
     pub intensity: Vec3,
 }
@@ -111,7 +111,7 @@ impl Light {
 
     /// The light moved and turned. Its intensity and its range stay as they are under any scale, as
     /// KHR_lights_punctual has it.
-    pub fn placed(&self, transform: &DAffine3) -> Self {
+    pub fn transformed(&self, transform: &DAffine3) -> Self {
         let turned = |v: DVec3| transform.transform_vector3(v).normalize();
         let mut light = self.clone();
         match &mut light.kind {
@@ -134,7 +134,7 @@ impl Light {
             LightKind::Directional { direction } => {
                 return Some(IncidentLight {
                     toward: -direction,
-                    bounded: false,
+                    is_bounded: false,
                     intensity: self.intensity,
                 });
             }
@@ -150,28 +150,31 @@ impl Light {
             Falloff::None => 1.0,
             Falloff::InverseSquare => 1.0 / distance_squared,
         };
-        share *= window(distance_squared, range);
+        share *= range_attenuation(distance_squared, range);
         if let LightKind::Spot { direction, inner_angle, outer_angle, .. } = self.kind {
-            share *=
-                cone(-direction.dot(toward) / distance_squared.sqrt(), inner_angle, outer_angle);
+            share *= cone_attenuation(
+                -direction.dot(toward) / distance_squared.sqrt(),
+                inner_angle,
+                outer_angle,
+            );
         }
         (share > 0.0).then(|| IncidentLight {
             toward,
-            bounded: true,
+            is_bounded: true,
             intensity: self.intensity * share as f32,
         })
     }
 }
 
 /// Fades to nothing at `range`: max(min(1 − (d/range)⁴, 1), 0), as KHR_lights_punctual recommends.
-fn window(distance_squared: f64, range: f64) -> f64 {
+fn range_attenuation(distance_squared: f64, range: f64) -> f64 {
     let ratio = distance_squared / (range * range);
     (1.0 - ratio * ratio).clamp(0.0, 1.0)
 }
 
 /// From 1 within the inner angle to 0 beyond the outer one: the square of a ramp over the cosine,
 /// as KHR_lights_punctual recommends.
-fn cone(cosine: f64, inner_angle: f64, outer_angle: f64) -> f64 {
+fn cone_attenuation(cosine: f64, inner_angle: f64, outer_angle: f64) -> f64 {
     let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
     let ramp = ((cosine - outer) / (inner - outer).max(1e-9)).clamp(0.0, 1.0);
     ramp * ramp

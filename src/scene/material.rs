@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::scene::{Channel, MetallicMaps, ShadingParams, TextureId};
+use crate::scene::{Channel, MetallicRoughnessMaps, ShadingParams, TextureId};
 
 /// The index of a material in `Scene::materials`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -58,7 +58,7 @@ pub struct Material {
     pub coverage: Option<Coverage>,
     /// A metallic-roughness material, whose diffuse, specular, shininess, reflect and transmit stand
     /// in place of the material's own wherever a map or a vertex colour counts.
-    pub metallic: Option<Box<MetallicMaps>>,
+    pub metallic: Option<Box<MetallicRoughnessMaps>>,
 }
 
 /// A picture that changes the shininess.
@@ -152,13 +152,13 @@ impl Material {
 
     /// Makes it a metallic-roughness material: a plain one where its base colour is just the
     /// diffuse one.
-    pub fn set_metallic(&mut self, maps: MetallicMaps) {
+    pub fn set_metallic_roughness(&mut self, maps: MetallicRoughnessMaps) {
         let ShadingParams { diffuse, specular, shininess, reflect, transmit, .. } =
-            maps.factors.finish();
+            maps.factors.shading_params();
         (self.diffuse, self.specular, self.shininess) = (diffuse, specular, shininess);
         (self.reflect, self.transmit) = (reflect, transmit);
-        let is_plain = MetallicMaps { base: None, ..maps.clone() }
-            == MetallicMaps::new(maps.factors)
+        let is_plain = MetallicRoughnessMaps { base: None, ..maps.clone() }
+            == MetallicRoughnessMaps::new(maps.factors)
             && maps.factors.metallic == 0.0
             && maps.factors.transmission == 0.0;
         match is_plain {
@@ -192,7 +192,7 @@ impl Material {
     /// Whether light that comes from a medium with index of refraction `ior`, and goes on into one,
     /// may pass as if nothing were there.
     pub fn is_clear_in(&self, ior: f64) -> bool {
-        let is_clear = match self.changes() {
+        let is_clear = match self.varies() {
             true => self.may_transmit(),
             false => self.transmit == Vec3::ONE && self.emission == Vec3::ZERO,
         };
@@ -200,7 +200,7 @@ impl Material {
     }
 
     /// Whether what it lets through differs from point to point.
-    fn changes(&self) -> bool {
+    fn varies(&self) -> bool {
         self.metallic.is_some() || self.coverage.is_some()
     }
 
@@ -271,7 +271,7 @@ impl Material {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Metallic;
+    use crate::scene::MetallicRoughness;
 
     /// A material with a different texture in each place.
     fn full() -> Material {
@@ -281,7 +281,7 @@ mod tests {
             TextureId(next - 1)
         };
         let mut channel = || Channel { texture: id(), channel: 0 };
-        let factors = Metallic {
+        let factors = MetallicRoughness {
             base: Vec3::ONE,
             metallic: 1.0,
             roughness: 1.0,
@@ -298,14 +298,14 @@ mod tests {
             normal_map: Some(NormalMap { texture: channel().texture, scale: 1.0 }),
             occlusion_map: Some(OcclusionMap { map: channel(), strength: 1.0 }),
             coverage: Some(Coverage { alpha: 1.0, map: Some(channel()), mode: AlphaMode::Blend }),
-            metallic: Some(Box::new(MetallicMaps {
+            metallic: Some(Box::new(MetallicRoughnessMaps {
                 base: Some(channel().texture),
                 specular_color: Some(channel().texture),
                 metallic: Some(channel()),
                 roughness: Some(channel()),
                 specular: Some(channel()),
                 transmission: Some(channel()),
-                ..MetallicMaps::new(factors)
+                ..MetallicRoughnessMaps::new(factors)
             })),
             ..Material::default()
         }

@@ -9,7 +9,7 @@ use crate::geometry::Bounds;
 pub(crate) const GRAIN: usize = 1 << 14;
 
 /// The box that holds nothing.
-const NOWHERE: [Vec3A; 2] = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
+const EMPTY_BOX: [Vec3A; 2] = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
 
 /// The index of a mesh in `Scene::meshes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -55,7 +55,7 @@ impl Mesh {
 
     /// The mean of what the corners of a triangle have, by their weights.
     #[inline]
-    pub(crate) fn at<const N: usize>(
+    pub(crate) fn interpolate<const N: usize>(
         &self,
         of_vertices: &[[f32; N]],
         triangle: u32,
@@ -74,7 +74,7 @@ impl Mesh {
     pub(crate) fn uv(&self, triangle: u32, weights: [f64; 3]) -> [[f32; 2]; 2] {
         [&self.uvs, &self.second_uvs].map(|uvs| match uvs.is_empty() {
             true => [0.0; 2],
-            false => self.at(uvs, triangle, weights),
+            false => self.interpolate(uvs, triangle, weights),
         })
     }
 
@@ -109,13 +109,14 @@ impl Mesh {
     pub fn bounds(&self) -> Bounds {
         // In f32, which rounds nothing: the extremes are coordinates of vertices.
         let around = |triangles: &[[u32; 3]]| {
-            triangles.as_flattened().iter().fold(NOWHERE, |[lower, upper], &i| {
+            triangles.as_flattened().iter().fold(EMPTY_BOX, |[lower, upper], &i| {
                 let p = Vec3A::from(self.positions[i as usize]);
                 [lower.min(p), upper.max(p)]
             })
         };
         let union = |a: [Vec3A; 2], b: [Vec3A; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let [lower, upper] = self.triangles.par_chunks(GRAIN).map(around).reduce(|| NOWHERE, union);
+        let [lower, upper] =
+            self.triangles.par_chunks(GRAIN).map(around).reduce(|| EMPTY_BOX, union);
         // So that 0 has one sign, whichever vertex it came from.
         let [lower, upper] = [lower, upper].map(|p| (p + Vec3A::ZERO).as_dvec3());
         Bounds { lower, upper }

@@ -31,7 +31,7 @@ pub struct ShadingParams {
 impl ShadingParams {
     /// Of a surface that covers only `alpha` of what lies behind it, and lets nothing through by
     /// itself: the rest is seen straight through.
-    pub fn covering(self, alpha: f32) -> Self {
+    pub fn with_alpha(self, alpha: f32) -> Self {
         Self {
             emission: self.emission * alpha,
             reflect: self.reflect * alpha,
@@ -48,7 +48,7 @@ impl ShadingParams {
 
 /// The parameters of a metallic-roughness material at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metallic {
+pub struct MetallicRoughness {
     /// The base colour, linear Rec. 709.
     pub base: Vec3,
     /// How much of a metal it is, in \[0, 1\].
@@ -65,12 +65,14 @@ pub struct Metallic {
     pub ior: f32,
 }
 
-impl Metallic {
+impl MetallicRoughness {
     /// What it does with light.
-    pub fn finish(&self) -> ShadingParams {
-        let head_on = (self.specular_color * head_on(self.ior)).min(Vec3::ONE) * self.specular;
+    pub fn shading_params(&self) -> ShadingParams {
+        let head_on = (self.specular_color * reflectance_at_normal_incidence(self.ior))
+            .min(Vec3::ONE)
+            * self.specular;
         let tint = self.base.min(Vec3::ONE);
-        let mut reflect = tint * (self.metallic * sharpness(self.roughness));
+        let mut reflect = tint * (self.metallic * mirror_share(self.roughness));
         let mut transmit = tint * ((1.0 - self.metallic) * self.transmission);
         if self.ior == 0.0 {
             reflect += transmit;
@@ -94,9 +96,9 @@ impl Metallic {
 /// A metallic-roughness material of which some parameters differ from point to point: factors, and
 /// the maps that they are multiplied with.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MetallicMaps {
+pub struct MetallicRoughnessMaps {
     /// The factors.
-    pub factors: Metallic,
+    pub factors: MetallicRoughness,
     /// The base colour.
     pub base: Option<TextureId>,
     /// How much of a metal it is.
@@ -111,9 +113,9 @@ pub struct MetallicMaps {
     pub transmission: Option<Channel>,
 }
 
-impl MetallicMaps {
+impl MetallicRoughnessMaps {
     /// These factors everywhere.
-    pub fn new(factors: Metallic) -> Self {
+    pub fn new(factors: MetallicRoughness) -> Self {
         Self {
             factors,
             base: None,
@@ -127,40 +129,40 @@ impl MetallicMaps {
 
     /// Whether it is a mirror anywhere.
     pub(super) fn may_reflect(&self) -> bool {
-        let Metallic { metallic, roughness, transmission, ior, .. } = self.factors;
-        let is_sharp = self.roughness.is_some() || sharpness(roughness) > 0.0;
+        let MetallicRoughness { metallic, roughness, transmission, ior, .. } = self.factors;
+        let is_sharp = self.roughness.is_some() || mirror_share(roughness) > 0.0;
         (metallic > 0.0 && is_sharp) || (ior == 0.0 && transmission > 0.0)
     }
 
     /// Whether it lets light through anywhere.
     pub(super) fn may_transmit(&self) -> bool {
-        let Metallic { metallic, transmission, ior, .. } = self.factors;
+        let MetallicRoughness { metallic, transmission, ior, .. } = self.factors;
         transmission > 0.0 && ior != 0.0 && (metallic < 1.0 || self.metallic.is_some())
     }
 }
 
 /// α = roughness², and the Phong exponent whose highlight is as wide: 2/α² − 2, from 1 to 10000.
 pub fn shininess(roughness: f32) -> f32 {
-    let alpha = unit(roughness) * unit(roughness);
+    let alpha = clamped_factor(roughness) * clamped_factor(roughness);
     (2.0 / (alpha * alpha) - 2.0).clamp(*SHININESS.start(), *SHININESS.end())
 }
 
 /// The share of what a surface reflects that is as sharp as in a mirror: (1 − α/0.16)² with
 /// α = roughness², and 0 from roughness 0.4 on. Ours: smooth at either end.
-pub fn sharpness(roughness: f32) -> f32 {
-    let ratio = unit(roughness) / ROUGH;
+pub fn mirror_share(roughness: f32) -> f32 {
+    let ratio = clamped_factor(roughness) / ROUGH;
     let rest = (1.0 - ratio * ratio).max(0.0);
     rest * rest
 }
 
 /// The share that a surface of this index reflects head-on, by Fresnel's law.
-fn head_on(ior: f32) -> f32 {
+fn reflectance_at_normal_incidence(ior: f32) -> f32 {
     let r = (ior - 1.0) / (ior + 1.0);
     r * r
 }
 
 /// A factor within [0, 1]; what is no number is 1, the default.
-fn unit(x: f32) -> f32 {
+fn clamped_factor(x: f32) -> f32 {
     if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) }
 }
 
@@ -176,16 +178,16 @@ mod tests {
 
     #[test]
     fn only_smooth_surfaces_are_sharp() {
-        assert_eq!([0.0, 0.4, 0.5, 1.0, f32::NAN].map(sharpness), [1.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!([0.0, 0.4, 0.5, 1.0, f32::NAN].map(mirror_share), [1.0, 0.0, 0.0, 0.0, 0.0]);
         // α/0.16 = ¼.
-        assert!((sharpness(0.2) - 0.5625).abs() < 1e-6);
-        let values: Vec<f32> = (0..=100).map(|i| -sharpness(i as f32 / 100.0)).collect();
+        assert!((mirror_share(0.2) - 0.5625).abs() < 1e-6);
+        let values: Vec<f32> = (0..=100).map(|i| -mirror_share(i as f32 / 100.0)).collect();
         assert!(values.is_sorted());
     }
 
     #[test]
     fn glass_reflects_a_twenty_fifth_head_on() {
-        assert!((head_on(1.5) - 0.04).abs() < 1e-8);
-        assert_eq!(head_on(0.0), 1.0);
+        assert!((reflectance_at_normal_incidence(1.5) - 0.04).abs() < 1e-8);
+        assert_eq!(reflectance_at_normal_incidence(0.0), 1.0);
     }
 }

@@ -23,7 +23,7 @@ pub mod watertight;
 
 pub use camera::{Camera, Projection, RayGenerator};
 pub use features::{Feature, SceneFeatures};
-pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
+pub use film::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
 pub use light::{Falloff, IncidentLight, Light, LightKind, Shadow};
 pub use material::{
@@ -31,7 +31,9 @@ pub use material::{
 };
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
-pub use metallic::{Metallic, MetallicMaps, ShadingParams, sharpness, shininess};
+pub use metallic::{
+    MetallicRoughness, MetallicRoughnessMaps, ShadingParams, mirror_share, shininess,
+};
 pub use mipmap::{MipLevel, Mipmap};
 pub use report::{DropReason, LoadReport};
 pub use shapes::{Checker, Instance, Plane, Sphere};

@@ -33,21 +33,21 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
     if bounds.is_empty() {
         return Vec::new();
     }
-    let meshes: Vec<Grain> = scene
+    let meshes: Vec<MeshDetail> = scene
         .meshes
         .iter()
         .zip(&mesh_bounds)
-        .map(|(mesh, bounds)| Grain::of(mesh, bounds))
+        .map(|(mesh, bounds)| MeshDetail::new(mesh, bounds))
         .collect();
     let extent = bounds.size().max_element();
     let mut found = Vec::new();
 
     let in_file = meshes.iter().zip(&scene.meshes).map(|(grain, mesh)| Loss {
-        what: format!("mesh `{}`", mesh.name),
+        object: format!("mesh `{}`", mesh.name),
         detail: grain.detail,
-        against: grain.reach,
+        against: grain.max_coordinate,
     });
-    found.extend(worst(in_file, F32_SPACING).map(|Loss { what, detail, against }| {
+    found.extend(worst(in_file, F32_SPACING).map(|Loss { object: what, detail, against }| {
         format!(
             "{what} stands too far from its file's origin: its triangles are about {detail:.1e} \
              large at coordinates of {against:.1e}, where f32, in which meshes are stored, has \
@@ -69,13 +69,13 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
     };
     let instances = || {
         scene.instances.iter().enumerate().map(|(i, instance)| Loss {
-            what: name(i, instance),
+            object: name(i, instance),
             detail: placed(instance),
             against: extent,
         })
     };
     if f32_rays {
-        found.extend(worst(instances(), 1.0 / FAST_RATIO).map(|Loss { what, detail, against }| {
+        found.extend(worst(instances(), 1.0 / FAST_RATIO).map(|Loss { object: what, detail, against }| {
             format!(
                 "{what} is fine for so large a scene: its triangles are about {detail:.1e} large \
                  in {against:.1e} (ratio {:.1e}, supported up to {FAST_RATIO:.0e} in precision \
@@ -87,7 +87,7 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
     }
 
     let spheres = scene.spheres.iter().enumerate().map(|(i, s)| Loss {
-        what: format!("sphere {i}"),
+        object: format!("sphere {i}"),
         detail: s.radius,
         against: s.center.abs().max_element(),
     });
@@ -99,7 +99,7 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
         format!(
             "{} stands too far from the origin: it has detail of about {:.1e} at coordinates of \
              {:.1e}, where f64 has lost it",
-            loss.what, loss.detail, loss.against
+            loss.object, loss.detail, loss.against
         )
     }));
     found
@@ -107,7 +107,7 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
 
 /// A detail, and what it is small against.
 struct Loss {
-    what: String,
+    object: String,
     detail: f64,
     against: f64,
 }
@@ -119,15 +119,15 @@ fn worst(all: impl Iterator<Item = Loss>, share: f64) -> Option<Loss> {
 }
 
 /// How fine a mesh is, in its own space.
-struct Grain {
+struct MeshDetail {
     /// The square root of the mean area of its triangles; 0 when all are degenerate.
     detail: f64,
     /// Its largest absolute coordinate.
-    reach: f64,
+    max_coordinate: f64,
 }
 
-impl Grain {
-    fn of(mesh: &Mesh, bounds: &Bounds) -> Self {
+impl MeshDetail {
+    fn new(mesh: &Mesh, bounds: &Bounds) -> Self {
         let area = |t: &[u32; 3]| {
             let corners = t.map(|i| glam::DVec3::from(mesh.positions[i as usize].map(f64::from)));
             0.5 * crate::geometry::triangle::area_normal(corners).length()
@@ -136,7 +136,7 @@ impl Grain {
         let parts: Vec<f64> =
             mesh.triangles.par_chunks(GRAIN).map(|part| part.iter().map(area).sum()).collect();
         let detail = (parts.iter().sum::<f64>() / mesh.triangles.len().max(1) as f64).sqrt();
-        Self { detail, reach: if bounds.is_empty() { 0.0 } else { bounds.max_abs() } }
+        Self { detail, max_coordinate: if bounds.is_empty() { 0.0 } else { bounds.max_abs() } }
     }
 }
 

@@ -75,7 +75,7 @@ impl Texels {
     }
 
     /// Pixels of the same kind with these linear colours.
-    pub(super) fn like(&self, colors: &[Vec4], transfer: Transfer) -> Self {
+    pub(super) fn encoded_like(&self, colors: &[Vec4], transfer: Transfer) -> Self {
         let encoded = |c: &Vec4| {
             let [r, g, b] = c.truncate().to_array().map(|x| transfer.encode(f64::from(x)) as f32);
             Vec4::new(r, g, b, c.w).clamp(Vec4::ZERO, Vec4::ONE)

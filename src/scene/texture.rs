@@ -75,7 +75,7 @@ pub struct TexturePoint {
 
 /// So many places along the greater extent of an area are averaged at most; more would blur it
 /// less where a surface is seen at a grazing angle.
-const MOST: f32 = 16.0;
+const MAX_PROBES: f32 = 16.0;
 
 impl Texture {
     /// A picture of colours in sRGB that repeats, with linear filtering and without mipmaps, by the
@@ -95,25 +95,25 @@ impl Texture {
     /// The linear colour and the alpha at a point, or, with mipmaps, of the area around it.
     ///
     /// Coordinates that are not finite read the upper left pixel.
-    pub fn at(&self, point: &TexturePoint) -> Vec4 {
+    pub fn sample(&self, point: &TexturePoint) -> Vec4 {
         let set = usize::from(self.set & 1);
         let uv = self.transform.transform_point2(Vec2::from(point.uv[set]));
         let across = point.across[set];
         if self.mipmap && across != [Vec2::ZERO; 2] {
-            return self.mean(uv, across);
+            return self.sample_anisotropic(uv, across);
         }
-        self.near(uv)
+        self.sample_base(uv)
     }
 
     /// The colour at a point of the picture itself.
-    fn near(&self, uv: Vec2) -> Vec4 {
+    fn sample_base(&self, uv: Vec2) -> Vec4 {
         let size = [self.image.width, self.image.height];
         match self.filter {
             Filter::Nearest => {
                 let at = uv * Vec2::new(size[0] as f32, size[1] as f32);
                 self.texel(&self.image.texels, size, at.x.floor() as i64, at.y.floor() as i64)
             }
-            Filter::Linear => self.linear(&self.image.texels, size, uv),
+            Filter::Linear => self.sample_bilinear(&self.image.texels, size, uv),
         }
     }
 
@@ -122,7 +122,7 @@ impl Texture {
     /// Places along its greater extent, as far apart as its lesser one is wide, are averaged; each
     /// is read from the two levels of the pyramid whose pixels are next to that width (J. McCormack
     /// et al., *Feline: Fast Elliptical Lines for Anisotropic Texture Mapping*, SIGGRAPH 1999).
-    fn mean(&self, uv: Vec2, across: [Vec2; 2]) -> Vec4 {
+    fn sample_anisotropic(&self, uv: Vec2, across: [Vec2; 2]) -> Vec4 {
         let size = Vec2::new(self.image.width as f32, self.image.height as f32);
         let [a, b] = across.map(|x| self.transform.matrix2 * x);
         let [length_a, length_b] = [a, b].map(|x| (x * size).length());
@@ -130,26 +130,28 @@ impl Texture {
             true => (a, length_a, length_b),
             false => (b, length_b, length_a),
         };
-        let width = lesser.max(greater / MOST).max(1.0);
-        let count = (greater / width).ceil().clamp(1.0, MOST);
+        let width = lesser.max(greater / MAX_PROBES).max(1.0);
+        let count = (greater / width).ceil().clamp(1.0, MAX_PROBES);
         if !(greater.is_finite() && uv.is_finite()) || greater <= 1.0 {
-            return self.near(uv);
+            return self.sample_base(uv);
         }
         let level = width.log2();
         let places = (0..count as u32).map(|i| {
             let place = (i as f32 + 0.5) / count - 0.5;
-            self.between_levels(uv + along * place, level)
+            self.sample_trilinear(uv + along * place, level)
         });
         places.sum::<Vec4>() / count
     }
 
     /// The colour at a point of the pyramid, between two of its levels; 0 is the picture itself.
-    fn between_levels(&self, uv: Vec2, level: f32) -> Vec4 {
-        let pyramid = self.image.reduced(self.transfer).levels();
+    fn sample_trilinear(&self, uv: Vec2, level: f32) -> Vec4 {
+        let pyramid = self.image.mipmap(self.transfer).levels();
         let last = pyramid.len();
         let of = |level: usize| match level.min(last) {
-            0 => self.linear(&self.image.texels, [self.image.width, self.image.height], uv),
-            level => self.linear(&pyramid[level - 1].texels, pyramid[level - 1].size, uv),
+            0 => {
+                self.sample_bilinear(&self.image.texels, [self.image.width, self.image.height], uv)
+            }
+            level => self.sample_bilinear(&pyramid[level - 1].texels, pyramid[level - 1].size, uv),
         };
         let (whole, part) = (level.floor(), level.fract());
         match part == 0.0 || whole as usize >= last {
@@ -159,7 +161,7 @@ impl Texture {
     }
 
     /// The four pixels around a point, in proportion.
-    fn linear(&self, texels: &Texels, size: [u32; 2], uv: Vec2) -> Vec4 {
+    fn sample_bilinear(&self, texels: &Texels, size: [u32; 2], uv: Vec2) -> Vec4 {
         let (x, y) = (uv.x * size[0] as f32 - 0.5, uv.y * size[1] as f32 - 0.5);
         let (x0, y0) = (x.floor(), y.floor());
         let (column, row) = (x0 as i64, y0 as i64);
@@ -201,12 +203,12 @@ mod tests {
 
     fn texture(filter: Filter, wrap: Wrap) -> Texture {
         let texels = vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]];
-        let image = Arc::new(Image::bytes("", [2, 2], texels));
+        let image = Arc::new(Image::from_bytes("", [2, 2], texels));
         Texture { transfer: Transfer::None, wrap: [wrap; 2], filter, ..Texture::new(image) }
     }
 
     fn color(texture: &Texture, uv: [f32; 2]) -> Vec3 {
-        texture.at(&TexturePoint { uv: [uv; 2], ..TexturePoint::default() }).truncate()
+        texture.sample(&TexturePoint { uv: [uv; 2], ..TexturePoint::default() }).truncate()
     }
 
     #[test]
@@ -245,7 +247,7 @@ mod tests {
             assert!(color(&texture, [bad, bad]).is_finite());
             texture.mipmap = true;
             let across = [[Vec2::splat(bad); 2]; 2];
-            assert!(texture.at(&TexturePoint { uv: [[bad; 2]; 2], across }).is_finite());
+            assert!(texture.sample(&TexturePoint { uv: [[bad; 2]; 2], across }).is_finite());
         }
     }
 
@@ -255,18 +257,18 @@ mod tests {
         texture.set = 1;
         texture.transform = Affine2::from_translation(Vec2::new(0.5, 0.0));
         let point = TexturePoint { uv: [[0.9, 0.9], [0.1, 0.1]], ..TexturePoint::default() };
-        assert_eq!(texture.at(&point).truncate(), Vec3::Y);
+        assert_eq!(texture.sample(&point).truncate(), Vec3::Y);
     }
 
     /// A texture of 64 by 64 pixels, black and white in turn along u, with mipmaps.
     fn stripes() -> Texture {
         let texel = |i: usize| if i.is_multiple_of(2) { [0, 0, 0, 255] } else { [255; 4] };
-        let image = Image::bytes("", [64; 2], (0..64 * 64).map(texel).collect());
+        let image = Image::from_bytes("", [64; 2], (0..64 * 64).map(texel).collect());
         Texture { transfer: Transfer::None, mipmap: true, ..Texture::new(image.into()) }
     }
 
     fn over(texture: &Texture, across: [Vec2; 2]) -> f32 {
-        texture.at(&TexturePoint { uv: [[0.3; 2]; 2], across: [across; 2] }).x
+        texture.sample(&TexturePoint { uv: [[0.3; 2]; 2], across: [across; 2] }).x
     }
 
     #[test]

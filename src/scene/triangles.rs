@@ -16,7 +16,7 @@ impl<const W: usize> Triangles<W> {
     /// # Panics
     /// When one is not in the scene.
     #[inline(always)]
-    pub fn of(
+    pub fn from_ids(
         scene: &Scene,
         geometry: &[u32; W],
         primitive: &[u32; W],
@@ -69,7 +69,7 @@ impl<const W: usize> Triangles<W> {
 
     /// The corners in lane `i`.
     #[inline(always)]
-    pub fn corners(&self, i: usize) -> [DVec3; 3] {
+    pub fn vertices(&self, i: usize) -> [DVec3; 3] {
         let corner = |c: usize| DVec3::new(self.0[c][0][i], self.0[c][1][i], self.0[c][2][i]);
         [corner(0), corner(1), corner(2)]
     }
@@ -105,7 +105,7 @@ mod tests {
             PrimitiveId16::NONE,
             PrimitiveId16::MESHES,
         ];
-        Triangles::of(&scene(), &geometry, &triangles, &instances)
+        Triangles::from_ids(&scene(), &geometry, &triangles, &instances)
     }
 
     #[test]
@@ -115,7 +115,7 @@ mod tests {
             let faces = faces(instances, triangles).unwrap();
             for i in [0, 1, 3] {
                 let id = PrimitiveId::triangle(0, triangles[i], instances[i]);
-                assert_eq!(faces.corners(i), scene().triangle_vertices(id));
+                assert_eq!(faces.vertices(i), scene().triangle_vertices(id));
             }
         }
     }
@@ -128,6 +128,6 @@ mod tests {
             PrimitiveId16::PLANES,
             PrimitiveId16::NONE,
         ];
-        assert!(Triangles::of(&scene(), &geometry, &[0; 4], &[0; 4]).is_none());
+        assert!(Triangles::from_ids(&scene(), &geometry, &[0; 4], &[0; 4]).is_none());
     }
 }

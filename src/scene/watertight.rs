@@ -31,7 +31,7 @@ impl Mesh {
     /// # Panics
     /// When a triangle names a vertex that is not there.
     pub fn open_edges(&self) -> usize {
-        let place = self.places();
+        let place = self.merged_vertices();
         let mut edges: Vec<([u32; 2], i8)> = Vec::with_capacity(3 * self.triangles.len());
         for triangle in &self.triangles {
             let [a, b, c] = triangle.map(|i| place[i as usize]);
@@ -47,7 +47,7 @@ impl Mesh {
     }
 
     /// For each vertex the first one at its place.
-    fn places(&self) -> Vec<u32> {
+    fn merged_vertices(&self) -> Vec<u32> {
         let size = self.bounds();
         let near = ((size.upper - size.lower).max_element() * 1e-6).max(f64::MIN_POSITIVE);
         // A place as large as its cell lies in at most two of them along each axis.
@@ -73,7 +73,7 @@ impl Mesh {
 }
 
 /// Says of each mesh that is to be a body, and is not closed, that it cannot be one.
-pub fn warn_of_open_dielectrics(scene: &Scene) -> Vec<String> {
+pub fn open_dielectric_warnings(scene: &Scene) -> Vec<String> {
     let mut bodies: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
     for instance in &scene.instances {
         let material = &scene.materials[instance.material.0 as usize];
@@ -172,7 +172,7 @@ mod tests {
     fn an_open_body_is_told_once_however_often_it_stands() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
-        let found = warn_of_open_dielectrics(&placed(mesh, glass()));
+        let found = open_dielectric_warnings(&placed(mesh, glass()));
         assert!(found.len() == 1 && found[0].starts_with("mesh 0 (`gem`)"), "{found:?}");
         assert!(found[0].contains("3 edges") && found[0].contains("`glass` thin"), "{found:?}");
     }
@@ -183,8 +183,8 @@ mod tests {
         mesh.triangles.pop();
         let thin = Material { thin: true, ..glass() };
         for material in [Material::default(), thin] {
-            assert_eq!(warn_of_open_dielectrics(&placed(mesh.clone(), material)), [""; 0]);
+            assert_eq!(open_dielectric_warnings(&placed(mesh.clone(), material)), [""; 0]);
         }
-        assert_eq!(warn_of_open_dielectrics(&placed(tetrahedron(), glass())), [""; 0]);
+        assert_eq!(open_dielectric_warnings(&placed(tetrahedron(), glass())), [""; 0]);
     }
 }

@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use super::TextureContext;
 use crate::scene::{
-    AlphaMode, Channel, Material, Metallic, MetallicMaps, Scene, ShadingParams, ShininessMap,
-    TextureId, shininess,
+    AlphaMode, Channel, Material, MetallicRoughness, MetallicRoughnessMaps, Scene, ShadingParams,
+    ShininessMap, TextureId, shininess,
 };
 
 /// What a material of a scene does with light at a point of this detail.
@@ -19,7 +19,7 @@ pub fn shading_params(
 ) -> ShadingParams {
     let maps = Maps { scene, detail };
     let mut finish = match &material.metallic {
-        Some(metallic) => maps.metallic(metallic).finish(),
+        Some(metallic) => maps.metallic(metallic).shading_params(),
         None => maps.phong(material),
     };
     if material.emission != Vec3::ZERO {
@@ -30,7 +30,7 @@ pub fn shading_params(
     }
     match &material.coverage {
         Some(coverage) if coverage.mode == AlphaMode::Blend => {
-            finish.covering(coverage.at(&scene.textures, &detail.point, detail.alpha))
+            finish.with_alpha(coverage.evaluate(&scene.textures, &detail.point, detail.alpha))
         }
         _ => finish,
     }
@@ -53,13 +53,13 @@ struct Maps<'a> {
 impl Maps<'_> {
     fn color(&self, map: Option<TextureId>) -> Vec3 {
         map.map_or(Vec3::ONE, |id| {
-            self.scene.textures[id.0 as usize].at(&self.detail.point).truncate()
+            self.scene.textures[id.0 as usize].sample(&self.detail.point).truncate()
         })
     }
 
     fn channel(&self, map: Option<Channel>) -> f32 {
         map.map_or(1.0, |map| {
-            let color = self.scene.textures[map.texture.0 as usize].at(&self.detail.point);
+            let color = self.scene.textures[map.texture.0 as usize].sample(&self.detail.point);
             color[usize::from(map.channel & 3)]
         })
     }
@@ -85,11 +85,11 @@ impl Maps<'_> {
     }
 
     /// The parameters here; those that are shares at most 1, whatever a float picture says.
-    fn metallic(&self, maps: &MetallicMaps) -> Metallic {
+    fn metallic(&self, maps: &MetallicRoughnessMaps) -> MetallicRoughness {
         let share = |factor: f32, map| (factor * self.channel(map)).min(1.0);
         let factors = &maps.factors;
         let base = self.detail.checker.unwrap_or(factors.base);
-        Metallic {
+        MetallicRoughness {
             base: base * self.color(maps.base) * self.detail.tint,
             metallic: share(factors.metallic, maps.metallic),
             roughness: share(factors.roughness, maps.roughness),

@@ -155,10 +155,10 @@ impl Surface16 {
     #[inline(always)]
     fn set_triangles<const SMOOTH: bool>(&mut self, scene: &Scene, found: &Hit16) {
         let PrimitiveId16 { geometry, primitive, instance } = &found.id;
-        let Some(faces) = Triangles::of(scene, geometry, primitive, instance) else { return };
+        let Some(faces) = Triangles::from_ids(scene, geometry, primitive, instance) else { return };
         let is_face = |i: usize| geometry[i] >= PrimitiveId16::MESHES;
         for i in 0..LANES {
-            let (position, normal) = flat_face(faces.corners(i), found.u[i], found.v[i]);
+            let (position, normal) = flat_face(faces.vertices(i), found.u[i], found.v[i]);
             if is_face(i) {
                 self.put(i, position, normal);
             }

@@ -68,13 +68,13 @@ pub fn check(path: &Path) -> Result<()> {
 
 /// A file that is being written: to a temporary file in the same folder, which takes the name once
 /// it is whole.
-pub struct Pending {
+pub struct PendingFile {
     path: PathBuf,
     target: PathBuf,
     file: NamedTempFile,
 }
 
-impl Pending {
+impl PendingFile {
     /// Begins a file that is to stand at `path`. What stands there is untouched until `commit`.
     pub fn new(path: &Path) -> Result<Self> {
         let target = resolve(path);
@@ -111,11 +111,11 @@ impl Pending {
 ///
 /// # Errors
 /// When anything fails; the temporary file is then removed, and what stood at `path` is untouched.
-pub fn atomically(
+pub fn write_atomically(
     path: &Path,
     fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
 ) -> Result<()> {
-    let mut pending = Pending::new(path)?;
+    let mut pending = PendingFile::new(path)?;
     let failed = |e: std::io::Error| Error::io("write", path, &e);
     let mut buffered = BufWriter::new(pending.file.as_file_mut());
     fill(&mut buffered).map_err(failed)?;
@@ -138,7 +138,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         fs::write(&path, "old").unwrap();
-        let result = atomically(&path, |out| {
+        let result = write_atomically(&path, |out| {
             out.write_all(b"half of the new")?;
             Err(io::Error::other("the disk is full"))
         });
@@ -152,7 +152,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         fs::write(&path, "old").unwrap();
-        atomically(&path, |out| out.write_all(b"new")).unwrap();
+        write_atomically(&path, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
     }
 
@@ -163,7 +163,7 @@ mod tests {
         let (real, link) = (folder.path().join("real.png"), folder.path().join("link.png"));
         fs::write(&real, "old").unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        atomically(&link, |out| out.write_all(b"new")).unwrap();
+        write_atomically(&link, |out| out.write_all(b"new")).unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&real).unwrap(), b"new");
     }

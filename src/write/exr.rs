@@ -11,7 +11,7 @@ use exr::prelude::{
 
 use crate::error::Result;
 use crate::film::{Film, View};
-use crate::write::{Settings, atomically};
+use crate::write::{Settings, write_atomically};
 
 /// The attribute that holds what determines the picture, a line each.
 const METADATA: &str = "envers";
@@ -50,7 +50,7 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
         AnyChannels::sort(channels.collect()),
     );
     let image = Image::from_layer(layer);
-    atomically(path, |out| image.write().to_buffered(out).map_err(io::Error::other))
+    write_atomically(path, |out| image.write().to_buffered(out).map_err(io::Error::other))
 }
 
 #[cfg(test)]

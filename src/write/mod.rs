@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-pub use atomic::{atomically, check as check_file};
+pub use atomic::{check as check_file, write_atomically};
 pub use movie::Movie;
 pub use png::encode as png_bytes;
 
@@ -46,7 +46,7 @@ pub struct Settings {
 
 impl Settings {
     /// How a scene's film is shown; 32 bits, no metadata.
-    pub fn of(film: &FilmSettings) -> Self {
+    pub fn from_film(film: &FilmSettings) -> Self {
         let &FilmSettings { exposure, tone, transfer, .. } = film;
         Self { exposure, tone, transfer, half: false, metadata: Vec::new() }
     }
@@ -64,7 +64,7 @@ impl Format {
     ///
     /// # Errors
     /// When it names none that can be written.
-    pub fn of(path: &Path) -> Result<Self> {
+    pub fn from_path(path: &Path) -> Result<Self> {
         match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
             "png" => Ok(Format::Png),
             "exr" => Ok(Format::Exr),
@@ -90,7 +90,7 @@ impl Format {
 /// # Errors
 /// When it could not.
 pub fn check(path: &Path) -> Result<()> {
-    Format::of(path)?;
+    Format::from_path(path)?;
     atomic::check(path)
 }
 
@@ -100,7 +100,7 @@ pub fn check(path: &Path) -> Result<()> {
 /// # Errors
 /// When the file cannot be written; what stood there before then stands there still.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
-    match Format::of(path)? {
+    match Format::from_path(path)? {
         Format::Png => png::write(film, path, settings),
         Format::Exr => exr::write(film, path, settings),
         Format::Gif | Format::Apng => {

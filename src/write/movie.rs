@@ -11,7 +11,7 @@ use gif::{DisposalMethod, Repeat};
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::write::atomic::Pending;
+use crate::write::atomic::PendingFile;
 use crate::write::{Format, Settings, png_bytes};
 
 /// How much NeuQuant looks at when it chooses a GIF's colours, from 1 (all pixels) to 30.
@@ -23,7 +23,7 @@ const GIF_SIDE: u32 = u16::MAX as u32;
 
 /// An animated picture that is being written; it takes its name when it is finished.
 pub struct Movie {
-    file: Pending,
+    file: PendingFile,
     encoder: Encoder,
     size: [u32; 2],
     /// Frames in a second.
@@ -55,8 +55,8 @@ impl Movie {
     /// # Errors
     /// When that is no animated one or cannot have such a size, or the file cannot be written.
     pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
-        let format = Format::of(path)?;
-        let file = Pending::new(path)?;
+        let format = Format::from_path(path)?;
+        let file = PendingFile::new(path)?;
         let failed = |e: io::Error| Error::io("write", path, &e);
         let handle = file.handle().map_err(failed)?;
         let [width, height] = size;
@@ -97,10 +97,10 @@ impl Movie {
         assert_eq!(film.size, self.size, "all frames of a picture are of one size");
         let bytes = png_bytes(film, settings);
         let part = match &self.shown {
-            Some(shown) => changed(shown, &bytes, self.size[0] as usize),
+            Some(shown) => changed_rectangle(shown, &bytes, self.size[0] as usize),
             None => Rectangle { left: 0, top: 0, width: film.size[0], height: film.size[1] },
         };
-        let pixels = cut(&bytes, self.size[0] as usize, part);
+        let pixels = crop(&bytes, self.size[0] as usize, part);
         let delay = gif_delay(self.frames, self.fps);
         match &mut self.encoder {
             Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
@@ -205,7 +205,7 @@ fn write_gif(
 
 /// The smallest rectangle outside of which two pictures of `width` are the same; one pixel for
 /// equal ones, since no frame can be empty.
-fn changed(before: &[u8], after: &[u8], width: usize) -> Rectangle {
+fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
     let mut columns = width..0;
     let mut rows: Option<std::ops::RangeInclusive<usize>> = None;
     let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
@@ -228,7 +228,7 @@ fn changed(before: &[u8], after: &[u8], width: usize) -> Rectangle {
 }
 
 /// The pixels of a part of a picture of `width`.
-fn cut(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
+fn crop(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
     let [left, top, columns, rows] =
         [part.left, part.top, part.width, part.height].map(|x| x as usize);
     let lines = bytes.chunks_exact(3 * width).skip(top).take(rows);
@@ -268,14 +268,14 @@ mod tests {
         let mut after = vec![0; 3 * 4 * 3];
         after[3 * (4 + 1)] = 9;
         after[3 * (8 + 2) + 2] = 7;
-        let part = changed(&[0; 3 * 4 * 3], &after, 4);
+        let part = changed_rectangle(&[0; 3 * 4 * 3], &after, 4);
         assert_eq!(part, Rectangle { left: 1, top: 1, width: 2, height: 2 });
-        assert_eq!(cut(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
+        assert_eq!(crop(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
     }
 
     #[test]
     fn equal_frames_differ_in_one_pixel() {
-        let part = changed(&[5; 12], &[5; 12], 2);
+        let part = changed_rectangle(&[5; 12], &[5; 12], 2);
         assert_eq!(part, Rectangle { left: 0, top: 0, width: 1, height: 1 });
     }
 }

@@ -9,12 +9,12 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::film::{Film, View};
-use crate::write::{Settings, atomically};
+use crate::write::{Settings, write_atomically};
 
 /// Writes an RGB PNG.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     let bytes = encode(film, settings);
-    atomically(path, |out| {
+    write_atomically(path, |out| {
         // Faster than choosing a filter for each row, and no larger: docs/performance.md.
         PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Paeth)
             .write_image(&bytes, film.size[0], film.size[1], image::ExtendedColorType::Rgb8)
@@ -34,7 +34,7 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
-    let shown = (film.view == View::Beauty).then(|| Shown::by(settings));
+    let shown = (film.view == View::Beauty).then(|| ByteTable::new(settings));
     let color = |pixel: &[f32; 3]| match film.view {
         View::Beauty => pixel.map(|x| shown.as_ref().map_or(0, |shown| shown.byte(x))),
         View::Normal if *pixel == [0.0; 3] => [0; 3],
@@ -56,18 +56,18 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
 const GRAIN: usize = 1 << 14;
 
 /// [`Settings::byte`] of any radiance, looked up.
-struct Shown {
-    steps: [f32; 256],
+struct ByteTable {
+    thresholds: [f32; 256],
     /// The byte of the least radiance whose first 16 bits are the index.
     least: Vec<u8>,
 }
 
-impl Shown {
-    fn by(settings: &Settings) -> Self {
-        let steps = steps(settings);
+impl ByteTable {
+    fn new(settings: &Settings) -> Self {
+        let steps = byte_thresholds(settings);
         let infinity = f32::INFINITY.to_bits() >> 16;
-        let least = (0..=infinity).map(|bits| look_up(&steps, f32::from_bits(bits << 16)));
-        Self { least: least.collect(), steps }
+        let least = (0..=infinity).map(|bits| search_byte(&steps, f32::from_bits(bits << 16)));
+        Self { least: least.collect(), thresholds: steps }
     }
 
     #[inline(always)]
@@ -75,7 +75,7 @@ impl Shown {
         // What is negative or no number shows as 0 does.
         let radiance = if radiance > 0.0 { radiance } else { 0.0 };
         let mut byte = self.least[(radiance.to_bits() >> 16) as usize];
-        while self.steps[usize::from(byte)] <= radiance {
+        while self.thresholds[usize::from(byte)] <= radiance {
             byte += 1;
         }
         byte
@@ -84,7 +84,7 @@ impl Shown {
 
 /// The least radiance that gives more than each byte, by [`Settings::byte`], which never falls; no
 /// number where none does. To look a byte up here is several times faster than to work it out.
-fn steps(settings: &Settings) -> [f32; 256] {
+fn byte_thresholds(settings: &Settings) -> [f32; 256] {
     std::array::from_fn(|byte| {
         // Positive floats are in the order of their bits.
         let (mut below, mut from) = (0, f32::INFINITY.to_bits());
@@ -100,7 +100,7 @@ fn steps(settings: &Settings) -> [f32; 256] {
 
 /// The number of steps up to `radiance`. The index is a byte, which is never outside.
 #[inline(always)]
-fn look_up(steps: &[f32; 256], radiance: f32) -> u8 {
+fn search_byte(steps: &[f32; 256], radiance: f32) -> u8 {
     let mut byte = 0u8;
     for half in [128, 64, 32, 16, 8, 4, 2, 1] {
         let next = byte + (half - 1);
@@ -149,7 +149,7 @@ mod tests {
                 [(Transfer::Srgb, 0.0), (Transfer::None, 1.5), (Transfer::Srgb, -140.0)]
             {
                 let settings = Settings { exposure, tone, transfer, ..Settings::default() };
-                let mut values: Vec<f32> = steps(&settings)
+                let mut values: Vec<f32> = byte_thresholds(&settings)
                     .iter()
                     .flat_map(|x| [x.next_down(), *x, x.next_up()])
                     .collect();

@@ -25,7 +25,7 @@ pub fn crossing(
     if certain && t != tmax {
         return (t > 0.0 && t < tmax).then_some(t);
     }
-    exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
+    exact_crossing(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
 }
 
 /// The t of [`crossing`], whatever its sign, by double-double numbers, and whether it is certain.
@@ -77,12 +77,12 @@ pub fn certainly_misses(
 
 /// The same in integers, however far.
 #[cold]
-fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
+fn exact_crossing(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
     if ![point, normal, origin, direction].into_iter().all(DVec3::is_finite) {
         return None;
     }
-    let place = Scale::of(point.to_array().into_iter().chain(origin.to_array()));
-    let (way, up) = (Scale::of(direction.to_array()), Scale::of(normal.to_array()));
+    let place = Scale::common(point.to_array().into_iter().chain(origin.to_array()));
+    let (way, up) = (Scale::common(direction.to_array()), Scale::common(normal.to_array()));
     let n = up.vector::<BigInt>(normal);
     let numerator = integer::dot(&n, &minus(&place.vector(point), &place.vector(origin)));
     let divisor = integer::dot(&n, &way.vector(direction));

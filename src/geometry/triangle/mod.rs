@@ -25,14 +25,14 @@ pub struct TriangleHit {
 
 /// The edge functions of a line and a triangle, and the distance to its plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges {
+pub struct EdgeFunctions {
     /// Opposite the first, second and third vertex; all of one sign (or 0) when the line crosses.
-    pub functions: [f64; 3],
+    pub values: [f64; 3],
     /// Distance to the plane in units of |direction|; not finite when the line runs along it.
     pub t: f64,
     /// Whether `t` may have lost more than half of its digits, because the triangle is so thin and
     /// the line so flat above it: then [`certified::round`] knows better.
-    pub flat: bool,
+    pub is_flat: bool,
 }
 
 /// The square of the share of |b − a||c − a||d| below which their determinant makes a triangle
@@ -40,7 +40,7 @@ pub struct Edges {
 /// size of the triangle, and of t if the triangle is not nearer than it is large.
 const FLAT_SQUARED: f64 = 1.0 / (1u64 << 40) as f64;
 
-impl Edges {
+impl EdgeFunctions {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
@@ -50,20 +50,20 @@ impl Edges {
         let toward = normal.dot(direction);
         let sides = first.length_squared() * second.length_squared() * direction.length_squared();
         Self {
-            functions: [
+            values: [
                 direction.dot(b.cross(c)),
                 direction.dot(c.cross(a)),
                 direction.dot(a.cross(b)),
             ],
             t: normal.dot(a) / toward,
-            flat: toward * toward <= FLAT_SQUARED * sides,
+            is_flat: toward * toward <= FLAT_SQUARED * sides,
         }
     }
 
     /// Whether the line passes within the triangle; an edge or a vertex counts.
     #[inline(always)]
     pub fn crosses(&self) -> bool {
-        let [a, b, c] = self.functions;
+        let [a, b, c] = self.values;
         let inside = (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
         inside && a + b + c != 0.0 && self.t.is_finite()
     }
@@ -71,7 +71,7 @@ impl Edges {
     /// The weights of the second and third vertex, clamped to the triangle.
     #[inline(always)]
     pub fn weights(&self) -> (f64, f64) {
-        let [a, b, c] = self.functions;
+        let [a, b, c] = self.values;
         let inverse = 1.0 / (a + b + c);
         let w = [a, b, c].map(|f| (f * inverse).max(0.0));
         let inverse = 1.0 / (w[0] + w[1] + w[2]);
@@ -84,12 +84,12 @@ impl Edges {
 /// A line in the triangle's own plane does not cross it, nor is a degenerate triangle crossed.
 #[inline(always)]
 pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<TriangleHit> {
-    let edges = Edges::new(triangle, origin, direction);
+    let edges = EdgeFunctions::new(triangle, origin, direction);
     if !edges.crosses() {
         return None;
     }
     let (u, v) = edges.weights();
-    let t = match edges.flat {
+    let t = match edges.is_flat {
         true => certified::round(triangle, origin, direction).t,
         false => edges.t,
     };

@@ -107,7 +107,7 @@ fn side(draw: &Draw) -> u32 {
 /// The PNG's bytes of a picture, and how many rays it took.
 fn picture(scene: &Scene, options: &Options, camera: usize) -> Result<(Vec<u8>, u64)> {
     let rendering = render(scene, &Options { camera, ..options.clone() }, &|_| {})?;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
 }
 
@@ -172,7 +172,14 @@ fn scene(side: u32) -> Scene {
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
     for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
-        scene.cameras.push(Camera { name: String::new(), position, forward, right, up, lens });
+        scene.cameras.push(Camera {
+            name: String::new(),
+            position,
+            forward,
+            right,
+            up,
+            projection: lens,
+        });
     }
     scene
 }
@@ -213,7 +220,7 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
     }
     for camera in &mut scene.cameras {
         camera.position *= by;
-        if let Projection::OrthoHeight(height) = &mut camera.lens {
+        if let Projection::OrthoHeight(height) = &mut camera.projection {
             *height *= by;
         }
     }

@@ -3,8 +3,8 @@
 use glam::DAffine3;
 
 use super::{
-    Animated, Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Node, NodeId, Rotation,
-    Toward, naming,
+    AimTarget, Animated, Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Node, NodeId,
+    Rotation, prefixed,
 };
 use crate::error::{Error, Result};
 use crate::scene::Scene;
@@ -19,10 +19,10 @@ impl Animation {
         check_frames(self.frames)?;
         check_fps(self.fps)?;
         for (i, node) in self.nodes.iter().enumerate() {
-            check_node(i, node).map_err(|e| naming(&format!("animation node {i}"), &e))?;
+            check_node(i, node).map_err(|e| prefixed(&format!("animation node {i}"), &e))?;
         }
-        for mover in &self.movers {
-            check_mover(mover, self.nodes.len(), scene)?;
+        for mover in &self.objects {
+            check_object(mover, self.nodes.len(), scene)?;
         }
         Ok(())
     }
@@ -59,20 +59,20 @@ fn check_node(index: usize, node: &Node) -> Result<()> {
     };
     let before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
     require(before(&node.parent), "its parent does not stand before it")?;
-    require(node.place.is_finite(), "its place is not finite")?;
+    require(node.base.is_finite(), "its place is not finite")?;
     match &node.motion {
-        Motion::Keys(keys) => {
+        Motion::Keyframes(keys) => {
             keys.translation.check()?;
             match &keys.rotation {
                 Rotation::Angles(curve) => curve.check()?,
                 Rotation::Quaternions(curve) => curve.check()?,
             }
             keys.scale.check()?;
-            require(keys.repeats.is_none_or(|p| p > 0.0), "it repeats after no time")
+            require(keys.period.is_none_or(|p| p > 0.0), "it repeats after no time")
         }
         Motion::Orbit(orbit) => {
             require(before(&orbit.around.node), "its centre does not stand before it")?;
-            let alone = node.parent.is_none() && node.place == DAffine3::IDENTITY;
+            let alone = node.parent.is_none() && node.base == DAffine3::IDENTITY;
             require(alone, "an orbit has neither parent nor place")?;
             let points = [orbit.around.point, orbit.center, orbit.start];
             require(points.iter().all(|p| p.is_finite()), "its centre is not finite")?;
@@ -90,7 +90,7 @@ fn check_deformation(
         true => Ok(()),
         false => Err(Error::input(what)),
     };
-    let Deformation { base, morphs, weights, repeats, skin } = deformation;
+    let Deformation { base, morph_targets: morphs, weights, period: repeats, skin } = deformation;
     require(weights.len() == morphs.len(), "there must be a weight for each morph")?;
     weights.iter().try_for_each(Curve::check)?;
     require(repeats.is_none_or(|p| p > 0.0), "it repeats after no time")?;
@@ -102,7 +102,7 @@ fn check_deformation(
     require(fits, "the joints are not as many for each vertex")
 }
 
-fn check_mover(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
+fn check_object(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
     let there = |what: &str, index: usize, count: usize| {
         if index < count {
             return Ok(());
@@ -123,7 +123,7 @@ fn check_mover(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
         Animated::Mesh { mesh, deformation } => {
             there("mesh", *mesh, scene.meshes.len())?;
             check_deformation(deformation, node)
-                .map_err(|e| naming(&format!("the deformation of mesh {mesh}"), &e))
+                .map_err(|e| prefixed(&format!("the deformation of mesh {mesh}"), &e))
         }
         Animated::Light { light, node: of, direction, intensity, .. } => {
             there("light", *light, scene.lights.len())?;
@@ -135,9 +135,9 @@ fn check_mover(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
             there("camera", *camera, scene.cameras.len())?;
             node(of)?;
             lens.iter().try_for_each(Curve::check)?;
-            match aim.as_ref().map(|aim| &aim.toward) {
-                Some(Toward::Anchor(anchor)) => node(&anchor.node),
-                Some(Toward::Points(curve) | Toward::Directions(curve)) => curve.check(),
+            match aim.as_ref().map(|aim| &aim.target) {
+                Some(AimTarget::Anchor(anchor)) => node(&anchor.node),
+                Some(AimTarget::Points(curve) | AimTarget::Directions(curve)) => curve.check(),
                 None => Ok(()),
             }
         }

@@ -7,23 +7,23 @@ use glam::{DQuat, DVec3};
 use crate::error::{Error, Result};
 
 /// What a [`Curve`] can lead through: numbers, points and directions, rotations.
-pub trait Value: Copy + Debug + PartialEq {
+pub trait Interpolate: Copy + Debug + PartialEq {
     /// The value at `share` of the way from `a` to `b`, in \[0, 1\].
-    fn mix(a: Self, b: Self, share: f64) -> Self;
+    fn lerp(a: Self, b: Self, share: f64) -> Self;
 
     /// The weighted sum of four values, for splines.
-    fn sum(terms: [(f64, Self); 4]) -> Self;
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self;
 
     /// Whether it is made of finite numbers, and a value of its kind.
     fn is_valid(self) -> bool;
 }
 
-impl Value for f64 {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
+impl Interpolate for f64 {
+    fn lerp(a: Self, b: Self, share: f64) -> Self {
         a + (b - a) * share
     }
 
-    fn sum(terms: [(f64, Self); 4]) -> Self {
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
         terms.into_iter().map(|(weight, value)| weight * value).sum()
     }
 
@@ -32,12 +32,12 @@ impl Value for f64 {
     }
 }
 
-impl Value for DVec3 {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
+impl Interpolate for DVec3 {
+    fn lerp(a: Self, b: Self, share: f64) -> Self {
         a + (b - a) * share
     }
 
-    fn sum(terms: [(f64, Self); 4]) -> Self {
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
         terms.into_iter().map(|(weight, value)| value * weight).sum()
     }
 
@@ -48,12 +48,12 @@ impl Value for DVec3 {
 
 /// Rotations: of length 1, mixed along the shorter arc (slerp). A spline's sum is brought back to
 /// length 1, as glTF has it.
-impl Value for DQuat {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
+impl Interpolate for DQuat {
+    fn lerp(a: Self, b: Self, share: f64) -> Self {
         a.slerp(b, share)
     }
 
-    fn sum(terms: [(f64, Self); 4]) -> Self {
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
         let sum =
             terms.into_iter().fold(DQuat::from_array([0.0; 4]), |sum, (w, value)| sum + value * w);
         let length = sum.length();
@@ -89,7 +89,7 @@ pub struct Curve<T> {
     pub interpolation: Interpolation<T>,
 }
 
-impl<T: Value> Curve<T> {
+impl<T: Interpolate> Curve<T> {
     /// The value that does not change.
     pub fn constant(value: T) -> Self {
         Self { times: vec![0.0], values: vec![value], interpolation: Interpolation::Step }
@@ -99,7 +99,7 @@ impl<T: Value> Curve<T> {
     ///
     /// # Panics
     /// When the curve is empty.
-    pub fn at(&self, time: f64) -> T {
+    pub fn sample(&self, time: f64) -> T {
         let after = self.times.partition_point(|&t| t <= time);
         if after == 0 {
             return self.values[0];
@@ -113,11 +113,11 @@ impl<T: Value> Curve<T> {
         let s = (time - self.times[key]) / seconds;
         match &self.interpolation {
             Interpolation::Step => a,
-            Interpolation::Linear => T::mix(a, b, s),
+            Interpolation::Linear => T::lerp(a, b, s),
             Interpolation::Cubic(slopes) => {
                 // The Hermite basis, as in appendix C of the glTF 2.0 specification.
                 let (s2, s3) = (s * s, s * s * s);
-                T::sum([
+                T::weighted_sum([
                     (2.0 * s3 - 3.0 * s2 + 1.0, a),
                     (seconds * (s3 - 2.0 * s2 + s), slopes[key][1]),
                     (-2.0 * s3 + 3.0 * s2, b),
@@ -213,18 +213,21 @@ mod tests {
     #[test]
     fn value_stays_before_the_first_key_and_after_the_last() {
         for curve in [curve(Interpolation::Step), curve(Interpolation::Linear)] {
-            assert_eq!([0.0, 1.0, 4.0, 9.0].map(|t| curve.at(t)), [10.0, 10.0, 0.0, 0.0]);
+            assert_eq!([0.0, 1.0, 4.0, 9.0].map(|t| curve.sample(t)), [10.0, 10.0, 0.0, 0.0]);
         }
     }
 
     #[test]
     fn linear_is_a_straight_line_between_keys() {
-        assert_eq!([1.5, 2.0, 3.75].map(|t| curve(Interpolation::Linear).at(t)), [12.5, 15.0, 5.0]);
+        assert_eq!(
+            [1.5, 2.0, 3.75].map(|t| curve(Interpolation::Linear).sample(t)),
+            [12.5, 15.0, 5.0]
+        );
     }
 
     #[test]
     fn step_jumps_at_the_key() {
-        assert_eq!([2.999, 3.0].map(|t| curve(Interpolation::Step).at(t)), [10.0, 20.0]);
+        assert_eq!([2.999, 3.0].map(|t| curve(Interpolation::Step).sample(t)), [10.0, 20.0]);
     }
 
     #[test]
@@ -235,7 +238,7 @@ mod tests {
         let values = times.iter().map(|&t| square(t)).collect();
         let curve = Curve { times, values, interpolation: Interpolation::Cubic(slopes) };
         for t in [0.25, 0.5, 1.0, 2.0, 2.9] {
-            assert!((curve.at(t) - square(t)).abs() < 1e-12, "{t}");
+            assert!((curve.sample(t) - square(t)).abs() < 1e-12, "{t}");
         }
     }
 
@@ -243,7 +246,7 @@ mod tests {
     fn rotations_turn_at_constant_speed() {
         let values = vec![DQuat::IDENTITY, DQuat::from_rotation_z(FRAC_PI_2)];
         let curve = Curve { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear };
-        let third = curve.at(1.0 / 3.0) * DVec3::X;
+        let third = curve.sample(1.0 / 3.0) * DVec3::X;
         let (sin, cos) = (FRAC_PI_2 / 3.0).sin_cos();
         assert!((third - DVec3::new(cos, sin, 0.0)).length() < 1e-12, "{third}");
     }
@@ -253,7 +256,7 @@ mod tests {
         let turned = DQuat::from_rotation_z(0.2);
         let values = vec![DQuat::IDENTITY, -turned];
         let curve = Curve { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear };
-        assert!(curve.at(0.5).angle_between(DQuat::from_rotation_z(0.1)) < 1e-7);
+        assert!(curve.sample(0.5).angle_between(DQuat::from_rotation_z(0.1)) < 1e-7);
     }
 
     #[test]
@@ -275,7 +278,7 @@ mod tests {
                 .take(values.len()).collect();
             let curve = Curve::<f64>::smooth(times.clone(), values.clone());
             for i in 1..values.len() {
-                let found = curve.at(times[i - 1] + share * (times[i] - times[i - 1]));
+                let found = curve.sample(times[i - 1] + share * (times[i] - times[i - 1]));
                 let (low, high) = (values[i - 1].min(values[i]), values[i - 1].max(values[i]));
                 prop_assert!(found >= low - 1e-9 && found <= high + 1e-9, "{found} of {low}..{high}");
             }

@@ -15,18 +15,18 @@ pub struct Deformation {
     /// The mesh as it was modelled.
     pub base: Arc<Mesh>,
     /// What it can be morphed to.
-    pub morphs: Arc<[Morph]>,
+    pub morph_targets: Arc<[MorphTarget]>,
     /// How much of each morph there is at a time: one curve for each.
     pub weights: Vec<Curve<f64>>,
     /// After how many seconds the weights begin again, above 0; none for never.
-    pub repeats: Option<f64>,
+    pub period: Option<f64>,
     /// What bends it.
     pub skin: Option<Skin>,
 }
 
 /// What a morph adds to vertices, at full weight. Each list is empty, or as long as the mesh's.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Morph {
+pub struct MorphTarget {
     /// Displacements of the positions.
     pub positions: Vec<[f32; 3]>,
     /// What is added to the normals.
@@ -51,9 +51,9 @@ pub struct Joint {
     /// The node that it moves with; none for the world.
     pub node: Option<NodeId>,
     /// Where it stands in that space.
-    pub place: DAffine3,
+    pub transform: DAffine3,
     /// From the mesh's space to the joint's, when it was modelled.
-    pub bind: DAffine3,
+    pub inverse_bind: DAffine3,
 }
 
 /// For each vertex, the joints that it hangs on.
@@ -77,14 +77,14 @@ pub(super) struct Pose {
 
 impl Joint {
     /// From the space that is bound to it to the world.
-    fn at(&self, worlds: &[DAffine3]) -> DAffine3 {
-        self.standing(worlds) * self.bind
+    fn bound_to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
+        self.to_world(worlds) * self.inverse_bind
     }
 
-    fn standing(&self, worlds: &[DAffine3]) -> DAffine3 {
+    fn to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
         match self.node {
-            Some(NodeId(node)) => worlds[node as usize] * self.place,
-            None => self.place,
+            Some(NodeId(node)) => worlds[node as usize] * self.transform,
+            None => self.transform,
         }
     }
 }
@@ -94,40 +94,49 @@ impl Deformation {
     ///
     /// # Panics
     /// When a joint's node is not there.
-    pub fn mesh(&self, time: f64, worlds: &[DAffine3]) -> Mesh {
-        self.shape(&self.pose(time, worlds))
+    pub fn deform(&self, time: f64, worlds: &[DAffine3]) -> Mesh {
+        self.deform_to(&self.pose(time, worlds))
     }
 
     pub(super) fn pose(&self, time: f64, worlds: &[DAffine3]) -> Pose {
-        let time = self.repeats.map_or(time, |period| time.rem_euclid(period));
-        let weights = self.weights.iter().map(|curve| curve.at(time)).collect();
+        let time = self.period.map_or(time, |period| time.rem_euclid(period));
+        let weights = self.weights.iter().map(|curve| curve.sample(time)).collect();
         let joints = self.skin.as_ref().map_or(Vec::new(), |skin| {
             // Where that space is flat nothing of the mesh is seen.
-            let space = skin.space.standing(worlds).inverse();
-            skin.joints.iter().map(|joint| space * joint.at(worlds)).collect()
+            let space = skin.space.to_world(worlds).inverse();
+            skin.joints.iter().map(|joint| space * joint.bound_to_world(worlds)).collect()
         });
         Pose { weights, joints }
     }
 
-    pub(super) fn shape(&self, pose: &Pose) -> Mesh {
+    pub(super) fn deform_to(&self, pose: &Pose) -> Mesh {
         let mut mesh = Mesh::clone(&self.base);
-        let morphs: Vec<(&Morph, f64)> = self
-            .morphs
+        let morphs: Vec<(&MorphTarget, f64)> = self
+            .morph_targets
             .iter()
             .zip(pose.weights.iter().copied())
             .filter(|(_, weight)| *weight != 0.0)
             .collect();
-        morph(&mut mesh.positions, morphs.iter().map(|(m, weight)| (&*m.positions, *weight)));
-        morph(&mut mesh.normals, morphs.iter().map(|(m, weight)| (&*m.normals, *weight)));
+        add_displacements(
+            &mut mesh.positions,
+            morphs.iter().map(|(m, weight)| (&*m.positions, *weight)),
+        );
+        add_displacements(
+            &mut mesh.normals,
+            morphs.iter().map(|(m, weight)| (&*m.normals, *weight)),
+        );
         if let Some(skin) = &self.skin {
-            skin.influences.bend(&mut mesh, &pose.joints);
+            skin.influences.skin(&mut mesh, &pose.joints);
         }
         mesh
     }
 }
 
 /// Adds weighted displacements, in f64.
-fn morph<'m>(values: &mut [[f32; 3]], morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>) {
+fn add_displacements<'m>(
+    values: &mut [[f32; 3]],
+    morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>,
+) {
     let morphs: Vec<_> = morphs.filter(|(by, _)| by.len() == values.len()).collect();
     if morphs.is_empty() {
         return;
@@ -142,13 +151,13 @@ fn morph<'m>(values: &mut [[f32; 3]], morphs: impl Iterator<Item = (&'m [[f32; 3
 
 impl Influences {
     /// How many times a joint is named, with any weight, beyond the first `count`.
-    pub(crate) fn beyond(&self, count: usize) -> u64 {
+    pub(crate) fn count_out_of_range(&self, count: usize) -> u64 {
         let named = self.joints.iter().zip(&self.weights);
         named.filter(|(joint, w)| **w != 0.0 && usize::from(**joint) >= count).count() as u64
     }
 
     /// Keeps the influences of some vertices.
-    pub(crate) fn keep(&mut self, kept: &[usize]) {
+    pub(crate) fn retain_vertices(&mut self, kept: &[usize]) {
         let of = |vertex: usize| vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
         self.joints = kept.iter().flat_map(|&v| self.joints[of(v)].iter().copied()).collect();
         self.weights = kept.iter().flat_map(|&v| self.weights[of(v)].iter().copied()).collect();
@@ -156,11 +165,11 @@ impl Influences {
 
     /// Linear blend skinning, in f64: each vertex and its tangent by the weighted mean of its joints'
     /// transforms, and its normal by that mean's cofactors, which is right for any scale.
-    fn bend(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
+    fn skin(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
         let positions = mesh.positions.par_iter_mut().with_min_len(GRAIN).enumerate();
         let transforms: Vec<DMat3> = positions
             .map(|(i, position)| {
-                let transform = self.mean(i, joints);
+                let transform = self.blended_transform(i, joints);
                 let there = transform.transform_point3(DVec3::from(position.map(f64::from)));
                 *position = there.as_vec3().to_array();
                 transform.matrix3
@@ -185,7 +194,7 @@ impl Influences {
         });
     }
 
-    fn mean(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
+    fn blended_transform(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
         let range = vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
         let (ids, weights) = (&self.joints[range.clone()], &self.weights[range]);
         let joint = |id: u16| joints.get(usize::from(id)).copied().unwrap_or_default();
@@ -218,7 +227,7 @@ mod tests {
     }
 
     fn joint(place: DAffine3) -> Joint {
-        Joint { node: None, place, bind: DAffine3::IDENTITY }
+        Joint { node: None, transform: place, inverse_bind: DAffine3::IDENTITY }
     }
 
     fn bent(joints: Vec<Joint>, space: DAffine3, ids: [u16; 6], weights: [f32; 6]) -> Mesh {
@@ -226,16 +235,17 @@ mod tests {
             Influences { per_vertex: 2, joints: ids.to_vec(), weights: weights.to_vec() };
         let skin = Skin { joints, influences: Arc::new(influences), space: joint(space) };
         let (morphs, weights) = ([].into(), vec![]);
-        Deformation { base: base(), morphs, weights, repeats: None, skin: Some(skin) }
-            .mesh(0.0, &[])
+        Deformation { base: base(), morph_targets: morphs, weights, period: None, skin: Some(skin) }
+            .deform(0.0, &[])
     }
 
     fn morphed(weight: f64) -> Mesh {
         let morph =
-            Morph { positions: vec![[0.0, 0.0, 4.0]; 3], normals: vec![[2.0, 0.0, 0.0]; 3] };
+            MorphTarget { positions: vec![[0.0, 0.0, 4.0]; 3], normals: vec![[2.0, 0.0, 0.0]; 3] };
         let weights = vec![Curve::constant(weight)];
         let morphs = [morph].into();
-        Deformation { base: base(), morphs, weights, repeats: None, skin: None }.mesh(0.0, &[])
+        Deformation { base: base(), morph_targets: morphs, weights, period: None, skin: None }
+            .deform(0.0, &[])
     }
 
     #[test]
@@ -248,9 +258,14 @@ mod tests {
             let skin =
                 Skin { joints, influences: Arc::new(influences), space: joint(DAffine3::IDENTITY) };
             let (base, morphs) = (Arc::new(base), [].into());
-            let deformation =
-                Deformation { base, morphs, weights: vec![], repeats: None, skin: Some(skin) };
-            deformation.mesh(0.0, &[]).tangents[1]
+            let deformation = Deformation {
+                base,
+                morph_targets: morphs,
+                weights: vec![],
+                period: None,
+                skin: Some(skin),
+            };
+            deformation.deform(0.0, &[]).tangents[1]
         };
         let quarter = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
         assert_eq!(bent(quarter), [0.0, 1.0, 0.0, 1.0]);

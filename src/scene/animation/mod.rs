@@ -12,10 +12,10 @@ use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::scene::{Camera, Light, Scene};
 
-pub use curve::{Curve, Interpolation, Value};
-pub use deform::{Deformation, Influences, Joint, Morph, Skin};
+pub use curve::{Curve, Interpolate, Interpolation};
+pub use deform::{Deformation, Influences, Joint, MorphTarget, Skin};
 pub use node::{Anchor, Keyframes, Motion, Node, NodeId, Orbit, Rotation};
-pub use poses::Poses;
+pub use poses::PosedScene;
 
 /// The most frames that an animation can have: eleven hours at 24 a second.
 pub const MAX_FRAMES: u32 = 1_000_000;
@@ -32,7 +32,7 @@ pub struct Animation {
     /// The spaces that move, each after those that it depends on.
     pub nodes: Vec<Node>,
     /// What of the scene changes.
-    pub movers: Vec<Animated>,
+    pub objects: Vec<Animated>,
 }
 
 /// Something of the scene that changes.
@@ -97,14 +97,14 @@ pub enum Animated {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aim {
     /// What it looks at.
-    pub toward: Toward,
+    pub target: AimTarget,
     /// What is upward in its picture.
     pub up: DVec3,
 }
 
 /// What a camera looks at.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Toward {
+pub enum AimTarget {
     /// A point, which may move with something.
     Anchor(Anchor),
     /// A point that goes from key to key.
@@ -116,7 +116,7 @@ pub enum Toward {
 impl Animation {
     /// An animation of so many frames in which nothing moves yet.
     pub fn new(frames: u32, fps: f64) -> Self {
-        Self { frames, fps, nodes: Vec::new(), movers: Vec::new() }
+        Self { frames, fps, nodes: Vec::new(), objects: Vec::new() }
     }
 
     /// The time of a frame, in seconds; frames count from 1, and the first is at time 0.
@@ -125,13 +125,13 @@ impl Animation {
     }
 
     /// How long it is, in seconds: to where a frame after the last would be.
-    pub fn seconds(&self) -> f64 {
+    pub fn duration(&self) -> f64 {
         f64::from(self.frames) / self.fps
     }
 
     /// Whether anything moves that rays can meet, rather than lights and cameras alone.
     pub fn moves_geometry(&self) -> bool {
-        self.movers.iter().any(|m| match m {
+        self.objects.iter().any(|m| match m {
             Animated::Sphere { .. } | Animated::Instance { .. } | Animated::Mesh { .. } => true,
             Animated::Light { .. } | Animated::Camera { .. } => false,
         })
@@ -140,7 +140,7 @@ impl Animation {
     /// Whether it moves each of so many instances.
     pub(in crate::scene) fn moved_instances(&self, count: usize) -> Vec<bool> {
         let mut moved = vec![false; count];
-        for mover in &self.movers {
+        for mover in &self.objects {
             if let Animated::Instance { instance, .. } = mover
                 && let Some(moved) = moved.get_mut(*instance)
             {
@@ -167,8 +167,8 @@ impl Scene {
     ///
     /// # Panics
     /// When the animation was not [checked](Scene::check).
-    pub fn at(&self, time: f64) -> Result<Scene> {
-        let mut poses = Poses::new(self);
+    pub fn at_time(&self, time: f64) -> Result<Scene> {
+        let mut poses = PosedScene::new(self);
         poses.pose(time)?;
         Ok(poses.into_scene())
     }
@@ -182,18 +182,18 @@ impl Scene {
             return self.bounds();
         }
         let mut bounds = Bounds::EMPTY;
-        self.over_time(|poses| bounds = bounds.union(poses.bounds()));
+        self.sample_over_time(|poses| bounds = bounds.union(poses.bounds()));
         bounds
     }
 
     /// Looks at the scene at some moments of its animation, from its start to its end.
-    pub(crate) fn over_time(&self, mut look: impl FnMut(&mut Poses<'_>)) {
+    pub(crate) fn sample_over_time(&self, mut look: impl FnMut(&mut PosedScene<'_>)) {
         /// At how many times an animation is looked at, besides its start.
         const MOMENTS: u32 = 24;
         let Some(animation) = &self.animation else { return };
-        let mut poses = Poses::new(self);
+        let mut poses = PosedScene::new(self);
         for i in 0..=MOMENTS {
-            let time = animation.seconds() * f64::from(i) / f64::from(MOMENTS);
+            let time = animation.duration() * f64::from(i) / f64::from(MOMENTS);
             if poses.pose(time).is_ok() {
                 look(&mut poses);
             }
@@ -202,7 +202,7 @@ impl Scene {
 }
 
 /// The same error, with what it is about before it.
-fn naming(what: &str, error: &Error) -> Error {
+fn prefixed(what: &str, error: &Error) -> Error {
     let named = Error::input(format!("{what}: {}", error.message()));
     match error.advice() {
         Some(help) => named.help(help),

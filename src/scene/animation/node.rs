@@ -16,7 +16,7 @@ pub struct Node {
     /// The space that it moves in, which stands before it; none for the world.
     pub parent: Option<NodeId>,
     /// Where its motion takes place, in the space of its parent.
-    pub place: DAffine3,
+    pub base: DAffine3,
     /// How it moves.
     pub motion: Motion,
 }
@@ -25,7 +25,7 @@ pub struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
     /// From key to key: scaled, then rotated, then translated.
-    Keys(Keyframes),
+    Keyframes(Keyframes),
     /// About an axis, or along with something else. The space is that of the world as it is at
     /// time 0, and the node has neither parent nor place.
     Orbit(Orbit),
@@ -41,7 +41,7 @@ pub struct Keyframes {
     /// By what it is scaled along its own axes.
     pub scale: Curve<DVec3>,
     /// After how many seconds it begins again, above 0; none for never.
-    pub repeats: Option<f64>,
+    pub period: Option<f64>,
 }
 
 /// A rotation that changes.
@@ -77,31 +77,31 @@ pub struct Orbit {
     /// Seconds for one turn, not 0; infinite for what only keeps beside its centre.
     pub period: f64,
     /// Whether the space turns with it, so that the same side always faces the centre.
-    pub turn: bool,
+    pub turns_with_orbit: bool,
 }
 
 impl Keyframes {
     /// What moves nowhere; a start for what has some keys only.
-    pub fn still() -> Self {
+    pub fn identity() -> Self {
         Self {
             translation: Curve::constant(DVec3::ZERO),
             rotation: Rotation::Quaternions(Curve::constant(DQuat::IDENTITY)),
             scale: Curve::constant(DVec3::ONE),
-            repeats: None,
+            period: None,
         }
     }
 
-    fn at(&self, time: f64) -> DAffine3 {
-        let time = match self.repeats {
+    fn transform(&self, time: f64) -> DAffine3 {
+        let time = match self.period {
             Some(period) => time.rem_euclid(period),
             None => time,
         };
         let rotation = match &self.rotation {
-            Rotation::Angles(curve) => about_fixed_axes(curve.at(time)),
-            Rotation::Quaternions(curve) => DMat3::from_quat(curve.at(time)),
+            Rotation::Angles(curve) => about_fixed_axes(curve.sample(time)),
+            Rotation::Quaternions(curve) => DMat3::from_quat(curve.sample(time)),
         };
-        let scale = DMat3::from_diagonal(self.scale.at(time));
-        DAffine3 { matrix3: rotation * scale, translation: self.translation.at(time) }
+        let scale = DMat3::from_diagonal(self.scale.sample(time));
+        DAffine3 { matrix3: rotation * scale, translation: self.translation.sample(time) }
     }
 }
 
@@ -112,7 +112,7 @@ impl Anchor {
     }
 
     /// Where it is, given where the nodes are.
-    pub(super) fn at(&self, worlds: &[DAffine3]) -> DVec3 {
+    pub(super) fn position(&self, worlds: &[DAffine3]) -> DVec3 {
         match self.node {
             Some(NodeId(node)) => worlds[node as usize].transform_point3(self.point),
             None => self.point,
@@ -121,10 +121,10 @@ impl Anchor {
 }
 
 impl Orbit {
-    fn at(&self, time: f64, center: DVec3) -> DAffine3 {
+    fn transform(&self, time: f64, center: DVec3) -> DAffine3 {
         // Whole turns are left out first: the angle is as exact after a million of them.
         let turn = DMat3::from_axis_angle(self.axis, TAU * (time / self.period).fract());
-        if self.turn {
+        if self.turns_with_orbit {
             let translation = center - turn * self.center;
             DAffine3 { matrix3: turn, translation }
         } else {
@@ -135,12 +135,12 @@ impl Orbit {
 }
 
 /// Where the nodes are at a time in seconds: for each, the way from its space to the world.
-pub(super) fn worlds(nodes: &[Node], time: f64) -> Vec<DAffine3> {
+pub(super) fn world_transforms(nodes: &[Node], time: f64) -> Vec<DAffine3> {
     let mut worlds = Vec::with_capacity(nodes.len());
     for node in nodes {
         let own = match &node.motion {
-            Motion::Keys(keys) => node.place * keys.at(time),
-            Motion::Orbit(orbit) => orbit.at(time, orbit.around.at(&worlds)),
+            Motion::Keyframes(keys) => node.base * keys.transform(time),
+            Motion::Orbit(orbit) => orbit.transform(time, orbit.around.position(&worlds)),
         };
         let world = match node.parent {
             Some(NodeId(parent)) => worlds[parent as usize] * own,
@@ -169,18 +169,18 @@ mod tests {
             start: DVec3::X * 3.0,
             axis: DVec3::Y,
             period: 4.0,
-            turn,
+            turns_with_orbit: turn,
         }
     }
 
     fn free(motion: Motion) -> Node {
-        Node { parent: None, place: DAffine3::IDENTITY, motion }
+        Node { parent: None, base: DAffine3::IDENTITY, motion }
     }
 
     #[test]
     fn a_quarter_of_the_period_is_a_quarter_turn_by_the_right_hand_rule() {
         for turn in [false, true] {
-            let world = worlds(&[free(Motion::Orbit(orbit(turn)))], 1.0)[0];
+            let world = world_transforms(&[free(Motion::Orbit(orbit(turn)))], 1.0)[0];
             let there = world.transform_point3(DVec3::X * 3.0);
             assert!((there - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-15, "{there}");
         }
@@ -188,7 +188,7 @@ mod tests {
 
     #[test]
     fn what_does_not_turn_keeps_its_directions() {
-        let facing = |turn| orbit(turn).at(1.0, DVec3::X).matrix3 * DVec3::X;
+        let facing = |turn| orbit(turn).transform(1.0, DVec3::X).matrix3 * DVec3::X;
         assert_eq!(facing(false), DVec3::X);
         assert!((facing(true) - DVec3::NEG_Z).length() < 1e-15);
     }
@@ -196,14 +196,14 @@ mod tests {
     #[test]
     fn time_zero_and_whole_periods_leave_everything_where_it_was() {
         for time in [0.0, 4.0, 4e6] {
-            assert_eq!(orbit(true).at(time, DVec3::X), DAffine3::IDENTITY);
+            assert_eq!(orbit(true).transform(time, DVec3::X), DAffine3::IDENTITY);
         }
     }
 
     #[test]
     fn without_a_period_it_keeps_beside_its_centre() {
         let follows = Orbit { period: f64::INFINITY, ..orbit(false) };
-        let moved = follows.at(7.0, DVec3::new(1.0, 5.0, 0.0));
+        let moved = follows.transform(7.0, DVec3::new(1.0, 5.0, 0.0));
         assert_eq!(moved, DAffine3::from_translation(DVec3::Y * 5.0));
     }
 
@@ -215,7 +215,7 @@ mod tests {
             start: DVec3::X * 10.0,
             axis: DVec3::Y,
             period: 8.0,
-            turn: false,
+            turns_with_orbit: false,
         };
         let moon = Orbit {
             around: Anchor { node: Some(NodeId(0)), point: DVec3::X * 10.0 },
@@ -225,27 +225,30 @@ mod tests {
             ..planet.clone()
         };
         let nodes = [free(Motion::Orbit(planet)), free(Motion::Orbit(moon))];
-        let there = worlds(&nodes, 2.0)[1].transform_point3(DVec3::X * 11.0);
+        let there = world_transforms(&nodes, 2.0)[1].transform_point3(DVec3::X * 11.0);
         // The planet after a quarter turn, the moon beside it after half a one.
         assert!((there - DVec3::new(-1.0, 0.0, -10.0)).length() < 1e-14, "{there}");
     }
 
     #[test]
     fn a_child_moves_within_its_parent() {
-        let mut parent = Keyframes::still();
+        let mut parent = Keyframes::identity();
         parent.translation = Curve::constant(DVec3::X);
         parent.scale = Curve::constant(DVec3::splat(2.0));
-        let mut child = Keyframes::still();
+        let mut child = Keyframes::identity();
         child.translation = Curve::constant(DVec3::Y);
         let nodes = [
-            free(Motion::Keys(parent)),
+            free(Motion::Keyframes(parent)),
             Node {
                 parent: Some(NodeId(0)),
-                place: DAffine3::from_translation(DVec3::Z),
-                motion: Motion::Keys(child),
+                base: DAffine3::from_translation(DVec3::Z),
+                motion: Motion::Keyframes(child),
             },
         ];
-        assert_eq!(worlds(&nodes, 0.0)[1].transform_point3(DVec3::ZERO), DVec3::new(1., 2., 2.));
+        assert_eq!(
+            world_transforms(&nodes, 0.0)[1].transform_point3(DVec3::ZERO),
+            DVec3::new(1., 2., 2.)
+        );
     }
 
     #[test]
@@ -255,9 +258,9 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::Y * (2.0 * TAU)],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keyframes { rotation: Rotation::Angles(angles), ..Keyframes::still() };
+        let keys = Keyframes { rotation: Rotation::Angles(angles), ..Keyframes::identity() };
         // After an eighth of two turns, a quarter turn.
-        let turned = keys.at(1.0).matrix3 * DVec3::Z;
+        let turned = keys.transform(1.0).matrix3 * DVec3::Z;
         assert!((turned - DVec3::X).length() < 1e-15, "{turned}");
     }
 
@@ -268,7 +271,7 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::X],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keyframes { translation, repeats: Some(2.0), ..Keyframes::still() };
-        assert_eq!(keys.at(5.0).translation, DVec3::X * 0.5);
+        let keys = Keyframes { translation, period: Some(2.0), ..Keyframes::identity() };
+        assert_eq!(keys.transform(5.0).translation, DVec3::X * 0.5);
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::deform::Pose;
-use super::{Aim, Animated, Toward, naming, node};
+use super::{Aim, AimTarget, Animated, node, prefixed};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::scene::check::check_extent;
@@ -14,18 +14,18 @@ use crate::scene::{Camera, Instance, LightKind, Scene};
 /// A scene as it is at one time after another: of what stands still nothing is copied or checked
 /// again.
 #[derive(Debug)]
-pub struct Poses<'a> {
+pub struct PosedScene<'a> {
     scene: &'a Scene,
     posed: Scene,
     /// Whether instances are left out of it, since they are flat at that time.
-    lacks_flat: bool,
+    omits_flat: bool,
     /// The boxes of the meshes, once they were asked for, and none for those that have a new shape.
     mesh_bounds: Vec<Option<Bounds>>,
     /// For each mover of a mesh, the pose that the mesh has.
     shapes: Vec<Option<Pose>>,
 }
 
-impl<'a> Poses<'a> {
+impl<'a> PosedScene<'a> {
     /// The scene as its files place it, for a start.
     pub fn new(scene: &'a Scene) -> Self {
         // All but the animation, whose keys may be many.
@@ -44,7 +44,7 @@ impl<'a> Poses<'a> {
             report: scene.report.clone(),
         };
         let mesh_bounds = vec![None; scene.meshes.len()];
-        Self { scene, posed, lacks_flat: false, mesh_bounds, shapes: Vec::new() }
+        Self { scene, posed, omits_flat: false, mesh_bounds, shapes: Vec::new() }
     }
 
     /// The scene as it is at a time in seconds; see [`Scene::at`].
@@ -57,14 +57,14 @@ impl<'a> Poses<'a> {
     pub fn pose(&mut self, time: f64) -> Result<&Scene> {
         let Some(animation) = &self.scene.animation else { return Ok(&self.posed) };
         let scene = &mut self.posed;
-        if std::mem::take(&mut self.lacks_flat) {
+        if std::mem::take(&mut self.omits_flat) {
             scene.instances.clone_from(&self.scene.instances);
         }
-        let worlds = node::worlds(&animation.nodes, time);
-        self.shapes.resize(animation.movers.len(), None);
-        for (mover, shape) in animation.movers.iter().zip(&mut self.shapes) {
+        let worlds = node::world_transforms(&animation.nodes, time);
+        self.shapes.resize(animation.objects.len(), None);
+        for (mover, shape) in animation.objects.iter().zip(&mut self.shapes) {
             let Animated::Mesh { mesh, deformation } = mover else {
-                self.lacks_flat |= pose(mover, time, &worlds, scene)?;
+                self.omits_flat |= pose_object(mover, time, &worlds, scene)?;
                 continue;
             };
             // A mesh that keeps its shape stays the same one, of which nothing is built again.
@@ -73,11 +73,11 @@ impl<'a> Poses<'a> {
                 *shape = new;
                 self.mesh_bounds[*mesh] = None;
                 if let Some(pose) = shape {
-                    scene.meshes[*mesh] = Arc::new(deformation.shape(pose));
+                    scene.meshes[*mesh] = Arc::new(deformation.deform_to(pose));
                 }
             }
         }
-        if self.lacks_flat {
+        if self.omits_flat {
             scene.instances.retain(|instance| !instance.is_flat());
         }
         Ok(scene)
@@ -90,17 +90,17 @@ impl<'a> Poses<'a> {
     /// The first thing that is not valid.
     pub fn check(&mut self) -> Result<()> {
         let posed = &self.posed;
-        for mover in self.scene.animation.iter().flat_map(|animation| &animation.movers) {
+        for mover in self.scene.animation.iter().flat_map(|animation| &animation.objects) {
             match *mover {
                 Animated::Sphere { sphere, .. } => posed.check_sphere(sphere)?,
-                Animated::Instance { instance, .. } if !self.lacks_flat => {
+                Animated::Instance { instance, .. } if !self.omits_flat => {
                     posed.check_instance(instance, false)?;
                 }
                 Animated::Mesh { mesh, .. } => posed.check_mesh(mesh)?,
                 Animated::Instance { .. } | Animated::Light { .. } | Animated::Camera { .. } => {}
             }
         }
-        if self.lacks_flat {
+        if self.omits_flat {
             // They have other indices now.
             (0..posed.instances.len()).try_for_each(|i| posed.check_instance(i, false))?;
         }
@@ -128,7 +128,12 @@ impl<'a> Poses<'a> {
 }
 
 /// Moves what a mover moves; says whether that made an instance flat.
-fn pose(mover: &Animated, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> Result<bool> {
+fn pose_object(
+    mover: &Animated,
+    time: f64,
+    worlds: &[DAffine3],
+    scene: &mut Scene,
+) -> Result<bool> {
     let world = |node: &Option<super::NodeId>| {
         node.map_or(DAffine3::IDENTITY, |node| worlds[node.0 as usize])
     };
@@ -137,7 +142,7 @@ fn pose(mover: &Animated, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> 
             let sphere = &mut scene.spheres[*sphere];
             sphere.center = world(node).transform_point3(*center);
             if let Some(radius) = radius {
-                sphere.radius = radius.at(time);
+                sphere.radius = radius.sample(time);
             }
         }
         Animated::Instance { instance, node, transform } => {
@@ -154,12 +159,12 @@ fn pose(mover: &Animated, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> 
             ) = (&mut rest.kind, way)
             {
                 // Halfway between opposite directions there is none.
-                *direction = way.at(time).try_normalize().unwrap_or(*direction);
+                *direction = way.sample(time).try_normalize().unwrap_or(*direction);
             }
             if let Some(intensity) = intensity {
-                rest.intensity *= intensity.at(time) as f32;
+                rest.intensity *= intensity.sample(time) as f32;
             }
-            scene.lights[*light] = rest.placed(&world(node));
+            scene.lights[*light] = rest.transformed(&world(node));
         }
         Animated::Camera { camera, node, rest, aim, lens } => {
             let posed = pose_camera(&world(node), rest, aim.as_ref(), worlds, time);
@@ -168,10 +173,12 @@ fn pose(mover: &Animated, time: f64, worlds: &[DAffine3], scene: &mut Scene) -> 
                     "" => camera.to_string(),
                     name => format!("`{name}`"),
                 };
-                naming(&format!("at {time:.3} s, camera {name}"), &e)
+                prefixed(&format!("at {time:.3} s, camera {name}"), &e)
             })?;
-            let kind = lens.as_ref().map_or(rest.lens, |v| rest.lens.with(v.at(time)));
-            scene.cameras[*camera] = Camera { lens: kind, ..posed };
+            let kind = lens
+                .as_ref()
+                .map_or(rest.projection, |v| rest.projection.with_value(v.sample(time)));
+            scene.cameras[*camera] = Camera { projection: kind, ..posed };
         }
     }
     Ok(false)
@@ -184,18 +191,18 @@ fn pose_camera(
     worlds: &[DAffine3],
     time: f64,
 ) -> Result<Camera> {
-    let Some(Aim { toward, up }) = aim else {
-        return rest.placed(world).ok_or_else(|| {
+    let Some(Aim { target: toward, up }) = aim else {
+        return rest.transformed(world).ok_or_else(|| {
             Error::input("its transform is too uneven to leave it an upward direction")
         });
     };
     let position = world.transform_point3(rest.position);
     let forward = match toward {
-        Toward::Anchor(anchor) => anchor.at(worlds) - position,
-        Toward::Points(points) => points.at(time) - position,
-        Toward::Directions(directions) => directions.at(time),
+        AimTarget::Anchor(anchor) => anchor.position(worlds) - position,
+        AimTarget::Points(points) => points.sample(time) - position,
+        AimTarget::Directions(directions) => directions.sample(time),
     };
     // From the origin, so that a position far out does not round the direction.
-    let posed = Camera::look_at(DVec3::ZERO, forward, *up, rest.lens)?;
+    let posed = Camera::look_at(DVec3::ZERO, forward, *up, rest.projection)?;
     Ok(Camera { name: rest.name.clone(), position, ..posed })
 }

@@ -1,8 +1,8 @@
 //! What makes a film valid.
 
-use super::require::{color, require};
+use super::require::{require, require_color};
 use crate::error::Result;
-use crate::scene::{Adaptive, FilmSettings};
+use crate::scene::{AdaptiveSampling, FilmSettings};
 
 /// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -14,13 +14,13 @@ pub const MAX_DEPTH: u32 = 1 << 16;
 /// Checks a film.
 pub(super) fn check(film: &FilmSettings) -> Result<()> {
     check_size(film.size)?;
-    let uniform = Adaptive { max: film.spp, threshold: Adaptive::THRESHOLD };
-    let Adaptive { max, threshold } = film.adaptive.unwrap_or(uniform);
+    let uniform = AdaptiveSampling { max: film.spp, threshold: AdaptiveSampling::THRESHOLD };
+    let AdaptiveSampling { max, threshold } = film.adaptive.unwrap_or(uniform);
     check_samples(film.spp, max)?;
     require((0.0..=1.0).contains(&threshold), || {
         format!("the threshold must be from 0 to 1, found {threshold}")
     })?;
-    color(|| "the background".to_owned(), film.background)?;
+    require_color(|| "the background".to_owned(), film.background)?;
     require(film.max_depth <= MAX_DEPTH, || {
         format!("max_depth must be at most {MAX_DEPTH}, found {}", film.max_depth)
     })?;

@@ -24,7 +24,7 @@ pub(super) fn first_root(
         return None;
     }
     let lengths = origin.to_array().into_iter().chain(center.to_array()).chain([radius]);
-    let (place, way) = (Scale::of(lengths), Scale::of(direction.to_array()));
+    let (place, way) = (Scale::common(lengths), Scale::common(direction.to_array()));
     let f = minus::<BigInt>(&place.vector(origin), &place.vector(center));
     let (d, r) = (way.vector::<BigInt>(direction), place.integer::<BigInt>(radius));
 

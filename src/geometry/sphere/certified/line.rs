@@ -106,7 +106,7 @@ impl QuadraticBound {
 
     /// Whether the line certainly meets the sphere.
     #[inline(always)]
-    pub fn crosses(&self) -> bool {
+    pub fn certainly_crosses(&self) -> bool {
         let [sphere, line] = self.slack;
         self.foot2 < (self.r2 - sphere) - line
     }
@@ -146,7 +146,7 @@ impl QuadraticBound {
 
         // Where r²/|d|² is so small that what is smaller yet underflows, nothing is certain.
         let decided = (self.r2 * self.inverse > SMALLEST) & (self.inverse < 1.0 / TINY);
-        let sure = self.crosses()
+        let sure = self.certainly_crosses()
             & decided
             & (outside | inside)
             & (2.0 * far_error <= far.abs())
@@ -162,7 +162,7 @@ impl QuadraticBound {
 
     /// The first root above 0, or the far one, in f64 alone.
     #[inline(always)]
-    pub(super) fn guess(&self, inward: bool) -> f64 {
+    pub(super) fn initial_guess(&self, inward: bool) -> f64 {
         let Roots { near, far, power, .. } = self.roots();
         let takes_far = inward | (power < 0.0);
         let greater = if far > near { far } else { near };

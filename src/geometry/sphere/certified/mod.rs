@@ -10,7 +10,7 @@ mod newton;
 mod tests;
 
 pub use line::QuadraticBound;
-pub use newton::{Rounded, round};
+pub use newton::{RoundedRoot, round};
 
 use glam::DVec3;
 
@@ -54,9 +54,9 @@ pub fn first_root(
     if !leaving_inward && (estimate == Estimate::MISS || estimate.lower() >= tmax) {
         return None;
     }
-    let rounded = newton::refined(&line, leaving_inward);
+    let rounded = newton::round_with_retries(&line, leaving_inward);
     // Where the rounded t is tmax itself, the exact one may lie on either side.
-    if rounded.certain && rounded.t != tmax {
+    if rounded.is_certain && rounded.t != tmax {
         return (rounded.t < tmax).then_some(rounded.t);
     }
     exact::first_root(center, radius, origin, direction, leaving_inward)

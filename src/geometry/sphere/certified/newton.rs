@@ -25,12 +25,12 @@ use crate::geometry::sphere::inverse_length_squared;
 
 /// A root as [`round`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded {
+pub struct RoundedRoot {
     /// The distance, in units of |direction|.
     pub t: f64,
     /// Whether `t` is proven: the ray meets the sphere there, first, and the exact distance rounds
     /// to `t`. Otherwise `t` means nothing.
-    pub certain: bool,
+    pub is_certain: bool,
 }
 
 /// The first root above 0, or with `inward` the far root, correctly rounded where `certain`.
@@ -38,27 +38,33 @@ pub struct Rounded {
 /// Free of branches, for loops over the lanes of a packet. Where it is not certain,
 /// [`first_root`](super::first_root) knows; where it is, both say the same.
 #[inline(always)]
-pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
+pub fn round(
+    center: DVec3,
+    radius: f64,
+    origin: DVec3,
+    direction: DVec3,
+    inward: bool,
+) -> RoundedRoot {
     let inverse = inverse_length_squared(direction);
     let line = QuadraticBound::new(center, radius, origin, direction, inverse);
-    step(&line, line.guess(inward), inward)
+    newton_step(&line, line.initial_guess(inward), inward)
 }
 
 /// Up to three steps, for what is nearly a tangent.
-pub(super) fn refined(line: &QuadraticBound, inward: bool) -> Rounded {
-    let mut rounded = step(line, line.guess(inward), inward);
+pub(super) fn round_with_retries(line: &QuadraticBound, inward: bool) -> RoundedRoot {
+    let mut rounded = newton_step(line, line.initial_guess(inward), inward);
     for _ in 0..2 {
-        if rounded.certain || !rounded.t.is_finite() {
+        if rounded.is_certain || !rounded.t.is_finite() {
             break;
         }
-        rounded = step(line, rounded.t, inward);
+        rounded = newton_step(line, rounded.t, inward);
     }
     rounded
 }
 
 /// One Newton step from `guess`.
 #[inline(always)]
-fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
+fn newton_step(line: &QuadraticBound, guess: f64, inward: bool) -> RoundedRoot {
     let (d, r) = (line.direction, line.radius);
     let f = difference(line.origin, line.center);
     // One by one: compilers do not vectorise a caller's loop around a loop or a `map`.
@@ -103,7 +109,7 @@ fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
         & in_range(r_abs)
         & in_range(d1)
         & in_range(size);
-    Rounded { t: t.hi, certain }
+    RoundedRoot { t: t.hi, is_certain: certain }
 }
 
 /// f + t·d, off by less than 4u²(|f| + |t·d|).

@@ -73,7 +73,7 @@ impl Case {
         let unbounded = Self { tmax: f64::INFINITY, ..*self };
         let exact = unbounded.exact();
         let rounded = round(self.center, self.radius, self.origin, self.direction, self.inward);
-        if rounded.certain {
+        if rounded.is_certain {
             assert_eq!(Some(rounded.t), exact, "{self:?}");
         }
         if self.inward {
@@ -202,16 +202,16 @@ fn direction_of_a_square_beyond_f64_leaves_the_decision_open() {
     let direction = DVec3::Z * 1e160;
     let inverse = inverse_length_squared(direction);
     let line = QuadraticBound::new(DVec3::new(5.0, 0.0, 9.0), 1.0, DVec3::ZERO, direction, inverse);
-    assert!(line.may_cross() && !line.crosses());
+    assert!(line.may_cross() && !line.certainly_crosses());
 }
 
 #[test]
 fn round_is_certain_of_what_is_well_inside() {
     let case = Case::new(DVec3::new(0.3, 0.1, 9.0), 1.0, DVec3::ZERO, DVec3::Z);
     let Case { center, radius, origin, direction, .. } = case;
-    assert!(round(center, radius, origin, direction, false).certain);
-    assert!(round(center, radius, center, direction, false).certain);
-    assert!(round(center, radius, origin, direction, true).certain);
+    assert!(round(center, radius, origin, direction, false).is_certain);
+    assert!(round(center, radius, center, direction, false).is_certain);
+    assert!(round(center, radius, origin, direction, true).is_certain);
 }
 
 fn unit() -> impl Strategy<Value = DVec3> {

@@ -27,7 +27,7 @@ use crate::geometry::double_double::{U, in_range};
 /// Split from [`Edges::estimate`] so that a packet can stop early when all of its rays certainly
 /// pass.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges {
+pub struct EdgeBounds {
     functions: [f64; 3],
     /// Bound of the error of each; infinite where nothing is certain.
     error: f64,
@@ -37,7 +37,7 @@ pub struct Edges {
     denominator_error: f64,
 }
 
-impl Edges {
+impl EdgeBounds {
     /// Sets the line `origin + t·direction` beside the triangle.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {

@@ -10,24 +10,24 @@ use crate::geometry::triangle::TriangleHit;
 
 /// The scales of the positions and of the direction.
 struct Scales {
-    place: Scale,
-    way: Scale,
+    positions: Scale,
+    direction: Scale,
 }
 
 impl Scales {
-    fn of(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
+    fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
         let [a, b, c] = triangle.map(|p| p.to_array());
         let places = [a, b, c, origin.to_array()];
         Self {
-            place: Scale::of(places.into_iter().flatten()),
-            way: Scale::of(direction.to_array()),
+            positions: Scale::common(places.into_iter().flatten()),
+            direction: Scale::common(direction.to_array()),
         }
     }
 
     /// Whether i128 holds d·(p × q) for differences of positions: a difference has one bit more
     /// than a position, and the six products of the sum have three more.
-    fn fit_i128(&self) -> bool {
-        self.way.bits + 2 * (self.place.bits + 1) + 3 <= 127
+    fn fits_i128(&self) -> bool {
+        self.direction.bits + 2 * (self.positions.bits + 1) + 3 <= 127
     }
 
     /// The vertices relative to the origin, and the direction.
@@ -37,8 +37,11 @@ impl Scales {
         origin: DVec3,
         direction: DVec3,
     ) -> ([[I; 3]; 3], [I; 3]) {
-        let origin = self.place.vector(origin);
-        (triangle.map(|p| minus(&self.place.vector(p), &origin)), self.way.vector(direction))
+        let origin = self.positions.vector(origin);
+        (
+            triangle.map(|p| minus(&self.positions.vector(p), &origin)),
+            self.direction.vector(direction),
+        )
     }
 }
 
@@ -51,18 +54,18 @@ pub(super) fn crosses(
     direction: DVec3,
     known: [Ordering; 3],
 ) -> bool {
-    let scales = Scales::of(triangle, origin, direction);
-    if scales.fit_i128() {
+    let scales = Scales::new(triangle, origin, direction);
+    if scales.fits_i128() {
         let (relative, d) = scales.integers::<i128>(triangle, origin, direction);
-        inside(&relative, &d, known)
+        have_one_sign(&relative, &d, known)
     } else {
         let (relative, d) = scales.integers::<BigInt>(triangle, origin, direction);
-        inside(&relative, &d, known)
+        have_one_sign(&relative, &d, known)
     }
 }
 
 /// Whether the three edges see the line on the same side, of vertices relative to its origin.
-fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3]) -> bool {
+fn have_one_sign<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3]) -> bool {
     let edges = [(b, c), (c, a), (a, b)];
     let signs = [0, 1, 2].map(|i| match (known[i], edges[i]) {
         (Equal, (p, q)) => sign(&dot(d, &cross(p, q))),
@@ -74,7 +77,7 @@ fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3])
         return false;
     }
     let [x, y, z] = [0, 1, 2].map(|i| match signs[i] {
-        Equal => beside(d, edges[i]),
+        Equal => perturbed_sign(d, edges[i]),
         decided => decided,
     });
     x == y && y == z && x != Equal
@@ -82,7 +85,7 @@ fn inside<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3])
 
 /// The sign of the edge function for an origin moved by (ε, ε², ε³); equal for an edge along the
 /// direction, whose triangle is parallel to the line.
-fn beside<I: Integer>(d: &[I; 3], (p, q): (&[I; 3], &[I; 3])) -> Ordering {
+fn perturbed_sign<I: Integer>(d: &[I; 3], (p, q): (&[I; 3], &[I; 3])) -> Ordering {
     let [x, y, z] = cross(d, &minus(q, p));
     sign(&x).then(sign(&y)).then(sign(&z))
 }
@@ -95,7 +98,7 @@ pub(super) fn crossing(
     direction: DVec3,
     tmax: f64,
 ) -> Option<TriangleHit> {
-    let scales = Scales::of(triangle, origin, direction);
+    let scales = Scales::new(triangle, origin, direction);
     let ([a, b, c], d) = scales.integers::<BigInt>(triangle, origin, direction);
     let (first, second) = (minus(&b, &a), minus(&c, &a));
     let normal = cross(&first, &second);
@@ -106,7 +109,7 @@ pub(super) fn crossing(
     if sign(&numerator) == Equal || sign(&numerator) != sign(&divisor) {
         return None;
     }
-    let exponent = i64::from(scales.place.exponent) - i64::from(scales.way.exponent);
+    let exponent = i64::from(scales.positions.exponent) - i64::from(scales.direction.exponent);
     let t = Rounded::quotient(&numerator, &divisor, exponent);
     let weight = |x: BigInt| match sign(&x) {
         Equal => 0.0,

@@ -17,8 +17,8 @@ mod round;
 #[cfg(test)]
 mod tests;
 
-pub use edges::Edges;
-pub use round::{Rounded, round};
+pub use edges::EdgeBounds;
+pub use round::{RoundedHit, round};
 
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ use crate::geometry::triangle::TriangleHit;
 /// Where the line crosses the triangle, as f64 arithmetic can bound it; behind the origin too.
 #[inline(always)]
 pub fn estimate(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Estimate {
-    Edges::new(triangle, origin, direction).estimate()
+    EdgeBounds::new(triangle, origin, direction).estimate()
 }
 
 /// Where the ray crosses the triangle with 0 < t < `tmax`, exactly; t correctly rounded.
@@ -43,7 +43,7 @@ pub fn crossing(
     direction: DVec3,
     tmax: f64,
 ) -> Option<TriangleHit> {
-    let edges = Edges::new(triangle, origin, direction);
+    let edges = EdgeBounds::new(triangle, origin, direction);
     if !edges.may_cross() {
         return None;
     }
@@ -60,12 +60,12 @@ pub fn crossing(
     }
     let rounded = round(triangle, origin, direction);
     // Where the rounded t is tmax itself, the exact one may lie on either side.
-    if rounded.certain && rounded.t != tmax {
-        let Rounded { t, u, v, .. } = rounded;
+    if rounded.is_certain && rounded.t != tmax {
+        let RoundedHit { t, u, v, .. } = rounded;
         return (t > 0.0 && t < tmax).then_some(TriangleHit { t, u, v });
     }
     let hit = exact::crossing(triangle, origin, direction, tmax)?;
     // The weights must not depend on tmax.
-    let (u, v) = if rounded.certain { (rounded.u, rounded.v) } else { (hit.u, hit.v) };
+    let (u, v) = if rounded.is_certain { (rounded.u, rounded.v) } else { (hit.u, hit.v) };
     Some(TriangleHit { t: hit.t, u, v })
 }

@@ -16,7 +16,7 @@ use crate::geometry::double_double::{DoubleDouble, OMEGA, U, cross, difference, 
 
 /// A crossing as [`round`] found it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded {
+pub struct RoundedHit {
     /// The distance, in units of |direction|; of either sign.
     pub t: f64,
     /// Weight of the second vertex.
@@ -25,7 +25,7 @@ pub struct Rounded {
     pub v: f64,
     /// Whether the exact distance rounds to `t`, and the weights are what
     /// [`crossing`](super::crossing) gives.
-    pub certain: bool,
+    pub is_certain: bool,
 }
 
 /// Where a line that crosses the triangle does so: t correctly rounded where `certain`.
@@ -33,7 +33,7 @@ pub struct Rounded {
 /// Free of branches, for loops over the lanes of a packet. It does not ask whether the line
 /// crosses: where it does not, t is that of the plane and the weights are clamped.
 #[inline(always)]
-pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
+pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> RoundedHit {
     let first = difference(triangle[1], triangle[0]);
     let second = difference(triangle[2], triangle[0]);
     let a = difference(triangle[0], origin);
@@ -57,11 +57,11 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
         & in_range(way)
         & in_range(width)
         & in_range(height);
-    Rounded {
+    RoundedHit {
         t: t.hi,
         u: clamp(dot(moment, second).hi * inverse),
         v: clamp(-dot(moment, first).hi * inverse),
-        certain,
+        is_certain: certain,
     }
 }
 

@@ -73,8 +73,8 @@ impl Case {
             let off = (found.u - exact.u).abs().max((found.v - exact.v).abs());
             assert!(off <= 4.0 * f64::EPSILON, "{off} {found:?} {exact:?} {self:?}");
             let rounded = round(self.triangle, self.origin, self.direction);
-            if rounded.certain {
-                let Rounded { t, u, v, .. } = rounded;
+            if rounded.is_certain {
+                let RoundedHit { t, u, v, .. } = rounded;
                 assert_eq!(TriangleHit { t, u, v }, found, "{self:?}");
             }
         }
@@ -142,7 +142,7 @@ fn estimate_decides_what_is_not_nearly_an_edge() {
 
 #[test]
 fn round_is_certain_of_what_is_not_edge_on() {
-    assert!(round(UNIT, DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 0.2, -0.3)).certain);
+    assert!(round(UNIT, DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 0.2, -0.3)).is_certain);
 }
 
 #[test]
