@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::scene::{Channel, MetallicRoughnessMaps, ShadingParams, TextureId};
+use crate::scene::{AlphaMode, Channel, Coverage, MetallicRoughnessMaps, ShadingParams, TextureId};
 
 /// The index of a material in `Scene::materials`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -88,31 +88,6 @@ pub struct OcclusionMap {
     pub map: Channel,
     /// How much it counts, in \[0, 1\].
     pub strength: f32,
-}
-
-/// How much a surface covers of what lies behind it: its alpha, which is `alpha` times the map times
-/// the alpha of a mesh's vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coverage {
-    /// The factor, in \[0, 1\].
-    pub alpha: f32,
-    /// The map.
-    pub map: Option<Channel>,
-    /// What alpha means.
-    pub mode: AlphaMode,
-}
-
-/// What alpha means.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AlphaMode {
-    /// Where alpha is below the cutoff there is no surface, for any ray; for meshes only.
-    Mask {
-        /// The least alpha at which there is one.
-        cutoff: f32,
-    },
-    /// The surface is seen by its share alpha, and what lies behind it by the rest. Its material is
-    /// `thin`, has an `ior` of 1 and no `transmit` of its own.
-    Blend,
 }
 
 impl Default for Material {

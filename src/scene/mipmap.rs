@@ -1,5 +1,4 @@
-//! Ever smaller copies of a picture, of which a pixel stands for many (L. Williams, *Pyramidal
-//! Parametrics*, SIGGRAPH 1983).
+//! The mipmap: ever smaller copies of an image (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983).
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -7,24 +6,24 @@ use rayon::prelude::*;
 use super::texels::Texels;
 use crate::scene::Transfer;
 
-/// A picture's smaller copies, each half as large as the one before, down to one pixel.
+/// The smaller copies of an image, each half as large as the one before, down to one pixel.
 #[derive(Clone, Debug)]
 pub struct Mipmap(Vec<MipLevel>);
 
-/// One copy.
+/// One level of a mipmap.
 #[derive(Clone, Debug)]
 pub struct MipLevel {
-    /// Its width and height in pixels.
+    /// The width and height in pixels.
     pub size: [u32; 2],
-    /// Its pixels.
+    /// The pixels.
     pub texels: Texels,
 }
 
 impl Mipmap {
-    /// The copies of a picture.
+    /// Builds the levels of an image.
     ///
-    /// A pixel is the mean, in linear colours, of the area that it covers, weighted by alpha: what
-    /// cannot be seen has no colour to add.
+    /// A pixel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
+    /// what cannot be seen adds no colour.
     pub(super) fn new(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Self {
         let mut levels = Vec::new();
         let base = |i: usize| texels.linear(i, transfer);
@@ -40,13 +39,13 @@ impl Mipmap {
         Self(levels)
     }
 
-    /// The copies from the greatest on: the first has half the picture's size.
+    /// The levels from the largest on; the first has half the image's size.
     pub fn levels(&self) -> &[MipLevel] {
         &self.0
     }
 }
 
-/// The picture at half its size, rounded down but at least 1.
+/// Returns an image at half its size, rounded down but at least 1.
 fn downsampled(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<Vec4>, [u32; 2]) {
     let half = size.map(|n| (n / 2).max(1));
     let columns: Vec<_> = (0..half[0]).map(|x| Span::new(x, half[0], size[0])).collect();
@@ -61,17 +60,14 @@ fn downsampled(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<V
                     premultiplied += color * (wx * wy * color.w);
                 }
             }
-            match plain.w > 0.0 {
-                true => (premultiplied / plain.w).truncate().extend(plain.w),
-                false => plain,
-            }
+            if plain.w > 0.0 { (premultiplied / plain.w).truncate().extend(plain.w) } else { plain }
         };
         columns.iter().map(mean).collect::<Vec<_>>()
     };
     ((0..half[1]).into_par_iter().flat_map_iter(row).collect(), half)
 }
 
-/// The pixels of a row that one of a shorter row covers: from 1 to 4 of them.
+/// The box filter of one pixel of a shorter row: the 1 to 4 pixels of the longer row that it covers.
 #[derive(Clone, Copy)]
 struct Span {
     first: usize,
@@ -79,20 +75,21 @@ struct Span {
 }
 
 impl Span {
-    /// Those of `from` that number `at` of `to` covers, with its shares of them.
-    fn new(at: u32, to: u32, from: u32) -> Self {
+    /// The filter of pixel `index` of `to` over a row of `from` pixels.
+    fn new(index: u32, to: u32, from: u32) -> Self {
         let ratio = f64::from(from) / f64::from(to);
-        let (start, end) = (f64::from(at) * ratio, f64::from(at + 1) * ratio);
+        let (start, end) = (f64::from(index) * ratio, f64::from(index + 1) * ratio);
         let first = start.floor();
         let weights = std::array::from_fn(|i| {
             let left = first + i as f64;
             let covered = (end.min(left + 1.0) - start.max(left)).max(0.0);
-            // What rounding adds at the end is no pixel.
+            // Rounding may reach beyond the last pixel.
             if left >= f64::from(from) { 0.0 } else { (covered / ratio) as f32 }
         });
         Self { first: first as usize, weights }
     }
 
+    /// The indices and weights of the covered pixels.
     fn weights(self) -> impl Iterator<Item = (usize, f32)> + Clone {
         (self.first..).zip(self.weights).filter(|(_, weight)| *weight > 1e-6)
     }

@@ -5,15 +5,16 @@ mod camera;
 pub mod check;
 mod coverage;
 mod features;
-mod film;
+mod film_settings;
 mod image;
 mod light;
 mod material;
 mod mesh;
-mod metallic;
+mod metallic_roughness;
 mod mipmap;
 pub mod precision_warnings;
 mod report;
+mod shading_params;
 mod shapes;
 mod texels;
 mod texture;
@@ -22,20 +23,18 @@ mod triangles;
 pub mod watertight;
 
 pub use camera::{Camera, Projection, RayGenerator};
+pub use coverage::{AlphaMode, Coverage};
 pub use features::{Feature, SceneFeatures};
-pub use film::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
+pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
 pub use light::{Falloff, IncidentLight, Light, LightKind, Shadow};
-pub use material::{
-    AlphaMode, Coverage, Material, MaterialId, NormalMap, OcclusionMap, ShininessMap,
-};
+pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShininessMap};
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
-pub use metallic::{
-    MetallicRoughness, MetallicRoughnessMaps, ShadingParams, mirror_share, shininess,
-};
+pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps, mirror_share, shininess};
 pub use mipmap::{MipLevel, Mipmap};
 pub use report::{DropReason, LoadReport};
+pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};

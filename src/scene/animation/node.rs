@@ -1,4 +1,4 @@
-//! Moving spaces.
+//! The nodes of an animation: coordinate spaces that move.
 
 use std::f64::consts::TAU;
 
@@ -10,78 +10,80 @@ use super::curve::Curve;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub u32);
 
-/// A space that moves within another one, or within the world.
+/// A coordinate space that moves within its parent's, or within the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// The space that it moves in, which stands before it; none for the world.
+    /// The parent, which comes before it; none for the world.
     pub parent: Option<NodeId>,
-    /// Where its motion takes place, in the space of its parent.
+    /// The fixed transform, applied after the motion, to the parent's space.
     pub base: DAffine3,
-    /// How it moves.
+    /// The motion.
     pub motion: Motion,
 }
 
-/// How a space moves.
+/// The motion of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion {
-    /// From key to key: scaled, then rotated, then translated.
+    /// A transform by keyframes: scale, then rotation, then translation.
     Keyframes(Keyframes),
-    /// About an axis, or along with something else. The space is that of the world as it is at
-    /// time 0, and the node has neither parent nor place.
+    /// A rotation about a centre, which may move. The node's space at time 0 is the world's, and the
+    /// node has neither parent nor base transform.
     Orbit(Orbit),
 }
 
-/// Motion from key to key.
+/// The keyframes of a transform: a curve for each of glTF's target paths `translation`, `rotation` and
+/// `scale`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframes {
-    /// Where its origin is.
+    /// The translation.
     pub translation: Curve<DVec3>,
-    /// How it is turned.
+    /// The rotation.
     pub rotation: Rotation,
-    /// By what it is scaled along its own axes.
+    /// The scale along the node's own axes.
     pub scale: Curve<DVec3>,
-    /// After how many seconds it begins again, above 0; none for never.
+    /// The time in seconds after which it repeats, above 0; none if it does not.
     pub period: Option<f64>,
 }
 
-/// A rotation that changes.
+/// The curve of a rotation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rotation {
-    /// Angles in radians about the fixed x axis, then y, then z, each changing by itself: 0 to 4π
-    /// is two turns.
+    /// Angles in radians about the fixed x axis, then y, then z, interpolated separately: 0 to 4π is
+    /// two turns.
     Angles(Curve<DVec3>),
-    /// Quaternions: from one to the next by the shorter way.
+    /// Quaternions, interpolated along the shorter arc.
     Quaternions(Curve<DQuat>),
 }
 
-/// A point that may move: one of a node's space, or of the world.
+/// A point that is attached to a node, or fixed in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// The space; none for the world.
+    /// The node; none for the world.
     pub node: Option<NodeId>,
-    /// The point, in that space.
+    /// The point, in the node's space.
     pub point: DVec3,
 }
 
-/// Motion about an axis through a centre that may move itself.
+/// A rotation about an axis through a centre that may move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
     /// The centre.
     pub around: Anchor,
-    /// Where the centre is at time 0, in world space.
+    /// The position of the centre at time 0, in world space.
     pub center: DVec3,
-    /// Where at time 0 the point is that goes round, in world space.
+    /// The position at time 0 of the point that orbits, in world space.
     pub start: DVec3,
-    /// The axis, of length 1; it turns by the right-hand rule, counterclockwise seen against it.
+    /// The axis, of length 1; the rotation follows the right-hand rule, counterclockwise seen against
+    /// the axis.
     pub axis: DVec3,
-    /// Seconds for one turn, not 0; infinite for what only keeps beside its centre.
+    /// The time of one turn in seconds, not 0; infinite for what only moves along with its centre.
     pub period: f64,
-    /// Whether the space turns with it, so that the same side always faces the centre.
+    /// True if the node's space turns too, so that the same side always faces the centre.
     pub turns_with_orbit: bool,
 }
 
 impl Keyframes {
-    /// What moves nowhere; a start for what has some keys only.
+    /// The keyframes of the identity transform, to be replaced in part.
     pub fn identity() -> Self {
         Self {
             translation: Curve::constant(DVec3::ZERO),
@@ -92,10 +94,7 @@ impl Keyframes {
     }
 
     fn transform(&self, time: f64) -> DAffine3 {
-        let time = match self.period {
-            Some(period) => time.rem_euclid(period),
-            None => time,
-        };
+        let time = self.period.map_or(time, |period| time.rem_euclid(period));
         let rotation = match &self.rotation {
             Rotation::Angles(curve) => about_fixed_axes(curve.sample(time)),
             Rotation::Quaternions(curve) => DMat3::from_quat(curve.sample(time)),
@@ -106,12 +105,12 @@ impl Keyframes {
 }
 
 impl Anchor {
-    /// A point of the world, which stands still.
+    /// A point that is fixed in the world.
     pub fn fixed(point: DVec3) -> Self {
         Self { node: None, point }
     }
 
-    /// Where it is, given where the nodes are.
+    /// The position in world space, given the nodes' transforms to world space.
     pub(super) fn position(&self, worlds: &[DAffine3]) -> DVec3 {
         match self.node {
             Some(NodeId(node)) => worlds[node as usize].transform_point3(self.point),
@@ -122,7 +121,7 @@ impl Anchor {
 
 impl Orbit {
     fn transform(&self, time: f64, center: DVec3) -> DAffine3 {
-        // Whole turns are left out first: the angle is as exact after a million of them.
+        // Whole turns are dropped first, so that the angle is as exact after a million of them.
         let turn = DMat3::from_axis_angle(self.axis, TAU * (time / self.period).fract());
         if self.turns_with_orbit {
             let translation = center - turn * self.center;
@@ -134,17 +133,17 @@ impl Orbit {
     }
 }
 
-/// Where the nodes are at a time in seconds: for each, the way from its space to the world.
+/// The transforms of all nodes to world space, at a time in seconds.
 pub(super) fn world_transforms(nodes: &[Node], time: f64) -> Vec<DAffine3> {
     let mut worlds = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let own = match &node.motion {
+        let local = match &node.motion {
             Motion::Keyframes(keys) => node.base * keys.transform(time),
             Motion::Orbit(orbit) => orbit.transform(time, orbit.around.position(&worlds)),
         };
         let world = match node.parent {
-            Some(NodeId(parent)) => worlds[parent as usize] * own,
-            None => own,
+            Some(NodeId(parent)) => worlds[parent as usize] * local,
+            None => local,
         };
         worlds.push(world);
     }

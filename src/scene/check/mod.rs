@@ -10,7 +10,7 @@ mod texture;
 
 pub use film::{MAX_DEPTH, MAX_PIXELS, MAX_SPP, check_samples, check_size};
 
-use require::require;
+pub(in crate::scene) use require::require;
 
 use crate::error::Result;
 use crate::geometry::Bounds;

@@ -26,7 +26,7 @@ impl Case {
         first_root(center, radius, origin, direction, tmax, inward)
     }
 
-    /// By bisection with the sign of the exact quadratic.
+    /// The first root by bisection with the sign of the exact quadratic.
     fn exact(&self) -> Option<f64> {
         let f = zip(&vector(self.origin), &vector(self.center), |o, c| o - c);
         let d = vector(self.direction);
@@ -66,7 +66,7 @@ impl Case {
         estimate(self.center, self.radius, self.origin, self.direction, inverse)
     }
 
-    /// Every stage against the exact answer.
+    /// Checks every stage against the exact answer.
     fn check(&self) {
         let exact = self.exact();
         assert_eq!(self.certified(), exact, "{self:?}");
@@ -221,7 +221,7 @@ fn unit() -> impl Strategy<Value = DVec3> {
         .prop_map(DVec3::normalize)
 }
 
-/// How near the line comes to the edge of the sphere: 2ᵏ r off it, on either side, or at random.
+/// The distance of the line from the centre in radii: 1 ± a few 2⁻ᵏ, or any number.
 fn impact() -> impl Strategy<Value = f64> {
     prop_oneof![0.0..1.1f64, (20..60i32, -4.0..4.0f64).prop_map(|(k, x)| 1.0 + x * power(-k)),]
 }

@@ -1,4 +1,5 @@
-//! Ray and triangle in integers, with the tie rule.
+//! The crossing of a ray and a triangle in integer arithmetic, with the tie rule: the last stage, which
+//! decides all cases.
 
 use std::cmp::Ordering::{self, Equal};
 
@@ -8,7 +9,7 @@ use num_bigint::BigInt;
 use crate::geometry::integer::{Integer, Rounded, Scale, cross, dot, minus, sign};
 use crate::geometry::triangle::TriangleHit;
 
-/// The scales of the positions and of the direction.
+/// The scales of a triangle's and a ray's positions, and of the ray's direction.
 struct Scales {
     positions: Scale,
     direction: Scale,
@@ -16,21 +17,20 @@ struct Scales {
 
 impl Scales {
     fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
-        let [a, b, c] = triangle.map(|p| p.to_array());
-        let places = [a, b, c, origin.to_array()];
+        let [a, b, c] = triangle;
         Self {
-            positions: Scale::common(places.into_iter().flatten()),
+            positions: Scale::common([a, b, c, origin].into_iter().flat_map(|p| p.to_array())),
             direction: Scale::common(direction.to_array()),
         }
     }
 
-    /// Whether i128 holds d·(p × q) for differences of positions: a difference has one bit more
+    /// True if i128 can hold d·(p × q) for differences of positions: a difference has one bit more
     /// than a position, and the six products of the sum have three more.
     fn fits_i128(&self) -> bool {
         self.direction.bits + 2 * (self.positions.bits + 1) + 3 <= 127
     }
 
-    /// The vertices relative to the origin, and the direction.
+    /// The vertices relative to the origin, and the direction, as integers.
     fn integers<I: Integer>(
         &self,
         triangle: [DVec3; 3],
@@ -45,8 +45,8 @@ impl Scales {
     }
 }
 
-/// Whether the line crosses the triangle, by the tie rule, given the signs of the edge functions
-/// as far as they are `known`, the others as equal. All the numbers must be finite.
+/// True if the line crosses the triangle, by the tie rule. `known` holds the signs of the edge
+/// functions that are known, and `Equal` for the others. All the numbers must be finite.
 #[cold]
 pub(super) fn crosses(
     triangle: [DVec3; 3],
@@ -64,15 +64,16 @@ pub(super) fn crosses(
     }
 }
 
-/// Whether the three edges see the line on the same side, of vertices relative to its origin.
+/// True if the line is on the same side of the three edges of a triangle whose vertices are relative
+/// to the line's origin.
 fn have_one_sign<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Ordering; 3]) -> bool {
     let edges = [(b, c), (c, a), (a, b)];
     let signs = [0, 1, 2].map(|i| match (known[i], edges[i]) {
         (Equal, (p, q)) => sign(&dot(d, &cross(p, q))),
         (decided, _) => decided,
     });
-    // The sum of the three is d·n, which is 0 where the line is parallel. If it is not, but all
-    // have one sign, so has the sum.
+    // The sum of the three is d·n, which is 0 for a parallel line. For any other line whose three
+    // functions have one sign, the sum has it too.
     if signs == [Equal; 3] {
         return false;
     }
@@ -83,14 +84,14 @@ fn have_one_sign<I: Integer>([a, b, c]: &[[I; 3]; 3], d: &[I; 3], known: [Orderi
     x == y && y == z && x != Equal
 }
 
-/// The sign of the edge function for an origin moved by (ε, ε², ε³); equal for an edge along the
+/// The sign of the edge function for an origin moved by (ε, ε², ε³); `Equal` for an edge along the
 /// direction, whose triangle is parallel to the line.
 fn perturbed_sign<I: Integer>(d: &[I; 3], (p, q): (&[I; 3], &[I; 3])) -> Ordering {
     let [x, y, z] = cross(d, &minus(q, p));
     sign(&x).then(sign(&y)).then(sign(&z))
 }
 
-/// The crossing of a line that crosses, with 0 < t < `tmax`.
+/// The crossing, with 0 < t < `tmax`, of a line that is known to cross the triangle.
 #[cold]
 pub(super) fn crossing(
     triangle: [DVec3; 3],
@@ -100,6 +101,7 @@ pub(super) fn crossing(
 ) -> Option<TriangleHit> {
     let scales = Scales::new(triangle, origin, direction);
     let ([a, b, c], d) = scales.integers::<BigInt>(triangle, origin, direction);
+    // n, n·d and q of `round.rs`.
     let (first, second) = (minus(&b, &a), minus(&c, &a));
     let normal = cross(&first, &second);
     let divisor = dot(&normal, &d);
@@ -111,9 +113,8 @@ pub(super) fn crossing(
     }
     let exponent = i64::from(scales.positions.exponent) - i64::from(scales.direction.exponent);
     let t = Rounded::quotient(&numerator, &divisor, exponent);
-    let weight = |x: BigInt| match sign(&x) {
-        Equal => 0.0,
-        _ => Rounded::quotient(&x, &divisor, 0).nearest,
+    let weight = |x: BigInt| {
+        if sign(&x) == Equal { 0.0 } else { Rounded::quotient(&x, &divisor, 0).nearest }
     };
     let (u, v) = (weight(dot(&moment, &second)), weight(-dot(&moment, &first)));
     t.is_below(tmax).then_some(TriangleHit { t: t.nearest, u, v })

@@ -1,73 +1,39 @@
-//! glTF's metallic-roughness materials on a Lambert and Phong surface, as docs/formats.md explains.
+//! The metallic-roughness materials of glTF, expressed as Lambert and Phong materials (see
+//! docs/formats.md).
 
 use glam::Vec3;
 
-use crate::scene::{Channel, TextureId};
+use crate::scene::{Channel, ShadingParams, TextureId};
 
 /// The range of shininess: roughness 1 would give 0, and roughness 0 infinity.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 
-/// From this roughness on a metal mirrors nothing: what it reflects is too blurred to show.
+/// The roughness from which on a metal mirrors nothing: its reflections are too blurred to show.
 const ROUGH: f32 = 0.4;
-
-/// What becomes of light at one point of a surface, linear Rec. 709; the fields are those of
-/// [`Material`](crate::scene::Material).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShadingParams {
-    /// Share scattered to all sides.
-    pub diffuse: Vec3,
-    /// Share in the highlight.
-    pub specular: Vec3,
-    /// Phong's exponent.
-    pub shininess: f32,
-    /// Radiance of its own.
-    pub emission: Vec3,
-    /// Share seen in it as in a mirror.
-    pub reflect: Vec3,
-    /// Share seen through it.
-    pub transmit: Vec3,
-}
-
-impl ShadingParams {
-    /// Of a surface that covers only `alpha` of what lies behind it, and lets nothing through by
-    /// itself: the rest is seen straight through.
-    pub fn with_alpha(self, alpha: f32) -> Self {
-        Self {
-            emission: self.emission * alpha,
-            reflect: self.reflect * alpha,
-            transmit: Vec3::splat(1.0 - alpha),
-            ..self
-        }
-    }
-
-    /// Whether light goes on from it, off it or through it.
-    pub fn spawns_rays(&self) -> bool {
-        self.reflect != Vec3::ZERO || self.transmit != Vec3::ZERO
-    }
-}
 
 /// The parameters of a metallic-roughness material at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MetallicRoughness {
     /// The base colour, linear Rec. 709.
     pub base: Vec3,
-    /// How much of a metal it is, in \[0, 1\].
+    /// The metalness, in \[0, 1\].
     pub metallic: f32,
-    /// Its roughness, in \[0, 1\].
+    /// The roughness, in \[0, 1\].
     pub roughness: f32,
-    /// KHR_materials_specular: how strongly what is no metal reflects, in \[0, 1\], and its colour.
+    /// The strength of a dielectric's reflection, in \[0, 1\] (KHR_materials_specular).
     pub specular: f32,
-    /// The colour of that.
+    /// The colour of a dielectric's reflection (KHR_materials_specular).
     pub specular_color: Vec3,
-    /// KHR_materials_transmission: the share of the light that enters and is not scattered.
+    /// The share of the light that enters and is not scattered (KHR_materials_transmission).
     pub transmission: f32,
     /// The index of refraction; at 0 everything is reflected.
     pub ior: f32,
 }
 
 impl MetallicRoughness {
-    /// What it does with light.
+    /// The Lambert and Phong parameters that look most like it.
     pub fn shading_params(&self) -> ShadingParams {
+        // A dielectric's reflectance, the mirror-like part of a metal's, and what is transmitted.
         let head_on = (self.specular_color * reflectance_at_normal_incidence(self.ior))
             .min(Vec3::ONE)
             * self.specular;
@@ -78,7 +44,7 @@ impl MetallicRoughness {
             reflect += transmit;
             transmit = Vec3::ZERO;
         }
-        // What is left of the whole is scattered; the share that glTF means is within it.
+        // The rest is scattered, of which the share that glTF gives is diffuse.
         let rest = Vec3::ONE - reflect - transmit;
         let scattered = (1.0 - self.metallic) * (1.0 - self.transmission);
         let share = rest.map(|x| if x > 0.0 { (scattered / x).min(1.0) } else { 0.0 });
@@ -93,28 +59,27 @@ impl MetallicRoughness {
     }
 }
 
-/// A metallic-roughness material of which some parameters differ from point to point: factors, and
-/// the maps that they are multiplied with.
+/// A metallic-roughness material with textures: factors, and the maps that they are multiplied with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MetallicRoughnessMaps {
     /// The factors.
     pub factors: MetallicRoughness,
-    /// The base colour.
+    /// The map of the base colour.
     pub base: Option<TextureId>,
-    /// How much of a metal it is.
+    /// The map of the metalness.
     pub metallic: Option<Channel>,
-    /// The roughness.
+    /// The map of the roughness.
     pub roughness: Option<Channel>,
-    /// How strongly what is no metal reflects.
+    /// The map of the strength of a dielectric's reflection.
     pub specular: Option<Channel>,
-    /// The colour of that.
+    /// The map of the colour of a dielectric's reflection.
     pub specular_color: Option<TextureId>,
-    /// The share that is transmitted.
+    /// The map of the transmission.
     pub transmission: Option<Channel>,
 }
 
 impl MetallicRoughnessMaps {
-    /// These factors everywhere.
+    /// A material with these factors and no maps.
     pub fn new(factors: MetallicRoughness) -> Self {
         Self {
             factors,
@@ -127,41 +92,42 @@ impl MetallicRoughnessMaps {
         }
     }
 
-    /// Whether it is a mirror anywhere.
+    /// True if it reflects as a mirror anywhere.
     pub(super) fn may_reflect(&self) -> bool {
         let MetallicRoughness { metallic, roughness, transmission, ior, .. } = self.factors;
         let is_sharp = self.roughness.is_some() || mirror_share(roughness) > 0.0;
         (metallic > 0.0 && is_sharp) || (ior == 0.0 && transmission > 0.0)
     }
 
-    /// Whether it lets light through anywhere.
+    /// True if it transmits light anywhere.
     pub(super) fn may_transmit(&self) -> bool {
         let MetallicRoughness { metallic, transmission, ior, .. } = self.factors;
         transmission > 0.0 && ior != 0.0 && (metallic < 1.0 || self.metallic.is_some())
     }
 }
 
-/// α = roughness², and the Phong exponent whose highlight is as wide: 2/α² − 2, from 1 to 10000.
+/// The Phong exponent whose highlight is as wide as that of a roughness: 2/α² − 2 with α = roughness²,
+/// from 1 to 10000.
 pub fn shininess(roughness: f32) -> f32 {
     let alpha = clamped_factor(roughness) * clamped_factor(roughness);
     (2.0 / (alpha * alpha) - 2.0).clamp(*SHININESS.start(), *SHININESS.end())
 }
 
-/// The share of what a surface reflects that is as sharp as in a mirror: (1 − α/0.16)² with
-/// α = roughness², and 0 from roughness 0.4 on. Ours: smooth at either end.
+/// The share of a surface's reflection that is as sharp as a mirror's: (1 − α/0.16)² with
+/// α = roughness², and 0 from roughness 0.4 on. The formula is ours; it is smooth at either end.
 pub fn mirror_share(roughness: f32) -> f32 {
     let ratio = clamped_factor(roughness) / ROUGH;
     let rest = (1.0 - ratio * ratio).max(0.0);
     rest * rest
 }
 
-/// The share that a surface of this index reflects head-on, by Fresnel's law.
+/// The reflectance at normal incidence of a surface with this index of refraction, by Fresnel's law.
 fn reflectance_at_normal_incidence(ior: f32) -> f32 {
     let r = (ior - 1.0) / (ior + 1.0);
     r * r
 }
 
-/// A factor within [0, 1]; what is no number is 1, the default.
+/// Clamps a factor to [0, 1]; a NaN becomes 1, the default.
 fn clamped_factor(x: f32) -> f32 {
     if x.is_nan() { 1.0 } else { x.clamp(0.0, 1.0) }
 }
