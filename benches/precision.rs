@@ -8,6 +8,11 @@
 // To call what is compiled for an instruction set.
 #![allow(unsafe_code)]
 
+#[allow(dead_code, reason = "each bench uses its own part")]
+mod support {
+    pub mod arguments;
+}
+
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -15,6 +20,7 @@ use criterion::{Criterion, Throughput};
 use envers::geometry::sphere::{self, certified as sure_sphere};
 use envers::geometry::triangle::{self, certified as sure_triangle};
 use glam::DVec3;
+use support::arguments::Arguments;
 
 /// Origin, direction and 1 / |direction|².
 type Line = (DVec3, DVec3, f64);
@@ -381,11 +387,8 @@ fn criterion(c: &mut Criterion) {
 }
 
 fn main() {
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    if !std::env::args().any(|a| a == "--bench") {
-        return;
-    }
-    if !std::env::args().any(|a| a == "ratios") {
+    let Some(mut arguments) = Arguments::of_bench("precision [-- ratios]") else { return };
+    if !arguments.flag("ratios") {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         criterion(&mut c);
         c.final_summary();

@@ -13,7 +13,6 @@ mod mesh;
 mod metallic_roughness;
 mod mipmap;
 pub mod precision_warnings;
-mod report;
 mod shading_params;
 mod shapes;
 mod texels;
@@ -33,7 +32,6 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps, mirror_share, shininess};
 pub use mipmap::{MipLevel, Mipmap};
-pub use report::{DropReason, LoadReport};
 pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
@@ -73,10 +71,6 @@ pub struct Scene {
     /// How the scene changes with time. What is above is the scene as its files place it;
     /// [`Scene::at`] says how it is at a time.
     pub animation: Option<Animation>,
-    /// What the loader could not do as the files ask, or found odd; one sentence each.
-    pub warnings: Vec<String>,
-    /// What became of its files: what was read, dropped, and not supported.
-    pub report: LoadReport,
 }
 
 impl Scene {

@@ -55,7 +55,7 @@ fn background_is_the_hex_colour_that_the_scene_names() {
 #[test]
 fn a_bare_model_is_framed_and_lit() {
     for (name, bytes) in [
-        ("model.glb", import_common::Model::triangle().glb()),
+        ("model.glb", envers_testing::Model::triangle().glb()),
         ("model.obj", TETRAHEDRON.as_bytes().to_vec()),
     ] {
         let folder = Folder::new();

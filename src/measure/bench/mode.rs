@@ -29,7 +29,7 @@ pub struct Mode {
 pub enum Samples {
     /// As many as any other.
     Regular(u32),
-    /// From some to others, with the usual threshold; see [`Adaptive`].
+    /// From some to others, with the usual threshold; see [`AdaptiveSampling`].
     Adaptive(u32, u32),
 }
 
