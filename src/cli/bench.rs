@@ -11,8 +11,8 @@ use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::measure::bench::{self, Options, Samples, Setup};
+use crate::scene::Scene;
 use crate::scene::check::MAX_SPP;
-use crate::scene::{Scene, precision_warnings};
 use crate::write;
 
 /// The longer side of a quick picture, at most.
@@ -177,7 +177,7 @@ fn warnings(scene: &Scene, mut warnings: Vec<String>, options: &Options) -> Vec<
         .setups
         .iter()
         .any(|setup| setup.backend.name() != "rust" && setup.precision == Precision::Fast);
-    warnings.extend(precision_warnings::precision_warnings(scene, f32_rays));
+    warnings.extend(report::precision_warnings(scene, f32_rays));
     warnings
 }
 

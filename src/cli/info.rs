@@ -12,7 +12,7 @@ use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
-use crate::scene::{LightKind, Projection, Scene, SceneFeatures, precision_warnings};
+use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -129,8 +129,7 @@ fn summarize(scene: &Scene, report: &LoadReport, animation: Option<Motion>) -> S
     let bounds = scene.bounds();
     // As the default of `render`: precision fast, on Embree where it is built in.
     let mut warnings = report.warnings.clone();
-    warnings
-        .extend(precision_warnings::precision_warnings(scene, Backend::default() != Backend::Rust));
+    warnings.extend(report::precision_warnings(scene, Backend::default() != Backend::Rust));
     let needs = SceneFeatures::from_scene(scene);
     Summary {
         size: scene.film.size,

@@ -16,7 +16,7 @@ use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
 use crate::scene::animation::PosedScene;
-use crate::scene::{AdaptiveSampling, FilmSettings, Scene, Tone, precision_warnings};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene, Tone};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -63,7 +63,7 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let mut warnings = loaded.warnings.clone();
     let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
+    warnings.extend(report::precision_warnings(&first, f32_rays));
     warnings.extend(oddities(&first, camera, view, &done));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));

@@ -1,4 +1,4 @@
-//! What makes a camera valid.
+//! The validity checks of a camera.
 
 use super::require::{require, require_position, require_unit_length};
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! What makes a light valid.
+//! The validity checks of a light.
 
 use super::require::{require, require_color, require_position, require_unit_length};
 use crate::error::Result;

@@ -1,4 +1,4 @@
-//! What makes a material valid.
+//! The validity checks of a material.
 
 use glam::Vec3;
 
@@ -6,7 +6,7 @@ use super::require::{require, require_color, require_index};
 use crate::error::Result;
 use crate::scene::{AlphaMode, Coverage, Material, MetallicRoughnessMaps, ShininessMap};
 
-/// By how much shares that add up to 1 may exceed it: 0.7 + 0.3 does in f32.
+/// The tolerance by which shares that add up to 1 may exceed it, as 0.7 + 0.3 does in f32.
 const SLACK: f32 = 1e-6;
 
 /// Checks material `i` of a scene with this many textures.
@@ -31,6 +31,7 @@ pub(super) fn check(i: usize, material: &Material, textures: usize) -> Result<()
     material.coverage.iter().try_for_each(|coverage| check_coverage(&what, coverage, material))
 }
 
+/// Checks the values that are not textures.
 fn check_constants(what: &str, material: &Material) -> Result<()> {
     require_color(|| format!("{what}: diffuse"), material.diffuse)?;
     require_color(|| format!("{what}: specular"), material.specular)?;
@@ -49,13 +50,13 @@ fn check_constants(what: &str, material: &Material) -> Result<()> {
     require_color(|| format!("{what}: absorption"), material.absorption)
 }
 
-/// Checks that every map that is one channel of a picture names one of the four.
+/// Checks that every map that is one channel of a texture has a channel of 0 to 3.
 fn check_channels(what: &str, material: &Material) -> Result<()> {
     let channels = material.coverage.and_then(|c| c.map).into_iter();
     let channels = channels.chain(material.occlusion_map.map(|o| o.map));
     let metallic = material.metallic.as_deref();
-    let of_metal = metallic.map(|m| [m.metallic, m.roughness, m.specular, m.transmission]);
-    let mut maps = channels.chain(of_metal.into_iter().flatten().flatten());
+    let metallic = metallic.map(|m| [m.metallic, m.roughness, m.specular, m.transmission]);
+    let mut maps = channels.chain(metallic.into_iter().flatten().flatten());
     maps.try_for_each(|map| {
         require(map.channel < 4, || {
             format!("{what}: a picture has channels 0 to 3, not {}", map.channel)
@@ -63,6 +64,7 @@ fn check_channels(what: &str, material: &Material) -> Result<()> {
     })
 }
 
+/// Checks the factors of a metallic-roughness material.
 fn check_metallic_roughness(what: &str, metallic: &MetallicRoughnessMaps) -> Result<()> {
     let f = &metallic.factors;
     require_color(|| format!("{what}: the base colour"), f.base)?;
@@ -76,6 +78,7 @@ fn check_metallic_roughness(what: &str, metallic: &MetallicRoughnessMaps) -> Res
     })
 }
 
+/// Checks the alpha coverage.
 fn check_coverage(what: &str, coverage: &Coverage, material: &Material) -> Result<()> {
     require_fraction(what, "alpha", coverage.alpha)?;
     let is_plain = material.thin && material.ior == 1.0 && material.transmit == Vec3::ZERO;
@@ -84,7 +87,7 @@ fn check_coverage(what: &str, coverage: &Coverage, material: &Material) -> Resul
     })
 }
 
-/// `x` is a share.
+/// Requires that `x` is in \[0, 1\].
 fn require_fraction(what: &str, name: &str, x: f32) -> Result<()> {
     require((0.0..=1.0).contains(&x), || format!("{what}: {name} must be from 0 to 1, found {x}"))
 }

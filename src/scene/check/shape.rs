@@ -1,4 +1,4 @@
-//! What makes spheres, planes, meshes and their instances valid.
+//! The validity checks of spheres, planes, meshes and instances.
 
 use super::MAX_COORDINATE;
 use super::require::{
@@ -39,7 +39,7 @@ impl Scene {
         })
     }
 
-    /// Checks that the material of what is no mesh is there and has no mask.
+    /// Checks that the material of a sphere or plane exists and has no mask.
     fn check_unmasked(&self, what: impl Fn() -> String, material: MaterialId) -> Result<()> {
         require_index(&what, "material", material.0, self.materials.len())?;
         require(!self.materials[material.0 as usize].is_masked(), || {
