@@ -47,7 +47,7 @@ impl Case {
                 let surface = Surface::new(&scene, ray, hit.as_ref()?);
                 let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
-                let arrival = IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+                let arrival = IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
                 lit.then(|| surface.shadow_ray(&arrival))
             })
             .collect();
@@ -134,7 +134,7 @@ fn ratios<const W: usize>(case: &Case) {
     );
 }
 
-/// What `certified` costs: its rays and whole frames beside those of `fast`, in turn.
+/// Measures the cost of `certified`: its rays and whole frames beside those of `fast`, in turn.
 fn price(case: &Case) {
     let build = |precision| Embree::build(&case.scene, precision, 1).unwrap();
     let single = |precision| Embree::build_single(&case.scene, precision, 1).unwrap();

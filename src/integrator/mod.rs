@@ -128,8 +128,8 @@ impl<'a> Integrator<'a> {
             View::Beauty => scene.film.clone(),
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
-        let camera = camera.rays(scene.film.size);
-        let features = SceneFeatures::of(scene);
+        let camera = camera.ray_generator(scene.film.size);
+        let features = SceneFeatures::from_scene(scene);
         let has = |feature| features.uses(feature);
         let textures = [Feature::Uv, Feature::Checkers, Feature::VertexColors, Feature::NormalMaps];
         Self {

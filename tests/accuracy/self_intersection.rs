@@ -1,4 +1,4 @@
-//! How rays leave surfaces: closed scenes of which the radiance is known.
+//! Self-intersection avoidance: closed scenes of known radiance.
 
 use envers::geometry::{Geometry, PrimitiveId};
 use envers::intersect::{Backend, Precision};
@@ -219,7 +219,7 @@ fn first_of_coincident_surfaces_is_seen_in_certified() {
     let mut scene = scene(DVec3::new(0.3, 2.0, 3.0), DVec3::ZERO);
     add(&mut scene, floor(50.0, 7), DAffine3::IDENTITY);
     scene.instances.push(scene.instances[0].clone());
-    let rays = scene.cameras[0].rays(scene.film.size);
+    let rays = scene.cameras[0].ray_generator(scene.film.size);
     let rays: Vec<_> =
         (0..48 * 48).map(|i| rays.ray(f64::from(i % 48), f64::from(i / 48))).collect();
     for options in backends().filter(|o| o.precision == Precision::Certified) {
@@ -388,7 +388,7 @@ fn camera_on_a_sphere_sees_its_inside_or_nothing() {
     }
 }
 
-/// What the scene looks like from the surface at 0 that `surface` adds, up at a ball.
+/// Asserts the picture seen from the surface at 0 that `surface` adds, up at a ball.
 #[track_caller]
 fn seen_from_a_surface(surface: impl Fn(&mut Scene)) {
     let mut scene = scene(DVec3::ZERO, DVec3::new(0.0, 1.0, 0.2));

@@ -35,7 +35,7 @@ impl Needs {
         self.folder.path(self.file)
     }
 
-    /// Whether it loads whole under a limit, and what is said otherwise.
+    /// Loads it under a limit; returns the warnings or the error where it does not load whole.
     fn loads(&self, most: u64) -> Result<(), String> {
         let limits = Limits::default().with(self.limit, most);
         match LoadOptions::default().limits(limits).load(self.path()) {
@@ -51,7 +51,7 @@ impl Needs {
         self.check_one_less();
     }
 
-    /// As `check`, of what loads with this warning.
+    /// Checks the same of a file that loads with this warning.
     #[track_caller]
     fn check_with(self, warning: &str) {
         let said = self.loads(self.exactly).unwrap_err();

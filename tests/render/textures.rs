@@ -1,4 +1,4 @@
-//! What pictures do to surfaces: normals, occlusion, alpha, and pictures seen from afar. The
+//! Textures on surfaces: normals, occlusion, alpha, and pictures seen from afar. The
 //! radiances are worked out by hand, and every backend must give them.
 
 use envers::geometry::{Geometry, Hit, Ray};
@@ -30,7 +30,7 @@ fn dot(scene: &mut Scene, texel: [u8; 4]) -> TextureId {
 }
 
 fn picture(scene: &mut Scene, size: [u32; 2], texels: Vec<[u8; 4]>) -> TextureId {
-    let image = Image::bytes("", size, texels);
+    let image = Image::from_bytes("", size, texels);
     scene.add_texture(Texture {
         transfer: Transfer::None,
         filter: Filter::Nearest,
@@ -90,7 +90,7 @@ const RIGHT: [u8; 4] = [204, 128, 230, 255];
 /// The normal (0, 0.6, 0.8).
 const UP: [u8; 4] = [128, 204, 230, 255];
 
-/// What a surface shows under the light of a sun that stands where the normal of its map points.
+/// Returns the radiance of a surface under the light of a sun that stands where the normal of its map points.
 fn bent(texel: [u8; 4], toward: DVec3, place: impl Fn(&mut Scene)) -> [f32; 3] {
     let mut scene = scene();
     let texture = dot(&mut scene, texel);
@@ -346,7 +346,7 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
     let texel = |i: usize| {
         if (i / 8 + i / 512).is_multiple_of(2) { [230, 200, 160, 255] } else { [30, 40, 60, 255] }
     };
-    let image = Image::bytes("", [64, 64], (0..64 * 64).map(texel).collect());
+    let image = Image::from_bytes("", [64, 64], (0..64 * 64).map(texel).collect());
     let texture = scene.add_texture(Texture { mipmap, ..Texture::new(image.into()) });
     let material =
         Material { diffuse: Vec3::ONE, diffuse_map: Some(texture), ..Material::default() };

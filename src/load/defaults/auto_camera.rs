@@ -96,7 +96,9 @@ fn stand(
 pub fn extents<const N: usize>(scene: &Scene, bounds: &Bounds, along: [DVec3; N]) -> [f64; N] {
     let mut most = [f64::NEG_INFINITY; N];
     match scene.animation {
-        Some(_) => scene.over_time(|poses| most = greater(most, extents_now(poses.scene(), along))),
+        Some(_) => {
+            scene.sample_over_time(|poses| most = greater(most, extents_now(poses.scene(), along)))
+        }
         None => most = extents_now(scene, along),
     }
     match most.iter().all(|most| most.is_finite()) {
@@ -220,13 +222,13 @@ mod tests {
         scene.film.size = [300, 300];
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         // Away from the camera: the box of its way has corners far from all that is seen.
-        let mut keys = Keyframes::still();
+        let mut keys = Keyframes::identity();
         keys.translation = Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW * 8.0]);
         let mut animation = Animation::new(24, 24.0);
-        let motion = Motion::Keys(keys);
-        let node = animation.add_node(Node { parent: None, place: DAffine3::IDENTITY, motion });
+        let motion = Motion::Keyframes(keys);
+        let node = animation.add_node(Node { parent: None, base: DAffine3::IDENTITY, motion });
         let (center, radius) = (DVec3::ZERO, None);
-        animation.movers.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
+        animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
         frame(&mut scene);
         let to = -scene.cameras[0].position;

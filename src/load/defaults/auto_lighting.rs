@@ -3,7 +3,9 @@
 use glam::{DVec3, Vec3};
 
 use super::auto_camera::extents;
-use crate::scene::{Camera, Light, LightKind, Material, Metallic, Plane, Scene, Shadow, sharpness};
+use crate::scene::{
+    Camera, Light, LightKind, Material, MetallicRoughness, Plane, Scene, Shadow, mirror_share,
+};
 
 /// The radiance of the backdrop, linear: a PNG shows it as #808080, on which white and black things
 /// both stand out, and which metals have to mirror.
@@ -54,8 +56,8 @@ fn blur(material: &mut Material, backdrop: Vec3) {
     if maps.metallic.is_some() || maps.roughness.is_some() || material.emission != Vec3::ZERO {
         return;
     }
-    let Metallic { base, metallic, roughness, .. } = maps.factors;
-    let share = metallic * (1.0 - sharpness(roughness));
+    let MetallicRoughness { base, metallic, roughness, .. } = maps.factors;
+    let share = metallic * (1.0 - mirror_share(roughness));
     if share > 0.0 {
         material.emission = base.min(Vec3::ONE) * share * backdrop;
         material.emission_map = maps.base;
@@ -136,7 +138,7 @@ pub fn add_ground(scene: &mut Scene) {
 mod tests {
     use super::*;
     use crate::load::defaults::auto_camera::frame;
-    use crate::scene::{MaterialId, MetallicMaps, Sphere};
+    use crate::scene::{MaterialId, MetallicRoughnessMaps, Sphere};
 
     fn ball() -> Scene {
         let mut scene = Scene::default();
@@ -196,7 +198,7 @@ mod tests {
     fn rough_metals_have_the_light_of_the_backdrop_and_smooth_ones_mirror_it() {
         let emission = |metallic: f32, roughness: f32| {
             let mut scene = ball();
-            let factors = Metallic {
+            let factors = MetallicRoughness {
                 base: Vec3::new(1.0, 0.5, 0.0),
                 metallic,
                 roughness,
@@ -206,7 +208,7 @@ mod tests {
                 ior: 1.5,
             };
             let mut material = Material::default();
-            material.set_metallic(MetallicMaps::new(factors));
+            material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
             let id = scene.add_material(material);
             light(&mut scene);
             scene.materials[id.0 as usize].emission / BACKDROP

@@ -29,7 +29,7 @@ fn settle_alpha(scene: &mut Scene) {
         coverage.map = coverage.map.filter(|map| {
             let image = scene.textures.get(map.texture.0 as usize).map(|texture| &texture.image);
             image.is_some_and(|image| {
-                !(image.is_read() && image.is_full(usize::from(map.channel & 3)))
+                !(image.is_read() && image.is_channel_full(usize::from(map.channel & 3)))
             })
         });
         let is_whole = match coverage.mode {
@@ -80,7 +80,7 @@ fn reduce(scene: &Scene) {
     }
     scene.textures.par_iter().zip(shown).for_each(|(texture, shown)| {
         if shown && texture.mipmap && texture.image.is_read() {
-            texture.image.reduced(texture.transfer);
+            texture.image.mipmap(texture.transfer);
         }
     });
 }

@@ -15,12 +15,12 @@ impl MergedModel {
     ) {
         let shift = animation.nodes.len() as u32;
         let (nodes, movers) =
-            self.animation.as_ref().map_or((&[][..], &[][..]), |own| (&own.nodes, &own.movers));
+            self.animation.as_ref().map_or((&[][..], &[][..]), |own| (&own.nodes, &own.objects));
         animation.nodes.extend(nodes.iter().map(|node| match node.parent {
             Some(NodeId(parent)) => Node { parent: Some(NodeId(parent + shift)), ..node.clone() },
             None => Node {
                 parent: placement.node,
-                place: placement.transform * node.place,
+                base: placement.transform * node.base,
                 motion: node.motion.clone(),
             },
         }));
@@ -47,18 +47,18 @@ impl MergedModel {
                     // Placed a second time it has the same shape.
                     let same =
                         |m: &Animated| matches!(m, Animated::Mesh { mesh: m, .. } if m == mesh);
-                    if animation.movers.iter().any(same) {
+                    if animation.objects.iter().any(same) {
                         continue;
                     }
                     let Some(skin) = &mut deformation.skin else {
-                        animation.movers.push(mover);
+                        animation.objects.push(mover);
                         continue;
                     };
                     for joint in skin.joints.iter_mut().chain([&mut skin.space]) {
                         match &mut joint.node {
                             Some(node) => *node = shifted(node),
                             None => {
-                                joint.place = placement.transform * joint.place;
+                                joint.transform = placement.transform * joint.transform;
                                 joint.node = placement.node;
                             }
                         }
@@ -77,7 +77,7 @@ impl MergedModel {
                     (*camera, *node) = (index, node.as_ref().map(shifted));
                 }
             }
-            animation.movers.push(mover);
+            animation.objects.push(mover);
         }
         if let Some(node) = placement.node {
             self.carry(animation, placement, node, first, cameras, &moves);
@@ -99,28 +99,28 @@ impl MergedModel {
         {
             let transform = transform * instance.transform;
             let instance = first.instance + i;
-            animation.movers.push(Animated::Instance { instance, node, transform });
+            animation.objects.push(Animated::Instance { instance, node, transform });
         }
         for (i, sphere) in self.spheres.iter().enumerate().filter(|(i, _)| !moves.spheres[*i]) {
             let (center, radius) = (transform.transform_point3(sphere.center), None);
             let (sphere, node) = (first.sphere + i, Some(node));
-            animation.movers.push(Animated::Sphere { sphere, node, center, radius });
+            animation.objects.push(Animated::Sphere { sphere, node, center, radius });
         }
         let lights = self.lights.iter().enumerate().filter(|(i, _)| !moves.lights[*i]);
         for (i, light) in lights.filter(|_| placement.lights) {
-            animation.movers.push(Animated::Light {
+            animation.objects.push(Animated::Light {
                 light: first.light + i,
                 node: Some(node),
-                rest: light.placed(&transform),
+                rest: light.transformed(&transform),
                 direction: None,
                 intensity: None,
             });
         }
         for (i, camera) in self.cameras.iter().enumerate().filter(|(i, _)| !moves.cameras[*i]) {
-            if let Some((index, rest)) = cameras[i].zip(camera.placed(&transform)) {
+            if let Some((index, rest)) = cameras[i].zip(camera.transformed(&transform)) {
                 let (aim, lens) = (None, None);
                 let node = Some(node);
-                animation.movers.push(Animated::Camera { camera: index, node, rest, aim, lens });
+                animation.objects.push(Animated::Camera { camera: index, node, rest, aim, lens });
             }
         }
     }

@@ -75,7 +75,7 @@ impl MergedModel {
 
     /// How many things are added to a scene each time that the model is placed.
     pub fn count(&self) -> u64 {
-        let moving = self.animation.as_ref().map_or(0, |a| a.nodes.len() + a.movers.len());
+        let moving = self.animation.as_ref().map_or(0, |a| a.nodes.len() + a.objects.len());
         (self.instances.len() + self.lights.len() + self.cameras.len() + moving) as u64
     }
 
@@ -101,12 +101,12 @@ impl MergedModel {
             mesh: instance.mesh,
         }));
         if placement.lights {
-            scene.lights.extend(self.lights.iter().map(|light| light.placed(transform)));
+            scene.lights.extend(self.lights.iter().map(|light| light.transformed(transform)));
         }
         // A camera that is left out has no index.
         let mut cameras = Vec::with_capacity(self.cameras.len());
         for camera in &self.cameras {
-            match camera.placed(transform) {
+            match camera.transformed(transform) {
                 Some(placed) => {
                     cameras.push(Some(scene.cameras.len()));
                     scene.cameras.push(placed);
@@ -141,7 +141,7 @@ fn bounds(model: &Scene) -> Bounds {
         LightKind::Ambient | LightKind::Directional { .. } => None,
     });
     let cameras = model.cameras.iter().map(|camera| camera.position);
-    model.bounds().union(Bounds::of(lights.chain(cameras)))
+    model.bounds().union(Bounds::from_points(lights.chain(cameras)))
 }
 
 #[cfg(test)]
@@ -154,7 +154,7 @@ mod tests {
     /// One triangle with a textured material, a spot light and a camera.
     fn model() -> Scene {
         let mut model = Scene::default();
-        let image = Image::bytes("", [1, 1], vec![[9; 4]]);
+        let image = Image::from_bytes("", [1, 1], vec![[9; 4]]);
         let texture = model.add_texture(Texture::new(Arc::new(image)));
         let material = Material { diffuse_map: Some(texture), ..Material::default() };
         let material = model.add_material(material);
@@ -280,7 +280,7 @@ mod tests {
         let camera = &scene.cameras[0];
         assert_eq!(camera.position, DVec3::new(10.0, 0.0, 2.0));
         assert_eq!((camera.forward, camera.up), (-DVec3::Z, -DVec3::X));
-        assert_eq!(camera.lens, Projection::OrthoHeight(4.0));
+        assert_eq!(camera.projection, Projection::OrthoHeight(4.0));
     }
 
     #[test]

@@ -186,11 +186,12 @@ impl Builder<'_, '_> {
         let orbit = self.orbit(object)?;
         let node = orbit.map(|orbit| {
             let (parent, place) = (None, DAffine3::IDENTITY);
-            self.animation.add_node(Node { parent, place, motion: Motion::Orbit(orbit) })
+            self.animation.add_node(Node { parent, base: place, motion: Motion::Orbit(orbit) })
         });
         self.rigs[object].node = node;
         let Some(keys) = self.keys(object) else { return Ok(()) };
-        let keyed = Node { parent: node, place: DAffine3::IDENTITY, motion: Motion::Keys(keys) };
+        let keyed =
+            Node { parent: node, base: DAffine3::IDENTITY, motion: Motion::Keyframes(keys) };
         self.rigs[object].node = Some(self.animation.add_node(keyed));
         self.rigs[object].is_own = true;
         Ok(())
@@ -209,11 +210,11 @@ impl Builder<'_, '_> {
         let keyed = around.and_then(|around| self.rigs[around].curves.position.as_ref());
         Ok(Some(Orbit {
             around: anchor,
-            center: keyed.map_or(*center, |curve| curve.value.at(0.0)),
+            center: keyed.map_or(*center, |curve| curve.value.sample(0.0)),
             start,
             axis: orbit.axis.map_or(DVec3::Y, |axis| axis.0),
             period: orbit.period.map_or(f64::INFINITY, |period| period.0),
-            turn: orbit.turn.unwrap_or(false),
+            turns_with_orbit: orbit.turn.unwrap_or(false),
         }))
     }
 
@@ -225,7 +226,7 @@ impl Builder<'_, '_> {
             return None;
         }
         let still = self.names.objects[object].position.unwrap_or_default();
-        let mut keys = Keyframes::still();
+        let mut keys = Keyframes::identity();
         keys.translation = position.unwrap_or(Curve::constant(still));
         if let Some(table) = self.models[object] {
             let angles = table.rotate.map_or(DVec3::ZERO, |angles| angles.radians());

@@ -6,7 +6,7 @@ use super::tables::FilmTable;
 use super::values::SampleRange;
 use crate::error::Result;
 use crate::scene::check;
-use crate::scene::{Adaptive, FilmSettings};
+use crate::scene::{AdaptiveSampling, FilmSettings};
 
 /// The film that a table describes.
 ///
@@ -34,7 +34,7 @@ pub fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
 }
 
 /// How many samples every pixel has, and where one may have more.
-fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adaptive>)> {
+fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<AdaptiveSampling>)> {
     let threshold = table.threshold.as_ref();
     let Some(At { span, value: SampleRange([min, max]) }) = &table.adaptive else {
         return match threshold {
@@ -50,6 +50,6 @@ fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adapti
             .help("leave one of them out"));
     }
     check::check_samples(*min, *max).map_err(|e| source.place(span, e))?;
-    let threshold = threshold.map_or(Adaptive::THRESHOLD, |share| share.value.0 as f32);
-    Ok((*min, Some(Adaptive { max: *max, threshold })))
+    let threshold = threshold.map_or(AdaptiveSampling::THRESHOLD, |share| share.value.0 as f32);
+    Ok((*min, Some(AdaptiveSampling { max: *max, threshold })))
 }

@@ -6,7 +6,7 @@ use super::animation::Rig;
 use super::resolve::Resolver;
 use super::tables::{CameraTable, LightTable, SphereTable};
 use crate::error::Result;
-use crate::scene::animation::{Aim, Anchor, Animated, Toward};
+use crate::scene::animation::{Aim, AimTarget, Anchor, Animated};
 use crate::scene::{Camera, Light, LightKind, Sphere};
 
 /// How the next sphere of the scene moves, if it does.
@@ -73,20 +73,20 @@ pub fn camera(
         target = Some(resolver.rigs.anchor(object, position));
     }
     let toward = match (&rig.curves.look_at, &rig.curves.direction, target) {
-        (Some(points), ..) => Some(Toward::Points(points.clone())),
-        (None, Some(directions), _) => Some(Toward::Directions(directions.clone())),
-        (None, None, target) => target.map(Toward::Anchor),
+        (Some(points), ..) => Some(AimTarget::Points(points.clone())),
+        (None, Some(directions), _) => Some(AimTarget::Directions(directions.clone())),
+        (None, None, target) => target.map(AimTarget::Anchor),
     };
     let lens = rig.curves.lens.as_ref().map(|(make, curve)| {
-        rest.lens = make(curve.at(0.0), resolver.scene.film.size[0]);
+        rest.projection = make(curve.sample(0.0), resolver.scene.film.size[0]);
         curve.clone()
     });
-    let aims_at_rest = matches!(toward, None | Some(Toward::Anchor(Anchor { node: None, .. })));
+    let aims_at_rest = matches!(toward, None | Some(AimTarget::Anchor(Anchor { node: None, .. })));
     if aims_at_rest && lens.is_none() && rig.node.is_none() {
         return Ok(None);
     }
     let up = table.up.as_ref().map_or(DVec3::Y, |up| up.value.0);
-    let aim = toward.map(|toward| Aim { toward, up });
+    let aim = toward.map(|toward| Aim { target: toward, up });
     let (camera, node) = (resolver.scene.cameras.len(), rig.node);
     Ok(Some(Animated::Camera { camera, node, rest, aim, lens }))
 }

@@ -10,7 +10,7 @@ use super::tables::Kind;
 use crate::error::{Error, Result};
 use crate::load::spelling;
 use crate::scene::Projection;
-use crate::scene::animation::{Curve, Interpolation, Value};
+use crate::scene::animation::{Curve, Interpolate, Interpolation};
 
 /// What changes of an object.
 #[derive(Debug, Default)]
@@ -122,7 +122,7 @@ struct Track<'a> {
 impl Track<'_> {
     /// The values of a key, where it is given: checked that the object has it, and that there are
     /// as many as times.
-    fn values<T, V: Value>(
+    fn values<T, V: Interpolate>(
         &mut self,
         key: &str,
         list: &Option<At<List<T>>>,
@@ -150,7 +150,7 @@ impl Track<'_> {
         Ok(Some(list.iter().map(value).collect()))
     }
 
-    fn curve<V: Value>(
+    fn curve<V: Interpolate>(
         &self,
         values: Vec<V>,
         smooth: impl Fn(Vec<f64>, Vec<V>) -> Curve<V>,

@@ -97,7 +97,7 @@ fn faces_are_counted_as_those_of_other_meshes() {
     assert_eq!(report.dropped, [(DropReason::Degenerate, 1)].into());
 }
 
-/// The same model, with other data.
+/// Returns the same model with other data.
 fn damaged() -> Model {
     let mut model = square();
     model.primitive()["extensions"][DRACO]["bufferView"] = 1.into();

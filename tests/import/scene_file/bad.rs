@@ -1,4 +1,4 @@
-//! What scene files cannot say, and where the message points: at the mark `¦`.
+//! The mistakes in scene files, and the place at which the message points: the mark `¦`.
 
 use envers::error::{Error, ErrorKind};
 

@@ -110,7 +110,7 @@ impl Resolver<'_> {
 
     fn moves(&mut self, mover: Option<Animated>) {
         if let (Some(animation), Some(mover)) = (&mut self.scene.animation, mover) {
-            animation.movers.push(mover);
+            animation.objects.push(mover);
         }
     }
 

@@ -1,4 +1,4 @@
-//! Meshes that change their shape: morph targets, and skins on joints.
+//! The deformation of meshes: morph targets, and skinning by joints.
 
 use std::sync::Arc;
 
@@ -8,126 +8,130 @@ use rayon::prelude::*;
 use super::{Curve, NodeId};
 use crate::scene::{GRAIN, Mesh};
 
-/// How a mesh gets its shape: first morphed, then bent by its joints, as glTF 2.0 has it (parts
-/// 3.7.2.2 and 3.7.3.3).
+/// The deformation of a mesh: first by morph targets, then by skinning, as in glTF 2.0 (parts 3.7.2.2
+/// and 3.7.3.3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Deformation {
-    /// The mesh as it was modelled.
+    /// The undeformed mesh.
     pub base: Arc<Mesh>,
-    /// What it can be morphed to.
-    pub morphs: Arc<[Morph]>,
-    /// How much of each morph there is at a time: one curve for each.
+    /// The morph targets.
+    pub morph_targets: Arc<[MorphTarget]>,
+    /// The weights of the morph targets: one curve for each.
     pub weights: Vec<Curve<f64>>,
-    /// After how many seconds the weights begin again, above 0; none for never.
-    pub repeats: Option<f64>,
-    /// What bends it.
+    /// The time in seconds after which the weights repeat, above 0; none if they do not.
+    pub period: Option<f64>,
+    /// The skin, if it has one.
     pub skin: Option<Skin>,
 }
 
-/// What a morph adds to vertices, at full weight. Each list is empty, or as long as the mesh's.
+/// A morph target: what is added to the vertices at full weight. Each list is empty, or as long as
+/// the mesh's.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Morph {
-    /// Displacements of the positions.
+pub struct MorphTarget {
+    /// The displacements of the positions.
     pub positions: Vec<[f32; 3]>,
-    /// What is added to the normals.
+    /// The changes of the normals.
     pub normals: Vec<[f32; 3]>,
 }
 
-/// Joints, and how the vertices of a mesh hang on them.
+/// A skin: joints, and their influences on the vertices of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
     /// The joints.
     pub joints: Vec<Joint>,
-    /// How the vertices hang on them; meshes of the same primitive share it.
+    /// The influences of the joints; meshes of the same glTF primitive share them.
     pub influences: Arc<Influences>,
-    /// The space of the bent mesh's instances, as a joint without a bind matrix: the mesh is bent in
-    /// the world, and brought from there into this.
+    /// The space of the skinned mesh's instances, as a joint without a bind matrix: skinning gives
+    /// positions in world space, which are then taken into this space.
     pub space: Joint,
 }
 
-/// A place that vertices hang on.
+/// A joint of a skin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
-    /// The node that it moves with; none for the world.
+    /// The node that it is attached to; none for the world.
     pub node: Option<NodeId>,
-    /// Where it stands in that space.
-    pub place: DAffine3,
-    /// From the mesh's space to the joint's, when it was modelled.
-    pub bind: DAffine3,
+    /// The transform from the joint's space to the node's.
+    pub transform: DAffine3,
+    /// The inverse bind matrix: from the space of the undeformed mesh to the joint's.
+    pub inverse_bind: DAffine3,
 }
 
-/// For each vertex, the joints that it hangs on.
+/// The joints that influence each vertex, with their weights.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Influences {
-    /// How many joints a vertex has.
+    /// The number of joints of each vertex.
     pub per_vertex: usize,
-    /// Their numbers, vertex by vertex.
+    /// The indices of the joints, vertex by vertex.
     pub joints: Vec<u16>,
-    /// As many weights, of any sum but 0; where that is 0 the vertex hangs on its first joint.
+    /// The weights of the joints, vertex by vertex, of any sum; where that is 0 the vertex follows its
+    /// first joint.
     pub weights: Vec<f32>,
 }
 
-/// All that a shape depends on.
+/// The pose of a deformation: all values that its shape depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Pose {
     weights: Vec<f64>,
-    /// From the base's space to the bent mesh's, for each joint.
+    /// For each joint the transform from the base's space to the deformed mesh's.
     joints: Vec<DAffine3>,
 }
 
 impl Joint {
-    /// From the space that is bound to it to the world.
-    fn at(&self, worlds: &[DAffine3]) -> DAffine3 {
-        self.standing(worlds) * self.bind
+    /// The transform of the bound mesh, when it follows this joint, to world space.
+    fn bound_to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
+        self.to_world(worlds) * self.inverse_bind
     }
 
-    fn standing(&self, worlds: &[DAffine3]) -> DAffine3 {
+    /// The transform from the joint's space to world space.
+    fn to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
         match self.node {
-            Some(NodeId(node)) => worlds[node as usize] * self.place,
-            None => self.place,
+            Some(NodeId(node)) => worlds[node as usize] * self.transform,
+            None => self.transform,
         }
     }
 }
 
 impl Deformation {
-    /// The mesh at a time in seconds, given where the nodes are then.
+    /// The deformed mesh at a time in seconds, given the nodes' transforms to world space then.
     ///
     /// # Panics
-    /// When a joint's node is not there.
-    pub fn mesh(&self, time: f64, worlds: &[DAffine3]) -> Mesh {
-        self.shape(&self.pose(time, worlds))
+    /// When a joint's node does not exist.
+    pub fn deform(&self, time: f64, worlds: &[DAffine3]) -> Mesh {
+        self.deform_to(&self.pose(time, worlds))
     }
 
+    /// The pose at a time in seconds, given the nodes' transforms to world space then.
     pub(super) fn pose(&self, time: f64, worlds: &[DAffine3]) -> Pose {
-        let time = self.repeats.map_or(time, |period| time.rem_euclid(period));
-        let weights = self.weights.iter().map(|curve| curve.at(time)).collect();
+        let time = self.period.map_or(time, |period| time.rem_euclid(period));
+        let weights = self.weights.iter().map(|curve| curve.sample(time)).collect();
         let joints = self.skin.as_ref().map_or(Vec::new(), |skin| {
-            // Where that space is flat nothing of the mesh is seen.
-            let space = skin.space.standing(worlds).inverse();
-            skin.joints.iter().map(|joint| space * joint.at(worlds)).collect()
+            // Not finite where the space is flat, and its instances invisible.
+            let space = skin.space.to_world(worlds).inverse();
+            skin.joints.iter().map(|joint| space * joint.bound_to_world(worlds)).collect()
         });
         Pose { weights, joints }
     }
 
-    pub(super) fn shape(&self, pose: &Pose) -> Mesh {
+    /// The mesh deformed to a pose.
+    pub(super) fn deform_to(&self, pose: &Pose) -> Mesh {
         let mut mesh = Mesh::clone(&self.base);
-        let morphs: Vec<(&Morph, f64)> = self
-            .morphs
-            .iter()
-            .zip(pose.weights.iter().copied())
-            .filter(|(_, weight)| *weight != 0.0)
-            .collect();
-        morph(&mut mesh.positions, morphs.iter().map(|(m, weight)| (&*m.positions, *weight)));
-        morph(&mut mesh.normals, morphs.iter().map(|(m, weight)| (&*m.normals, *weight)));
+        let targets = self.morph_targets.iter().zip(pose.weights.iter().copied());
+        let targets: Vec<(&MorphTarget, f64)> = targets.filter(|(_, w)| *w != 0.0).collect();
+        add_displacements(&mut mesh.positions, targets.iter().map(|(m, w)| (&*m.positions, *w)));
+        add_displacements(&mut mesh.normals, targets.iter().map(|(m, w)| (&*m.normals, *w)));
         if let Some(skin) = &self.skin {
-            skin.influences.bend(&mut mesh, &pose.joints);
+            skin.influences.skin(&mut mesh, &pose.joints);
         }
         mesh
     }
 }
 
-/// Adds weighted displacements, in f64.
-fn morph<'m>(values: &mut [[f32; 3]], morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>) {
+/// Adds weighted displacements to vectors, in f64.
+fn add_displacements<'m>(
+    values: &mut [[f32; 3]],
+    morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>,
+) {
     let morphs: Vec<_> = morphs.filter(|(by, _)| by.len() == values.len()).collect();
     if morphs.is_empty() {
         return;
@@ -141,31 +145,39 @@ fn morph<'m>(values: &mut [[f32; 3]], morphs: impl Iterator<Item = (&'m [[f32; 3
 }
 
 impl Influences {
-    /// How many times a joint is named, with any weight, beyond the first `count`.
-    pub(crate) fn beyond(&self, count: usize) -> u64 {
+    /// The number of influences, of weights other than 0, by joints beyond the first `count`.
+    pub(crate) fn count_out_of_range(&self, count: usize) -> u64 {
         let named = self.joints.iter().zip(&self.weights);
         named.filter(|(joint, w)| **w != 0.0 && usize::from(**joint) >= count).count() as u64
     }
 
-    /// Keeps the influences of some vertices.
-    pub(crate) fn keep(&mut self, kept: &[usize]) {
-        let of = |vertex: usize| vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
-        self.joints = kept.iter().flat_map(|&v| self.joints[of(v)].iter().copied()).collect();
-        self.weights = kept.iter().flat_map(|&v| self.weights[of(v)].iter().copied()).collect();
+    /// Keeps only the influences of some vertices, in the order given.
+    pub(crate) fn retain_vertices(&mut self, kept: &[usize]) {
+        self.joints = kept.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
+        self.weights = kept.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
     }
 
-    /// Linear blend skinning, in f64: each vertex and its tangent by the weighted mean of its joints'
-    /// transforms, and its normal by that mean's cofactors, which is right for any scale.
-    fn bend(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
+    /// The range of a vertex's influences.
+    fn range(&self, vertex: usize) -> std::ops::Range<usize> {
+        vertex * self.per_vertex..(vertex + 1) * self.per_vertex
+    }
+
+    /// Applies linear blend skinning, in f64: each vertex and its tangent are transformed by the
+    /// weighted mean of its joints' transforms, and its normal by the cofactors of that mean, which
+    /// keeps it perpendicular under any scale.
+    fn skin(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
+        // Positions; the linear parts of the transforms are kept for tangents and normals.
         let positions = mesh.positions.par_iter_mut().with_min_len(GRAIN).enumerate();
         let transforms: Vec<DMat3> = positions
             .map(|(i, position)| {
-                let transform = self.mean(i, joints);
-                let there = transform.transform_point3(DVec3::from(position.map(f64::from)));
-                *position = there.as_vec3().to_array();
+                let transform = self.blended_transform(i, joints);
+                let moved = transform.transform_point3(DVec3::from(position.map(f64::from)));
+                *position = moved.as_vec3().to_array();
                 transform.matrix3
             })
             .collect();
+
+        // Tangents, whose sign changes where the transform mirrors.
         let tangents = mesh.tangents.par_iter_mut().with_min_len(GRAIN).zip(&transforms);
         tangents.for_each(|([x, y, z, hand], m)| {
             let turned = *m * DVec3::new(f64::from(*x), f64::from(*y), f64::from(*z));
@@ -174,6 +186,8 @@ impl Influences {
                 *hand *= m.determinant().signum() as f32;
             }
         });
+
+        // Normals, where the transform leaves them a direction.
         let normals = mesh.normals.par_iter_mut().with_min_len(GRAIN).zip(transforms);
         normals.for_each(|(normal, m)| {
             let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
@@ -185,8 +199,9 @@ impl Influences {
         });
     }
 
-    fn mean(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
-        let range = vertex * self.per_vertex..(vertex + 1) * self.per_vertex;
+    /// The weighted mean of the transforms of a vertex's joints.
+    fn blended_transform(&self, vertex: usize, joints: &[DAffine3]) -> DAffine3 {
+        let range = self.range(vertex);
         let (ids, weights) = (&self.joints[range.clone()], &self.weights[range]);
         let joint = |id: u16| joints.get(usize::from(id)).copied().unwrap_or_default();
         let total: f64 = weights.iter().map(|w| f64::from(*w)).sum();
@@ -218,7 +233,7 @@ mod tests {
     }
 
     fn joint(place: DAffine3) -> Joint {
-        Joint { node: None, place, bind: DAffine3::IDENTITY }
+        Joint { node: None, transform: place, inverse_bind: DAffine3::IDENTITY }
     }
 
     fn bent(joints: Vec<Joint>, space: DAffine3, ids: [u16; 6], weights: [f32; 6]) -> Mesh {
@@ -226,16 +241,17 @@ mod tests {
             Influences { per_vertex: 2, joints: ids.to_vec(), weights: weights.to_vec() };
         let skin = Skin { joints, influences: Arc::new(influences), space: joint(space) };
         let (morphs, weights) = ([].into(), vec![]);
-        Deformation { base: base(), morphs, weights, repeats: None, skin: Some(skin) }
-            .mesh(0.0, &[])
+        Deformation { base: base(), morph_targets: morphs, weights, period: None, skin: Some(skin) }
+            .deform(0.0, &[])
     }
 
     fn morphed(weight: f64) -> Mesh {
         let morph =
-            Morph { positions: vec![[0.0, 0.0, 4.0]; 3], normals: vec![[2.0, 0.0, 0.0]; 3] };
+            MorphTarget { positions: vec![[0.0, 0.0, 4.0]; 3], normals: vec![[2.0, 0.0, 0.0]; 3] };
         let weights = vec![Curve::constant(weight)];
         let morphs = [morph].into();
-        Deformation { base: base(), morphs, weights, repeats: None, skin: None }.mesh(0.0, &[])
+        Deformation { base: base(), morph_targets: morphs, weights, period: None, skin: None }
+            .deform(0.0, &[])
     }
 
     #[test]
@@ -248,9 +264,14 @@ mod tests {
             let skin =
                 Skin { joints, influences: Arc::new(influences), space: joint(DAffine3::IDENTITY) };
             let (base, morphs) = (Arc::new(base), [].into());
-            let deformation =
-                Deformation { base, morphs, weights: vec![], repeats: None, skin: Some(skin) };
-            deformation.mesh(0.0, &[]).tangents[1]
+            let deformation = Deformation {
+                base,
+                morph_targets: morphs,
+                weights: vec![],
+                period: None,
+                skin: Some(skin),
+            };
+            deformation.deform(0.0, &[]).tangents[1]
         };
         let quarter = DMat3::from_cols(DVec3::Y, -DVec3::X, DVec3::Z);
         assert_eq!(bent(quarter), [0.0, 1.0, 0.0, 1.0]);

@@ -1,4 +1,4 @@
-//! Which lines cross a triangle, and where, in f64 with bounds.
+//! The edge functions of a line and a triangle in f64, with bounds on their errors.
 //!
 //! Notation: u = 2⁻⁵³; a, b, c the vertices relative to the origin, each rounded once; s and δ the
 //! largest components of these and of the direction d.
@@ -21,15 +21,16 @@ use glam::DVec3;
 
 use crate::geometry::Estimate;
 use crate::geometry::double_double::{U, in_range};
+use crate::geometry::triangle::certified::{greater, largest};
 
 /// The edge functions of a line and a triangle, and the distance to its plane, with bounds.
 ///
-/// Split from [`Edges::estimate`] so that a packet can stop early when all of its rays certainly
-/// pass.
+/// [`EdgeBounds::may_cross`] needs no division, so that a packet can stop early when all of its rays
+/// certainly miss.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges {
+pub struct EdgeBounds {
     functions: [f64; 3],
-    /// Bound of the error of each; infinite where nothing is certain.
+    /// The bound of the error of each function; infinite where nothing is certain.
     error: f64,
     numerator: f64,
     numerator_error: f64,
@@ -37,32 +38,33 @@ pub struct Edges {
     denominator_error: f64,
 }
 
-impl Edges {
-    /// Sets the line `origin + t·direction` beside the triangle.
+impl EdgeBounds {
+    /// Evaluates the edge functions and their bounds for the line `origin + t·direction`.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
         let (a, b, c) = (triangle[0] - origin, triangle[1] - origin, triangle[2] - origin);
         let (first, second) = (triangle[1] - triangle[0], triangle[2] - triangle[0]);
         let normal = first.cross(second);
+        // s, δ and w of the bounds above.
         let size = greater(largest(a), greater(largest(b), largest(c)));
-        let way = largest(direction);
+        let direction_size = largest(direction);
         let area = largest(first) * largest(second);
-        let ranges = in_range(size) & in_range(way);
+        let ranges = in_range(size) & in_range(direction_size);
         Self {
             functions: [
                 direction.dot(b.cross(c)),
                 direction.dot(c.cross(a)),
                 direction.dot(a.cross(b)),
             ],
-            error: if ranges { 48.0 * U * way * size * size } else { f64::INFINITY },
+            error: if ranges { 48.0 * U * direction_size * size * size } else { f64::INFINITY },
             numerator: normal.dot(a),
             numerator_error: 64.0 * U * area * size,
             denominator: normal.dot(direction),
-            denominator_error: 64.0 * U * area * way,
+            denominator_error: 64.0 * U * area * direction_size,
         }
     }
 
-    /// Whether the line may cross the triangle: false only where it certainly passes.
+    /// True if the line may cross the triangle: false only where it certainly misses.
     #[inline(always)]
     pub fn may_cross(&self) -> bool {
         let [a, b, c] = self.functions;
@@ -71,12 +73,12 @@ impl Edges {
         !(above & below)
     }
 
-    /// The signs of the edge functions where they are certain, equal where they are not.
+    /// The signs of the edge functions where they are certain, `Equal` where they are not.
     pub(super) fn signs(&self) -> [Ordering; 3] {
         self.functions.map(|f| (f > self.error).cmp(&(f < -self.error)))
     }
 
-    /// Where the line crosses the triangle; behind the origin too.
+    /// The crossing of the line and the triangle, at t of either sign.
     #[inline(always)]
     pub fn estimate(&self) -> Estimate {
         let [a, b, c] = self.functions;
@@ -97,15 +99,6 @@ impl Edges {
     }
 }
 
-/// Where the sides are so short that what their products lose to underflow would count.
+/// The error of D below which the sides are so short that what their products lose to underflow would
+/// count.
 const SMALLEST: f64 = f64::from_bits((1023 - 700) << 52);
-
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn largest(v: DVec3) -> f64 {
-    greater(v.x.abs(), greater(v.y.abs(), v.z.abs()))
-}

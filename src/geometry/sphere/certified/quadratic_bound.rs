@@ -1,4 +1,4 @@
-//! Which lines meet a sphere, and where, in f64 with bounds.
+//! The quadratic equation of a line and a sphere in f64, with bounds on the error of its roots.
 //!
 //! Notation: u = 2⁻⁵³; f from the centre to the origin; m = −f·d/|d|²; l = f + m·d, the foot of
 //! the perpendicular from the centre. A hat marks what is computed.
@@ -21,7 +21,7 @@
 //! undecided, up to distances of 10⁶ r. What underflows moves the foot by less than 10⁻¹⁶⁸ and a
 //! square by 10⁻³²², for which [`TINY`] stands in E; what overflows is never certain.
 //!
-//! **The roots** are m ∓ h with h² = (r² − l²)/|d|², taken as in `Line::roots`: one as
+//! **The roots** are m ∓ h with h² = (r² − l²)/|d|², taken as in `Quadratic::roots`: one as
 //! q = m ± h, the other as its quotient p/q with p = (f² − r²)/|d|². Write F, R for bounds of
 //! |f|/|d| and r/|d|: |f|₁, r times |d|₁/|d|². With η' = 32u(F + R), which bounds the errors of m,
 //! of l/|d| and of the last sum together, h² is off by 2Rη' + η'², h by that over ĥ, and q by
@@ -33,25 +33,26 @@ use glam::DVec3;
 use crate::geometry::Estimate;
 use crate::geometry::double_double::U;
 
-/// Share of r² within which the squared distance of the line from the centre decides nothing.
+/// The share λ of r² within which the squared distance of the line from the centre decides nothing.
 const LAMBDA: f64 = 1.0 / (1u64 << 20) as f64;
 
-/// 2048u²/λ = 2⁻⁷⁵.
+/// The factor of m²|d|² in E: 2048u²/λ = 2⁻⁷⁵.
 const KAPPA: f64 = f64::from_bits((1023 - 75) << 52);
 
-/// Below any distance squared that decides something; above all that underflows.
+/// A bound below any squared distance that decides something, and above all that underflows.
 const TINY: f64 = 1e-290;
 
-/// Below any r²/|d|² whose share of 2⁻¹⁰⁰, the smallest part of a bound, still has all its digits.
+/// A bound below any r²/|d|² whose share of 2⁻¹⁰⁰, the smallest part of an error bound, still has all
+/// its digits.
 const SMALLEST: f64 = 1e-270;
 
-/// A line beside a sphere, with the bounds of what f64 arithmetic says of them.
+/// The quadratic equation of a line and a sphere, with bounds on what f64 arithmetic computes of it.
 ///
-/// Split as the plain [`Line`](crate::geometry::sphere::Quadratic) is, so that a packet can stop early
-/// when all of its rays certainly pass.
+/// Like the plain [`Quadratic`](crate::geometry::sphere::Quadratic) it needs no square root to tell a
+/// miss, so that a packet can stop early when all of its rays certainly miss.
 #[derive(Clone, Copy)]
 pub struct QuadraticBound {
-    /// From the centre to the origin, rounded.
+    /// f, from the centre to the origin, rounded.
     pub(super) offset: DVec3,
     pub(super) origin: DVec3,
     pub(super) center: DVec3,
@@ -61,14 +62,15 @@ pub struct QuadraticBound {
     middle: f64,
     r2: f64,
     foot2: f64,
-    /// E above, in its two parts: what the sphere has of it, and what the line adds.
+    /// The two parts of E above: that of the sphere, and that of the line.
     slack: [f64; 2],
 }
 
 impl QuadraticBound {
-    /// Sets the line `origin + t·direction` beside the sphere, with `inverse_length_squared` from
-    /// [`sphere::inverse_length_squared`](crate::geometry::sphere::inverse_length_squared): what
-    /// is never certain where |direction|² is beyond f64.
+    /// Builds the equation of the line `origin + t·direction` and the sphere.
+    /// `inverse_length_squared` comes from
+    /// [`sphere::inverse_length_squared`](crate::geometry::sphere::inverse_length_squared), whose NaN
+    /// makes nothing certain where |direction|² is beyond f64.
     #[inline(always)]
     pub fn new(
         center: DVec3,
@@ -96,23 +98,23 @@ impl QuadraticBound {
         }
     }
 
-    /// Whether the line may meet the sphere: false only where it certainly passes.
+    /// True if the line may cross the sphere: false only where it certainly misses.
     #[inline(always)]
     pub fn may_cross(&self) -> bool {
         let [sphere, line] = self.slack;
-        let passes = self.foot2 > (self.r2 + sphere) + line;
-        !passes
+        let misses = self.foot2 > (self.r2 + sphere) + line;
+        !misses
     }
 
-    /// Whether the line certainly meets the sphere.
+    /// True if the line certainly crosses the sphere.
     #[inline(always)]
-    pub fn crosses(&self) -> bool {
+    pub fn certainly_crosses(&self) -> bool {
         let [sphere, line] = self.slack;
         self.foot2 < (self.r2 - sphere) - line
     }
 
-    /// The two roots in f64, as `sphere::Line::roots` has them, the one nearer to 0 first, and the
-    /// greater part of their bounds: what the plain formulas say.
+    /// The two roots in f64 by the formulas of `Quadratic::roots`, and the greater part of their
+    /// error bounds.
     #[inline(always)]
     fn roots(&self) -> Roots {
         let half_chord = ((self.r2 - self.foot2) * self.inverse).sqrt();
@@ -127,9 +129,10 @@ impl QuadraticBound {
         }
     }
 
-    /// The first root above 0, as far as f64 can bound it.
+    /// The first root above 0, with a bound on its error.
     #[inline(always)]
     pub fn estimate(&self) -> Estimate {
+        // Both roots, and the bounds of their errors (see "The roots" above).
         let Roots { half_chord, near, far, power, power_error } = self.roots();
         let scale = l1(self.direction) * self.inverse;
         let radius = self.radius * scale;
@@ -137,6 +140,7 @@ impl QuadraticBound {
         let far_error = eta * (4.0 * radius + eta) / half_chord;
         let near_error = 2.0 * (far_error * near.abs() + power_error * self.inverse) / far.abs();
 
+        // The far root counts for an origin inside, the near one for an origin outside.
         let outside = power > power_error;
         let inside = power < -power_error;
         let ahead = far > 0.0;
@@ -146,23 +150,23 @@ impl QuadraticBound {
 
         // Where r²/|d|² is so small that what is smaller yet underflows, nothing is certain.
         let decided = (self.r2 * self.inverse > SMALLEST) & (self.inverse < 1.0 / TINY);
-        let sure = self.crosses()
+        let sure = self.certainly_crosses()
             & decided
             & (outside | inside)
             & (2.0 * far_error <= far.abs())
             & (far.abs() < f64::INFINITY)
             & (error < f64::INFINITY);
         let misses = !self.may_cross() | (sure & outside & !ahead);
-        // A miss is infinitely far, without error; what is not sure, nowhere within any bound.
+        // `Estimate::MISS`, `Estimate::UNKNOWN` or the root, without a branch.
         Estimate {
             t: if misses { f64::INFINITY } else { if sure { t } else { 0.0 } },
             error: if misses { 0.0 } else { if sure { error } else { f64::INFINITY } },
         }
     }
 
-    /// The first root above 0, or the far one, in f64 alone.
+    /// The first root above 0, or with `inward` the far one, in f64 without a bound.
     #[inline(always)]
-    pub(super) fn guess(&self, inward: bool) -> f64 {
+    pub(super) fn initial_guess(&self, inward: bool) -> f64 {
         let Roots { near, far, power, .. } = self.roots();
         let takes_far = inward | (power < 0.0);
         let greater = if far > near { far } else { near };
@@ -171,17 +175,17 @@ impl QuadraticBound {
     }
 }
 
-/// What both [`QuadraticBound::estimate`] and [`QuadraticBound::guess`] start from.
+/// The roots of a [`QuadraticBound`] in f64.
 struct Roots {
-    /// h above.
+    /// h, half the distance between the roots.
     half_chord: f64,
-    /// p/q: of the two roots the one nearer to 0.
+    /// The root nearer to 0, p/q.
     near: f64,
-    /// q: the other.
+    /// The root farther from 0, q.
     far: f64,
-    /// |f|² − r².
+    /// The power of the origin, |f|² − r².
     power: f64,
-    /// Bound of its error.
+    /// The bound of the error of `power`.
     power_error: f64,
 }
 

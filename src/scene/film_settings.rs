@@ -1,4 +1,4 @@
-//! What the picture is to be: size, samples, background, transfer.
+//! The settings of the picture: size, samples, background, transfer function.
 
 use glam::Vec3;
 use schemars::JsonSchema;
@@ -6,19 +6,19 @@ use serde::Deserialize;
 
 use crate::scene::Tone;
 
-/// How linear radiance becomes the bytes of a PNG.
+/// The transfer function by which linear values are encoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Transfer {
     /// The sRGB curve (IEC 61966-2-1).
     #[default]
     Srgb,
-    /// None: a byte is 255 times the value, as in the tutorial.
+    /// The identity: a byte is 255 times the value, as in the tutorial.
     None,
 }
 
 impl Transfer {
-    /// The encoded value, in \[0, 1\], of a linear one; what lies outside is clamped.
+    /// Encodes a linear value, clamped to \[0, 1\].
     pub fn encode(self, linear: f64) -> f64 {
         // A NaN fails the comparison and becomes 0.
         let x = if linear > 0.0 { linear.min(1.0) } else { 0.0 };
@@ -29,7 +29,7 @@ impl Transfer {
         }
     }
 
-    /// The linear value of an encoded one in \[0, 1\]: the inverse of [`Transfer::encode`].
+    /// Decodes a value in \[0, 1\] to a linear one: the inverse of [`Transfer::encode`].
     pub fn decode(self, encoded: f32) -> f32 {
         match self {
             Transfer::None => encoded,
@@ -39,14 +39,14 @@ impl Transfer {
     }
 }
 
-/// Where in its square a pixel's samples are centred.
+/// The position in a pixel's square about which its samples are centred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum SamplePosition {
-    /// At the middle of the pixel, (x + ½, y + ½).
+    /// The middle of the pixel, (x + ½, y + ½).
     #[default]
     Center,
-    /// At its upper left corner, (x, y), as in the tutorial.
+    /// The upper left corner, (x, y), as in the tutorial.
     Corner,
 }
 
@@ -60,44 +60,45 @@ impl SamplePosition {
     }
 }
 
-/// More samples where neighbouring ones disagree: in what they hit, in its normal, or in colour.
+/// The settings of adaptive sampling: more samples for pixels whose neighbouring samples differ in the
+/// primitive hit, in its normal, or in colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Adaptive {
-    /// The most samples of a pixel, no fewer than every pixel has.
+pub struct AdaptiveSampling {
+    /// The greatest number of samples per pixel, at least [`FilmSettings::spp`].
     pub max: u32,
-    /// From which difference on two colours disagree, in [0, 1]: in any channel, of the square
-    /// roots of their radiance, which is about what a PNG shows. At 0 all do.
+    /// The difference from which on two colours differ, in [0, 1], of the square roots of their
+    /// radiance (about what a PNG shows) in any channel. At 0 all do.
     pub threshold: f32,
 }
 
-impl Adaptive {
-    /// The threshold where none is asked for.
+impl AdaptiveSampling {
+    /// The default threshold.
     pub const THRESHOLD: f32 = 0.1;
 }
 
-/// What the picture is to be.
+/// The settings of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmSettings {
-    /// Width and height in pixels, each at least 1.
+    /// The width and height in pixels, each at least 1.
     pub size: [u32; 2],
-    /// Samples per pixel, at least 1.
+    /// The number of samples per pixel, at least 1.
     pub spp: u32,
-    /// Where a pixel gets more than these, if any does.
-    pub adaptive: Option<Adaptive>,
-    /// How the PNG encodes what the tone curve leaves.
+    /// Adaptive sampling, if pixels may get more samples than these.
+    pub adaptive: Option<AdaptiveSampling>,
+    /// The transfer function by which a PNG encodes the result of the tone curve.
     pub transfer: Transfer,
-    /// The PNG's radiance is multiplied with 2 to the power of this.
+    /// The exposure in stops: a PNG shows radiance times 2 to the power of this.
     pub exposure: f64,
-    /// How the PNG shows what is bright.
+    /// The tone curve of a PNG.
     pub tone: Tone,
-    /// Radiance where a ray meets nothing, linear Rec. 709.
+    /// The radiance of rays that hit nothing, linear Rec. 709.
     pub background: Vec3,
-    /// Where in the pixel the samples are centred.
+    /// The position in a pixel about which its samples are centred.
     pub sample_position: SamplePosition,
-    /// How often light is followed off mirrors and through surfaces; 0 shows neither.
+    /// The greatest number of reflections and refractions along a light path; 0 shows neither.
     pub max_depth: u32,
-    /// Rays with no greater share of their pixel than this are not followed; in \[0, 1\]. At 0
-    /// only those are left out that can add nothing.
+    /// The throughput, in \[0, 1\], at or below which secondary rays are not traced. At 0 only those
+    /// are left out that can add nothing.
     pub cutoff: f64,
 }
 
