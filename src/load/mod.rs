@@ -22,7 +22,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::scene::{LoadReport, Scene, watertight};
 
-pub use defaults::auto_lighting::add_ground;
+pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits, NamedLimit};
 use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;
@@ -88,12 +88,12 @@ pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
     if let Some(size) = options.size {
         scene.film.size = size;
     }
-    defaults::auto_camera::frame(&mut scene);
+    defaults::auto_camera::add_camera(&mut scene);
     if !from_file {
         scene.film.spp = BARE_MODEL_SPP;
-        defaults::auto_lighting::light(&mut scene);
+        defaults::auto_lighting::add_lights(&mut scene);
     }
-    defaults::materials::settle(&mut scene);
+    defaults::complete(&mut scene);
     scene.check().map_err(|e| e.at(path))?;
     let open = watertight::warn_of_open_dielectrics(&scene);
     scene.warnings.extend(open);

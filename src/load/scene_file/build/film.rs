@@ -1,24 +1,24 @@
-//! From the table of the film to its settings.
+//! The settings of the film.
 
-use super::source::Source;
-use super::spanned::At;
-use super::tables::FilmTable;
-use super::values::SampleRange;
 use crate::error::Result;
+use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::tables::FilmTable;
+use crate::load::scene_file::schema::values::SampleRange;
+use crate::load::scene_file::source::Source;
 use crate::scene::check;
 use crate::scene::{Adaptive, FilmSettings};
 
-/// The film that a table describes.
+/// Returns the settings that a table describes.
 ///
 /// # Errors
 /// When its numbers do not fit each other.
-pub fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
+pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
     let default = FilmSettings::default();
     if let Some(At { span, value }) = &table.size {
-        check::check_size(value.0).map_err(|e| source.place(span, e))?;
+        check::check_size(value.0).map_err(|e| source.locate(span, e))?;
     }
     let transfer = table.transfer.unwrap_or(default.transfer);
-    let (spp, adaptive) = samples(source, table)?;
+    let (spp, adaptive) = samples_per_pixel(source, table)?;
     Ok(FilmSettings {
         size: table.size.as_ref().map_or(default.size, |size| size.value.0),
         spp,
@@ -26,15 +26,15 @@ pub fn film(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
         transfer,
         exposure: table.exposure.map_or(default.exposure, |ev| ev.0),
         tone: table.tone.unwrap_or(default.tone),
-        background: table.background.map_or(default.background, |c| c.linear(transfer)),
+        background: table.background.map_or(default.background, |c| c.to_linear(transfer)),
         sample_position: table.sample_position.unwrap_or(default.sample_position),
         max_depth: table.max_depth.map_or(default.max_depth, |depth| depth.0),
         cutoff: table.cutoff.map_or(default.cutoff, |share| share.0),
     })
 }
 
-/// How many samples every pixel has, and where one may have more.
-fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adaptive>)> {
+/// Returns the samples of every pixel, and the settings of adaptive sampling, if it is asked for.
+fn samples_per_pixel(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adaptive>)> {
     let threshold = table.threshold.as_ref();
     let Some(At { span, value: SampleRange([min, max]) }) = &table.adaptive else {
         return match threshold {
@@ -49,7 +49,7 @@ fn samples(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adapti
             .error(span, "`spp` and `adaptive` both say how many samples a pixel has")
             .help("leave one of them out"));
     }
-    check::check_samples(*min, *max).map_err(|e| source.place(span, e))?;
+    check::check_samples(*min, *max).map_err(|e| source.locate(span, e))?;
     let threshold = threshold.map_or(Adaptive::THRESHOLD, |share| share.value.0 as f32);
     Ok((*min, Some(Adaptive { max: *max, threshold })))
 }

@@ -9,7 +9,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::source::Span;
+use crate::load::scene_file::source::Span;
 
 /// A value and its place in the text; a table that has a header is at its header.
 #[derive(Clone, Debug)]

@@ -1,14 +1,20 @@
-//! What serde and the TOML parser refuse, in words that name the place and the way out.
+//! The errors of serde and the TOML parser, in words that name the place and the way out.
+//!
+//! serde's errors are English text and nothing else, so this file parses that text: "unknown field
+//! `x`, expected one of `a`, `b`", "missing field `x`", "invalid type: x, expected y". If another
+//! version of serde or toml words them otherwise, they are reported as they are; the tests of scene
+//! files then fail.
 
+use super::schema::json_schema::schema;
 use super::source::{Source, Span};
 use crate::error::Error;
 use crate::load::spelling;
 
-/// Tables that are written under double brackets.
+/// The tables that are written under double brackets.
 const REPEATED: &[&str] = &["material", "sphere", "plane", "model", "light", "camera"];
 
-/// Turns an error of the TOML reader into ours.
-pub fn error(source: &Source<'_>, mut error: toml::de::Error) -> Error {
+/// Turns an error of the TOML reader into one of ours.
+pub fn reword(source: &Source<'_>, mut error: toml::de::Error) -> Error {
     let span = error.span().unwrap_or(source.text.len()..source.text.len());
     let message = error.message().to_owned();
     // Without its input the reader's error prints the path of the key that it is about.
@@ -18,28 +24,29 @@ pub fn error(source: &Source<'_>, mut error: toml::de::Error) -> Error {
         .strip_prefix(&message)
         .and_then(|rest| rest.trim().strip_prefix("in `")?.strip_suffix('`'))
         .unwrap_or_default();
-    let report = Report { source, span, path };
-    report
-        .unknown(&message)
-        .or_else(|| report.missing(&message))
-        .or_else(|| report.wrong(&message))
-        .unwrap_or_else(|| report.syntax(&message))
+    let context = ErrorContext { source, span, path };
+    context
+        .unknown_name(&message)
+        .or_else(|| context.missing_key(&message))
+        .or_else(|| context.wrong_value(&message))
+        .unwrap_or_else(|| context.other(&message))
 }
 
-struct Report<'a> {
+/// The place of an error of the TOML reader.
+struct ErrorContext<'a> {
     source: &'a Source<'a>,
     span: Span,
     /// The keys down to the value that the error is about, with dots.
     path: &'a str,
 }
 
-impl Report<'_> {
+impl ErrorContext<'_> {
     fn error(&self, message: impl Into<String>) -> Error {
         self.source.error(&self.span, message)
     }
 
-    /// "unknown field `x`, expected one of `a`, `b`" and the same of a variant.
-    fn unknown(&self, message: &str) -> Option<Error> {
+    /// Rewords "unknown field `x`, expected one of `a`, `b`" and the same of a variant.
+    fn unknown_name(&self, message: &str) -> Option<Error> {
         let (what, rest) = message.strip_prefix("unknown ")?.split_once(" `")?;
         let (found, expected) = rest.rsplit_once("`, expected ")?;
         let candidates: Vec<&str> = expected.split('`').skip(1).step_by(2).collect();
@@ -50,23 +57,23 @@ impl Report<'_> {
         }
         let table = if self.path.is_empty() { "a scene file" } else { &self.table() };
         let error = self.error(format!("{table} has no key `{found}`"));
-        let help = match (spelling::closest(found, &candidates), homes(found)) {
-            (None, Some(homes)) => format!("it belongs {homes}"),
+        let help = match (spelling::closest(found, &candidates), tables_with_key(found)) {
+            (None, Some(tables)) => format!("it belongs {tables}"),
             _ => spelling::advice(found, &candidates, "its keys are"),
         };
         Some(error.help(help))
     }
 
-    /// "missing field `x`".
-    fn missing(&self, message: &str) -> Option<Error> {
+    /// Rewords "missing field `x`".
+    fn missing_key(&self, message: &str) -> Option<Error> {
         let key = message.strip_prefix("missing field `")?.strip_suffix('`')?;
         Some(self.error(format!("{} needs the key `{key}`", self.table())))
     }
 
-    /// "invalid type: x, expected y", the same of a value and of a length.
-    fn wrong(&self, message: &str) -> Option<Error> {
+    /// Rewords "invalid type: x, expected y", the same of a value and of a length.
+    fn wrong_value(&self, message: &str) -> Option<Error> {
         if message == "wanted string or table" {
-            return Some(self.wrong_value("", "a string"));
+            return Some(self.unexpected("", "a string"));
         }
         let (what, rest) = message.strip_prefix("invalid ")?.split_once([' ', ':'])?;
         let (found, expected) = rest.trim_start().rsplit_once(", expected ")?;
@@ -86,13 +93,13 @@ impl Report<'_> {
                         .help(format!("write its header in single brackets: [{table}]")),
                 )
             }
-            _ if expected == "a boolean" => Some(self.wrong_value(found, "true or false")),
-            "type" | "value" => Some(self.wrong_value(found, expected)),
+            _ if expected == "a boolean" => Some(self.unexpected(found, "true or false")),
+            "type" | "value" => Some(self.unexpected(found, expected)),
             _ => None,
         }
     }
 
-    fn wrong_value(&self, found: &str, expected: &str) -> Error {
+    fn unexpected(&self, found: &str, expected: &str) -> Error {
         let excerpt = self.source.excerpt(&self.span);
         let found = match found {
             // The reader hands on a date as a table.
@@ -109,8 +116,8 @@ impl Report<'_> {
         self.error(format!("{key}expected {expected}, found {found}"))
     }
 
-    /// Everything else: what is no TOML, and what our own values say.
-    fn syntax(&self, message: &str) -> Error {
+    /// Rewords any other error: of text that is no TOML, and of our own types of values.
+    fn other(&self, message: &str) -> Error {
         let found = self.source.excerpt(&self.span);
         if message == "duplicate key" {
             let error = self.error(format!("`{found}` is there already"));
@@ -126,11 +133,12 @@ impl Report<'_> {
         })
     }
 
+    /// Returns the key whose value the error is about.
     fn key(&self) -> Option<&str> {
         self.path.rsplit('.').next().filter(|key| !key.is_empty())
     }
 
-    /// The table that the error is about, as it is written.
+    /// Returns the table that the error is about, as it is written.
     fn table(&self) -> String {
         match self.path {
             path if path.contains('.') => format!("`{path}`"),
@@ -142,26 +150,23 @@ impl Report<'_> {
     }
 }
 
-/// Where a key belongs that stands in the wrong table; the schema knows all tables.
-fn homes(key: &str) -> Option<String> {
-    let schema = super::schema();
+/// Returns the tables that have a key, for a key that stands in the wrong one.
+fn tables_with_key(key: &str) -> Option<String> {
+    let schema = schema();
     let tables = schema.get("properties")?.as_object()?;
     if tables.contains_key(key) {
         return Some("under a header of its own, or before the first one".to_owned());
     }
-    let homes: Vec<String> = tables
+    let found: Vec<String> = tables
         .iter()
         .filter(|(_, table)| {
             let one = table.get("items").or_else(|| table.pointer("/anyOf/0")).unwrap_or(table);
             one.get("properties").is_some_and(|keys| keys.get(key).is_some())
         })
-        .map(|(name, _)| match REPEATED.contains(&name.as_str()) && name != "camera" {
-            true => format!("[[{name}]]"),
-            false => format!("[{name}]"),
+        .map(|(name, _)| {
+            let is_repeated = REPEATED.contains(&name.as_str()) && name != "camera";
+            if is_repeated { format!("[[{name}]]") } else { format!("[{name}]") }
         })
         .collect();
-    match &homes[..] {
-        [] => None,
-        homes => Some(format!("in {}", homes.join(" or "))),
-    }
+    (!found.is_empty()).then(|| format!("in {}", found.join(" or ")))
 }

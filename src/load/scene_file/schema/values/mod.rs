@@ -1,7 +1,7 @@
 //! The values that keys take: each type refuses, at its own place in the text, what it cannot be.
 
+mod integers;
 mod vectors;
-mod words;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -13,8 +13,8 @@ use serde::{Deserialize, Deserializer};
 
 use crate::scene::animation::MAX_FPS;
 use crate::scene::check::MAX_COORDINATE;
-pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, unit};
-pub use words::{Depth, FrameCount, Priority, SampleRange, Samples, ShadowKind, Size};
+pub use integers::{Depth, FrameCount, Priority, SampleRange, Samples, ShadowKind, Size};
+pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, normalize};
 
 /// Gives a type of value its part of the JSON Schema.
 macro_rules! value_schema {

@@ -35,7 +35,7 @@ pub struct Direction(pub DVec3);
 impl<'de> Deserialize<'de> for Direction {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let xyz: [Number; 3] = list(deserializer, "three numbers")?;
-        unit(DVec3::from_array(xyz.map(|x| x.0)))
+        normalize(DVec3::from_array(xyz.map(|x| x.0)))
             .map(Self)
             .ok_or_else(|| D::Error::custom("a direction cannot be [0, 0, 0]"))
     }
@@ -46,7 +46,7 @@ value_schema!(Direction, {
 });
 
 /// The vector of length 1 along `v`, however long or short `v` is; none for zero.
-pub fn unit(v: DVec3) -> Option<DVec3> {
+pub fn normalize(v: DVec3) -> Option<DVec3> {
     // Measured by its greatest component first, so that no square over- or underflows.
     (v / v.abs().max_element()).try_normalize()
 }
