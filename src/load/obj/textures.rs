@@ -110,8 +110,9 @@ impl<'a> Textures<'a> {
         let mut missing = HashSet::new();
         for (image, picture) in images.into_iter().zip(&self.pictures) {
             let image = image.map_err(|e| e.at(&picture.folder.join(&picture.name)));
-            let shown_by = picture.shown_by.iter().map(|(_, id)| *id);
-            if !placeholder::show(image, &picture.name, shown_by.clone(), scene, tally) {
+            let shown_by: Vec<_> = picture.shown_by.iter().map(|(_, id)| *id).collect();
+            let (name, show) = (&picture.name, placeholder::set_image_or_placeholder);
+            if !show(image, name, &shown_by, scene, tally) {
                 missing.extend(shown_by);
             }
         }
