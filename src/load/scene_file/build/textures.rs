@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::SceneBuilder;
 use crate::error::Result;
 use crate::load::images::decode;
-use crate::load::images::texture_cache::{TextureCache, set_image};
+use crate::load::images::texture_cache::{ImageIndex, TextureCache, set_image};
 use crate::load::sandbox::Sandbox;
 use crate::load::scene_file::schema::spanned::At;
 use crate::load::scene_file::schema::tables::MapFilter;
@@ -14,7 +14,7 @@ use crate::scene::{Filter, Scene, Texture, TextureId, Transfer};
 
 /// The textures so far: their images by canonical path and whether they are needed, and how the
 /// textures sample them.
-pub type Textures = TextureCache<(PathBuf, bool), ImageFile, Sampling>;
+pub type Textures = TextureCache<(PathBuf, bool), ImageFile, (ImageIndex, Sampling)>;
 
 /// An image file.
 pub struct ImageFile {
@@ -56,11 +56,13 @@ impl SceneBuilder<'_> {
             .textures
             .image((file.identity, is_needed), || ImageFile { name: name.clone(), is_needed });
         let Sampling { transfer, filter } = sampling;
-        Ok(Some(self.textures.texture(image, sampling, &mut self.scene, |image| Texture {
-            transfer,
-            filter: if filter == MapFilter::Nearest { Filter::Nearest } else { Filter::Linear },
-            mipmap: filter == MapFilter::Mipmap,
-            ..Texture::new(image)
+        Ok(Some(self.textures.texture((image, sampling), image, &mut self.scene, |image| {
+            Texture {
+                transfer,
+                filter: if filter == MapFilter::Nearest { Filter::Nearest } else { Filter::Linear },
+                mipmap: filter == MapFilter::Mipmap,
+                ..Texture::new(image)
+            }
         })))
     }
 }

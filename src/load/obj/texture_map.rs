@@ -1,60 +1,60 @@
-//! A texture statement of an MTL file: options, then the file's name, which may hold spaces.
+//! The texture statements of an MTL file: options, then the file's name, which may hold spaces.
 
-use super::files::unquoted;
+use super::file_lookup::unquote;
 
 /// A texture statement.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Map {
+pub struct TextureMap {
     /// The file's name.
     pub file: String,
-    /// Whether the picture ends at its edges, by `-clamp on`.
-    pub clamp: bool,
-    /// What texture coordinates are multiplied with, by `-s`.
+    /// True if the image is not repeated, by `-clamp on`.
+    pub is_clamped: bool,
+    /// The factors of texture coordinates, by `-s`.
     pub scale: [f32; 2],
-    /// What is added to them then, by `-o`.
+    /// The offset that is added to them then, by `-o`.
     pub offset: [f32; 2],
-    /// How much a bump counts, by `-bm`.
-    pub gain: Option<f32>,
-    /// The channel that counts, by `-imfchan`: 0 to 3, red, green, blue or alpha (`m`, the matte).
+    /// The factor of a bump's height, by `-bm`.
+    pub bump_scale: Option<f32>,
+    /// The channel that is read, by `-imfchan`: 0 to 3, red, green, blue or alpha (`m`, the matte).
     pub channel: Option<u8>,
-    /// Options that are not read.
+    /// The options that are not read.
     pub ignored: Vec<String>,
 }
 
-impl Map {
-    /// Parses what follows `map_Kd` and its kin; nothing where no file is named.
+impl TextureMap {
+    /// Parses the text after `map_Kd` and its kin; none where no file is named.
     pub fn parse(text: &str) -> Option<Self> {
         let mut map = Self {
             file: String::new(),
-            clamp: false,
+            is_clamped: false,
             scale: [1.0; 2],
             offset: [0.0; 2],
-            gain: None,
+            bump_scale: None,
             channel: None,
             ignored: Vec::new(),
         };
         let mut file = text.trim();
-        while let Some((option, rest)) = option(file) {
-            let (values, rest) = values(option, rest);
+        while let Some((option, rest)) = split_option(file) {
+            let (values, rest) = split_values(option, rest);
             map.apply(option, values);
             file = rest;
         }
-        unquoted(file).clone_into(&mut map.file);
+        unquote(file).clone_into(&mut map.file);
         (!map.file.is_empty()).then_some(map)
     }
 
     fn apply(&mut self, option: &str, values: &str) {
         let mut words = values.split_whitespace();
         match option.to_ascii_lowercase().as_str() {
-            "-clamp" => self.clamp = values == "on",
+            "-clamp" => self.is_clamped = values == "on",
             // The third number is for solid textures.
-            "-s" => read(&mut self.scale, words),
-            "-o" => read(&mut self.offset, words),
+            "-s" => parse_numbers(&mut self.scale, words),
+            "-o" => parse_numbers(&mut self.offset, words),
             // A gain of 1 over a base of 0, and no turbulence, change nothing.
             "-mm" if values.split_whitespace().map(str::parse).eq([Ok(0.0f32), Ok(1.0)]) => {}
             "-t" if words.all(|w| w.parse() == Ok(0.0f32)) => {}
             "-cc" if values == "off" => {}
-            "-bm" if read_one(values).is_some() => self.gain = read_one(values),
+            "-bm" if parse_number(values).is_some() => self.bump_scale = parse_number(values),
             "-imfchan" if values.len() == 1 && "rgbm".contains(values) => {
                 self.channel = "rgbm".find(values).map(|at| at as u8);
             }
@@ -67,27 +67,27 @@ impl Map {
     }
 }
 
-/// Reads as many numbers as there are.
-fn read<'a>(numbers: &mut [f32], words: impl Iterator<Item = &'a str>) {
+/// Parses as many numbers as there are.
+fn parse_numbers<'a>(numbers: &mut [f32], words: impl Iterator<Item = &'a str>) {
     for (number, word) in numbers.iter_mut().zip(words) {
-        if let Some(value) = word.parse().ok().filter(|x: &f32| x.is_finite()) {
+        if let Some(value) = parse_number(word) {
             *number = value;
         }
     }
 }
 
-fn read_one(text: &str) -> Option<f32> {
+fn parse_number(text: &str) -> Option<f32> {
     text.parse().ok().filter(|x: &f32| x.is_finite())
 }
 
-/// An option at the beginning of a text, and what follows it; a name may start with a dash, too.
-fn option(text: &str) -> Option<(&str, &str)> {
-    let (option, rest) = word(text);
-    lengths(option).map(|_| (option, rest))
+/// Splits off an option at the beginning of a text; a name may start with a dash, too.
+fn split_option(text: &str) -> Option<(&str, &str)> {
+    let (option, rest) = split_word(text);
+    value_counts(option).map(|_| (option, rest))
 }
 
-/// How many values an option takes at least and at most. The vectors may be cut short.
-fn lengths(option: &str) -> Option<(usize, usize)> {
+/// Returns the least and the greatest number of values of an option; vectors may be cut short.
+fn value_counts(option: &str) -> Option<(usize, usize)> {
     Some(match option.to_ascii_lowercase().as_str() {
         "-blendu" | "-blendv" | "-bm" | "-boost" | "-cc" | "-clamp" | "-colorspace"
         | "-imfchan" | "-texres" | "-type" => (1, 1),
@@ -97,13 +97,13 @@ fn lengths(option: &str) -> Option<(usize, usize)> {
     })
 }
 
-/// The values of an option at the beginning of a text, and what follows them.
-fn values<'a>(option: &str, text: &'a str) -> (&'a str, &'a str) {
-    let (least, most) = lengths(option).unwrap_or_default();
+/// Splits off the values of an option at the beginning of a text.
+fn split_values<'a>(option: &str, text: &'a str) -> (&'a str, &'a str) {
+    let (least, most) = value_counts(option).unwrap_or_default();
     let mut rest = text;
     for i in 0..most {
-        let (value, after) = word(rest);
-        // A picture may be called 2: the name is what stands last.
+        let (value, after) = split_word(rest);
+        // An image may be called 2: the name is what stands last.
         if i >= least && (value.parse::<f32>().is_err() || after.is_empty()) {
             break;
         }
@@ -113,8 +113,8 @@ fn values<'a>(option: &str, text: &'a str) -> (&'a str, &'a str) {
     (values.trim(), rest)
 }
 
-/// The first word, and what follows it, without the space between.
-fn word(text: &str) -> (&str, &str) {
+/// Splits off the first word and the space after it.
+fn split_word(text: &str) -> (&str, &str) {
     match text.split_once(char::is_whitespace) {
         Some((word, rest)) => (word, rest.trim_start()),
         None => (text, ""),
@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     fn file(text: &str) -> Option<String> {
-        Map::parse(text).map(|m| m.file)
+        TextureMap::parse(text).map(|m| m.file)
     }
 
     #[test]
@@ -144,23 +144,23 @@ mod tests {
 
     #[test]
     fn values_of_options_are_read() {
-        let map = Map::parse("-clamp on -s 2 -o .5 -1 0 a").unwrap();
-        assert!(map.clamp);
+        let map = TextureMap::parse("-clamp on -s 2 -o .5 -1 0 a").unwrap();
+        assert!(map.is_clamped);
         assert_eq!((map.scale, map.offset), ([2.0, 1.0], [0.5, -1.0]));
-        assert!(!Map::parse("-clamp off a").unwrap().clamp);
+        assert!(!TextureMap::parse("-clamp off a").unwrap().is_clamped);
     }
 
     #[test]
-    fn gain_and_channel_are_read() {
-        let map = Map::parse("-bm 0.3 -imfchan m a").unwrap();
-        assert_eq!((map.gain, map.channel), (Some(0.3), Some(3)));
-        let map = Map::parse("-bm x -imfchan z a").unwrap();
-        assert_eq!((map.gain, map.channel, map.ignored.len()), (None, None, 2));
+    fn bump_scale_and_channel_are_read() {
+        let map = TextureMap::parse("-bm 0.3 -imfchan m a").unwrap();
+        assert_eq!((map.bump_scale, map.channel), (Some(0.3), Some(3)));
+        let map = TextureMap::parse("-bm x -imfchan z a").unwrap();
+        assert_eq!((map.bump_scale, map.channel, map.ignored.len()), (None, None, 2));
     }
 
     #[test]
     fn options_that_would_change_the_picture_are_named() {
-        let ignored = |text: &str| Map::parse(text).unwrap().ignored;
+        let ignored = |text: &str| TextureMap::parse(text).unwrap().ignored;
         assert_eq!(ignored("-mm 0.1 2 -t 1 a.png"), ["-mm 0.1 2", "-t 1"]);
         assert_eq!(ignored("-mm 0 1 -t 0 0 0 -blendu off -texres 64 a.png"), [""; 0]);
     }

@@ -1,4 +1,4 @@
-//! The normals of a smoothing group whose faces bring none.
+//! The vertex normals of a smoothing group whose faces bring none.
 
 use std::f64::consts::PI;
 
@@ -7,24 +7,25 @@ use rayon::prelude::*;
 
 use crate::scene::Mesh;
 
-/// Into how many shares triangles are cut, each with sums of its own: a fixed number, so that sums
-/// are the same on any number of threads.
+/// The number of shares of triangles, each with sums of its own: a fixed number, so that sums are the
+/// same on any number of threads.
 const SHARES: usize = 4;
-/// Triangles whose angles are worked out together.
+/// The number of triangles whose angles are computed together.
 const BLOCK: usize = 32;
-/// Triangles that are worth a share.
-const FEW: usize = 1 << 14;
-/// 2⁶⁴ divided by the golden ratio, odd (D. Knuth, "The Art of Computer Programming", 6.4).
+/// The least number of triangles in a share.
+const MIN_SHARE: usize = 1 << 14;
+/// The multiplier of a hash: 2⁶⁴ divided by the golden ratio, odd (D. Knuth, "The Art of Computer Programming", 6.4).
 const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// At each place the mean of the normals of the triangles that meet there, weighted by their
-/// angles, so that it doesn't matter how polygons were cut (G. Thürmer and C. Wüthrich,
-/// "Computing vertex normals from polygonal facets", 1998), and however many vertices stand there
-/// for the sake of textures.
-pub fn normals(mesh: &Mesh) -> Vec<[f32; 3]> {
-    let places = places(&mesh.positions);
-    let count = places.len();
-    let share = mesh.triangles.len().div_ceil(SHARES).max(FEW);
+/// Returns a normal for each vertex of a mesh: the mean of the normals of the triangles that meet at its
+/// position, weighted by their angles there, so that it doesn't matter how polygons were cut
+/// (G. Thürmer and C. Wüthrich, "Computing vertex normals from polygonal facets", 1998), nor how many
+/// vertices are at one position for the sake of textures.
+pub fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
+    let welded = weld(&mesh.positions);
+    let count = welded.len();
+    let share = mesh.triangles.len().div_ceil(SHARES).max(MIN_SHARE);
+    // The weighted sums of a share of the triangles.
     let sum = |triangles: &[[u32; 3]]| {
         let mut sums = vec![DVec3::ZERO; count];
         for block in triangles.chunks(BLOCK) {
@@ -32,8 +33,8 @@ pub fn normals(mesh: &Mesh) -> Vec<[f32; 3]> {
             let (normals, angles) = normals_and_angles(corners);
             for (k, triangle) in block.iter().enumerate() {
                 for (i, angles) in triangle.iter().zip(&angles) {
-                    let place = places.get(*i as usize);
-                    if let Some(sum) = place.and_then(|&place| sums.get_mut(place as usize)) {
+                    let vertex = welded.get(*i as usize);
+                    if let Some(sum) = vertex.and_then(|&vertex| sums.get_mut(vertex as usize)) {
                         *sum += normals[k] * angles[k];
                     }
                 }
@@ -42,50 +43,54 @@ pub fn normals(mesh: &Mesh) -> Vec<[f32; 3]> {
         sums
     };
     let shares: Vec<Vec<DVec3>> = mesh.triangles.par_chunks(share).map(sum).collect();
-    let normal = |&place: &u32| {
-        let sums = shares.iter().filter_map(|share| share.get(place as usize));
+    // Their directions, the shares always added in the same order.
+    let normal = |&vertex: &u32| {
+        let sums = shares.iter().filter_map(|share| share.get(vertex as usize));
         sums.sum::<DVec3>().normalize_or_zero().as_vec3().to_array()
     };
-    places.par_iter().map(normal).collect()
+    welded.par_iter().map(normal).collect()
 }
 
-/// The place where each vertex stands, by the first vertex that stands there: vertices that are
-/// neighbours in a mesh then have sums that are neighbours in memory.
-fn places(positions: &[[f32; 3]]) -> Vec<u32> {
+/// Returns for each vertex the first one at the same position: vertices that are neighbours in a mesh
+/// then have sums that are neighbours in memory.
+fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
     // Zero has two signs.
     let bits = |vertex: u32| positions[vertex as usize].map(|x| (x + 0.0).to_bits());
-    let key = |vertex: u32| u64::from(digest(bits(vertex))) << 32 | u64::from(vertex);
+    let key = |vertex: u32| u64::from(hash(bits(vertex))) << 32 | u64::from(vertex);
+    // Vertices sorted by the hashes of their positions.
     let vertices = 0..positions.len() as u32;
     let mut sorted: Vec<u64> = vertices.clone().into_par_iter().map(key).collect();
     sorted.par_sort_unstable();
-    let mut places: Vec<u32> = vertices.collect();
+    // Among those with the same hash, groups at the same position.
+    let mut welded: Vec<u32> = vertices.collect();
     let mut group = Vec::new();
     for alike in sorted.chunk_by(|a, b| a >> 32 == b >> 32).filter(|alike| alike.len() > 1) {
         group.clear();
         group.extend(alike.iter().map(|&key| key as u32));
         group.sort_by_key(|&vertex| bits(vertex));
         for same in group.chunk_by(|&a, &b| bits(a) == bits(b)) {
-            same.iter().for_each(|&vertex| places[vertex as usize] = same[0]);
+            same.iter().for_each(|&vertex| welded[vertex as usize] = same[0]);
         }
     }
-    places
+    welded
 }
 
-/// A number that different positions rarely share: the product with an odd constant carries each
-/// bit of a sum up into the upper half.
-fn digest(position: [u32; 3]) -> u32 {
+/// Returns the hash of a position: the product with an odd constant carries each bit of a sum up into
+/// the upper half.
+fn hash(position: [u32; 3]) -> u32 {
     let mix = |sum: u64, x: u32| (sum ^ u64::from(x)).wrapping_mul(MIX).rotate_left(32);
     position.into_iter().fold(0, mix) as u32
 }
 
-/// The unit normals of up to [`BLOCK`] triangles, 0 where there is none, and their angles at each
-/// corner: roots and angles of several at a time.
+/// Computes the unit normals of up to [`BLOCK`] triangles, 0 where there is none, and their angles at
+/// each corner: roots and angles of several at a time.
 fn normals_and_angles(
     triangles: impl Iterator<Item = [DVec3; 3]>,
 ) -> ([DVec3; BLOCK], [[f64; BLOCK]; 3]) {
     let mut normals = [DVec3::ZERO; BLOCK];
     let mut angles = [[0.0; BLOCK]; 3];
     let mut squares = [[0.0; BLOCK]; 2];
+    // Cosines of two angles, as a product and the square of the lengths to divide it by.
     for (k, [a, b, c]) in triangles.take(BLOCK).enumerate() {
         let [ab, bc, ca] = [b - a, c - b, a - c];
         normals[k] = ca.cross(ab).normalize_or_zero();
@@ -101,13 +106,14 @@ fn normals_and_angles(
             *angle = arc_cosine(if cosine > -1.0 { cosine.min(1.0) } else { -1.0 });
         }
     }
+    // The third angle is what the others leave of 180°.
     for ((at_a, at_b), at_c) in at_a.iter().zip(at_b.iter()).zip(at_c) {
         *at_c = PI - at_a - at_b;
     }
     (normals, angles)
 }
 
-/// The arc cosine of −1 to 1 to within 2.2·10⁻⁸, several at a time (M. Abramowitz and I. Stegun,
+/// Returns the arc cosine of a number from −1 to 1, to within 2.2·10⁻⁸, several at a time (M. Abramowitz and I. Stegun,
 /// "Handbook of Mathematical Functions", 4.4.46).
 fn arc_cosine(x: f64) -> f64 {
     const A: [f64; 8] = [
@@ -158,15 +164,15 @@ mod tests {
     }
 
     #[test]
-    fn vertices_at_one_place_share_it() {
-        let places = places(&[[0.0; 3], [1.0; 3], [-0.0, 0.0, -0.0], [1.0; 3], [2.0; 3]]);
-        assert_eq!(places, [0, 1, 0, 1, 4]);
+    fn vertices_at_one_position_are_welded() {
+        let welded = weld(&[[0.0; 3], [1.0; 3], [-0.0, 0.0, -0.0], [1.0; 3], [2.0; 3]]);
+        assert_eq!(welded, [0, 1, 0, 1, 4]);
     }
 
     #[test]
-    fn positions_with_the_same_digest_are_different_places() {
+    fn different_positions_with_the_same_hash_are_not_welded() {
         let [a, b] = [[14.0, 108.0, 390.0], [350.0, 388.0, 502.0]];
-        assert_eq!(digest(a.map(f32::to_bits)), digest(b.map(f32::to_bits)));
-        assert_eq!(places(&[a, b, a, b, [0.0; 3]]), [0, 1, 0, 1, 4]);
+        assert_eq!(hash(a.map(f32::to_bits)), hash(b.map(f32::to_bits)));
+        assert_eq!(weld(&[a, b, a, b, [0.0; 3]]), [0, 1, 0, 1, 4]);
     }
 }

@@ -1,14 +1,14 @@
-//! Polygons into triangles.
+//! The triangulation of polygons.
 
 use glam::DVec3;
 
-/// Corners of a polygon up to which ears are cut, which takes time with the square of them.
+/// The most corners of a polygon whose ears are cut, which takes time with the square of them.
 const MAX_EARS: usize = 20_000;
 
-/// Corners up to which cutting ears never takes long, whatever the polygon.
+/// The number of corners up to which cutting ears never takes long, whatever the polygon.
 const FEW: usize = 100;
 
-/// The triangles of a polygon, as indices of its corners, wound as it is.
+/// Returns the triangles of a polygon, as indices of its corners, wound as it is.
 ///
 /// A convex polygon becomes a fan around its first corner, as everywhere; a concave one has its
 /// ears cut, as seen along the axis nearest to its normal. A polygon that crosses itself there,
@@ -19,18 +19,20 @@ pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
     if corners.len() <= 3 || corners.len() > MAX_EARS || !finite {
         return fan();
     }
-    let flat = flatten(corners);
+    // A fan is right for a convex polygon, and one of two for a quadrilateral.
+    let flat = project(corners);
     if is_convex(&flat) {
         return fan();
     }
     if let [a, b, c, d] = flat[..] {
         // The other diagonal is all that is left to try.
-        let turned = cross(b, c, d) >= 0.0 && cross(b, d, a) >= 0.0;
-        return if turned { vec![[1, 2, 3], [1, 3, 0]] } else { fan() };
+        let fits = cross(b, c, d) >= 0.0 && cross(b, d, a) >= 0.0;
+        return if fits { vec![[1, 2, 3], [1, 3, 0]] } else { fan() };
     }
     if flat.len() > FEW && is_tangled(&flat) {
         return fan();
     }
+    // The ears, all wound as the polygon.
     let point = |i: usize| flat.get(i).copied().unwrap_or_default();
     let twice_area = |t: &[usize; 3]| cross(point(t[0]), point(t[1]), point(t[2]));
     let coordinates: Vec<f64> = flat.iter().flatten().copied().collect();
@@ -39,22 +41,23 @@ pub fn triangulate(corners: &[DVec3]) -> Vec<[usize; 3]> {
     for ear in ears.iter_mut().filter(|ear| twice_area(ear) < 0.0) {
         ear.swap(1, 2);
     }
+    // They are right if they cover as much as the polygon.
     let fan: Vec<[usize; 3]> = fan();
     let whole: f64 = fan.iter().map(twice_area).sum();
     let cut: f64 = ears.iter().map(twice_area).sum();
     if (cut - whole).abs() <= 1e-9 * whole { ears.to_vec() } else { fan }
 }
 
-/// The polygon as seen along the axis that its normal is nearest to, turned so that it winds
+/// Projects a polygon along the axis that its normal is nearest to, so that it winds
 /// counter-clockwise.
-fn flatten(corners: &[DVec3]) -> Vec<[f64; 2]> {
+fn project(corners: &[DVec3]) -> Vec<[f64; 2]> {
     let next = corners.iter().cycle().skip(1);
     let origin = corners.first().copied().unwrap_or_default();
     // Newell's normal: twice the area of the polygon's shadow along each axis.
     let normal: DVec3 =
         corners.iter().zip(next).map(|(&a, &b)| (a - origin).cross(b - origin)).sum();
     let size = normal.abs();
-    let project = |p: &DVec3| {
+    let project_corner = |p: &DVec3| {
         let p = *p - origin;
         if size.z >= size.x && size.z >= size.y {
             [p.x * normal.z.signum(), p.y]
@@ -64,18 +67,18 @@ fn flatten(corners: &[DVec3]) -> Vec<[f64; 2]> {
             [p.y * normal.x.signum(), p.z]
         }
     };
-    corners.iter().map(project).collect()
+    corners.iter().map(project_corner).collect()
 }
 
-/// Whether a polygon that winds counter-clockwise turns left at every corner, and around once.
+/// True if a polygon that winds counter-clockwise turns left at every corner, and around once.
 fn is_convex(flat: &[[f64; 2]]) -> bool {
-    let at = |i: usize| flat.get(i % flat.len()).copied().unwrap_or_default();
-    let turns_left = (0..flat.len()).all(|i| cross(at(i), at(i + 1), at(i + 2)) >= 0.0);
+    let corner = |i: usize| flat.get(i % flat.len()).copied().unwrap_or_default();
+    let turns_left = (0..flat.len()).all(|i| cross(corner(i), corner(i + 1), corner(i + 2)) >= 0.0);
     // A pentagram turns left everywhere too: it is told by the fan's triangles.
-    turns_left && (2..flat.len()).all(|i| cross(at(0), at(i - 1), at(i)) >= 0.0)
+    turns_left && (2..flat.len()).all(|i| cross(corner(0), corner(i - 1), corner(i)) >= 0.0)
 }
 
-/// Whether a polygon crosses itself, or comes back to its corners again and again. Ears have no
+/// True if a polygon crosses itself, or comes back to its corners again and again. Ears have no
 /// right answer then, and looking for one takes time with the cube of the corners.
 fn is_tangled(flat: &[[f64; 2]]) -> bool {
     let mut distinct: Vec<[u64; 2]> = flat.iter().map(|p| p.map(|x| (x + 0.0).to_bits())).collect();
@@ -84,19 +87,20 @@ fn is_tangled(flat: &[[f64; 2]]) -> bool {
     if distinct.len() < flat.len() / 2 {
         return true;
     }
+    // Edges in the order of their left ends: only those that overlap can cross.
     let mut edges: Vec<_> =
         flat.iter().copied().zip(flat.iter().copied().cycle().skip(1)).collect();
     let left = |edge: &([f64; 2], [f64; 2])| edge.0[0].min(edge.1[0]);
     edges.sort_unstable_by(|e, f| left(e).total_cmp(&left(f)));
     edges.iter().enumerate().any(|(i, &(a, b))| {
-        let within = |edge: &&([f64; 2], [f64; 2])| left(edge) <= a[0].max(b[0]);
-        edges.iter().skip(i + 1).take_while(within).any(|&(c, d)| {
+        let overlaps = |edge: &&([f64; 2], [f64; 2])| left(edge) <= a[0].max(b[0]);
+        edges.iter().skip(i + 1).take_while(overlaps).any(|&(c, d)| {
             cross(a, b, c) * cross(a, b, d) < 0.0 && cross(c, d, a) * cross(c, d, b) < 0.0
         })
     })
 }
 
-/// Twice the signed area of a triangle.
+/// Returns twice the signed area of a triangle.
 fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
