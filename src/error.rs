@@ -17,9 +17,9 @@ pub enum ErrorKind {
 #[non_exhaustive]
 pub enum Remedy {
     /// Reading files outside the folder of the one that was named, by
-    /// `load::Options::allow_outside`.
+    /// `load::LoadOptions::allow_outside`.
     AllowOutside,
-    /// Raising a limit, by `load::Options::limits`.
+    /// Raising a limit, by `load::LoadOptions::limits`.
     RaiseLimit {
         /// The limit's name, as `load::Limit::name` gives it.
         name: &'static str,

@@ -45,7 +45,7 @@ pub struct ModelInstance {
 impl MergedModel {
     /// Merges what a model is made of into a scene; nothing of it is seen before it has an instance.
     ///
-    /// The model's film and warnings are dropped.
+    /// The model's film is dropped.
     pub fn merge(scene: &mut Scene, mut model: Scene) -> Self {
         if scene.animation.is_none() {
             // What is flat as the file places it would be there at another time only.
@@ -85,8 +85,14 @@ impl MergedModel {
     }
 
     /// Adds an instance of the model to the scene that it was merged into. The model's own animation
-    /// is played where the scene has one.
-    pub fn instantiate(&self, scene: &mut Scene, instance: &ModelInstance) {
+    /// is played where the scene has one. `warnings` gets a sentence for all that cannot be as the model
+    /// has it.
+    pub fn instantiate(
+        &self,
+        scene: &mut Scene,
+        instance: &ModelInstance,
+        warnings: &mut Vec<String>,
+    ) {
         let transform = &instance.transform;
         let mut indices = SceneIndices {
             first_instance: scene.instances.len(),
@@ -94,8 +100,8 @@ impl MergedModel {
             first_light: scene.lights.len(),
             cameras: Vec::with_capacity(self.cameras.len()),
         };
-        self.add_spheres(scene, instance);
-        self.add_planes(scene, instance);
+        self.add_spheres(scene, instance, warnings);
+        self.add_planes(scene, instance, warnings);
         scene.instances.extend(self.instances.iter().map(|own| Instance {
             transform: *transform * own.transform,
             material: instance.material.unwrap_or(own.material),
@@ -109,7 +115,7 @@ impl MergedModel {
             let placed = camera.placed(transform);
             indices.cameras.push(placed.is_some().then_some(scene.cameras.len()));
             if placed.is_none() {
-                scene.warnings.push(format!(
+                warnings.push(format!(
                     "the model's camera `{}` is left out: its scale leaves it no upward direction",
                     camera.name
                 ));
@@ -123,14 +129,14 @@ impl MergedModel {
 
     /// Adds the spheres of an instance. They stay spheres: where they are scaled unevenly they get
     /// the mean scale, with a warning.
-    fn add_spheres(&self, scene: &mut Scene, instance: &ModelInstance) {
+    fn add_spheres(&self, scene: &mut Scene, instance: &ModelInstance, warnings: &mut Vec<String>) {
         let transform = &instance.transform;
         let axes = [0, 1, 2].map(|i| transform.matrix3.col(i).length());
         let mean = transform.matrix3.determinant().abs().cbrt();
         let is_uneven = axes.iter().any(|axis| (axis - mean).abs() > 1e-6 * mean);
         if is_uneven && !self.spheres.is_empty() {
             let count = self.spheres.len();
-            scene.warnings.push(format!(
+            warnings.push(format!(
                 "{count} spheres of a model that is scaled unevenly stay spheres, of its mean scale"
             ));
         }
@@ -143,10 +149,10 @@ impl MergedModel {
     }
 
     /// Adds the planes of an instance, which do not move with it.
-    fn add_planes(&self, scene: &mut Scene, instance: &ModelInstance) {
+    fn add_planes(&self, scene: &mut Scene, instance: &ModelInstance, warnings: &mut Vec<String>) {
         let transform = &instance.transform;
         if instance.node.is_some() && !self.planes.is_empty() {
-            scene.warnings.push("planes of a model that moves stand still".to_owned());
+            warnings.push("planes of a model that moves stand still".to_owned());
         }
         let cofactors = transform.matrix3.inverse().transpose();
         scene.planes.extend(self.planes.iter().map(|plane| Plane {
@@ -238,7 +244,7 @@ mod tests {
     fn indices_are_moved_past_what_the_scene_has() {
         let mut scene = model();
         let merged = MergedModel::merge(&mut scene, model());
-        merged.instantiate(&mut scene, &instance(DAffine3::IDENTITY));
+        merged.instantiate(&mut scene, &instance(DAffine3::IDENTITY), &mut Vec::new());
         let second = &scene.instances[1];
         assert_eq!((second.mesh, second.material), (MeshId(1), MaterialId(1)));
         assert_eq!(scene.materials[1].diffuse_map, Some(TextureId(1)));
@@ -249,8 +255,8 @@ mod tests {
     fn two_instances_share_one_mesh() {
         let mut scene = Scene::default();
         let merged = MergedModel::merge(&mut scene, model());
-        merged.instantiate(&mut scene, &instance(DAffine3::IDENTITY));
-        merged.instantiate(&mut scene, &instance(turned()));
+        merged.instantiate(&mut scene, &instance(DAffine3::IDENTITY), &mut Vec::new());
+        merged.instantiate(&mut scene, &instance(turned()), &mut Vec::new());
         assert_eq!((scene.meshes.len(), scene.materials.len(), scene.textures.len()), (1, 1, 1));
         assert_eq!((scene.instances.len(), scene.lights.len(), scene.cameras.len()), (2, 2, 2));
         scene.check().unwrap();
@@ -266,7 +272,11 @@ mod tests {
     #[test]
     fn the_instances_transform_comes_after_the_models_own() {
         let mut scene = Scene::default();
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &instance(turned()));
+        MergedModel::merge(&mut scene, model()).instantiate(
+            &mut scene,
+            &instance(turned()),
+            &mut Vec::new(),
+        );
         // (1, 0, 0) by the model, then turned to y, doubled and moved.
         assert_eq!(scene.instances[0].to_world([0.0; 3]), DVec3::new(10.0, 2.0, 0.0));
     }
@@ -274,7 +284,11 @@ mod tests {
     #[test]
     fn a_light_moves_and_turns_and_keeps_its_strength() {
         let mut scene = Scene::default();
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &instance(turned()));
+        MergedModel::merge(&mut scene, model()).instantiate(
+            &mut scene,
+            &instance(turned()),
+            &mut Vec::new(),
+        );
         let light = &scene.lights[0];
         let LightKind::Spot { position, direction, range, .. } = light.kind else {
             panic!("a spot");
@@ -287,7 +301,7 @@ mod tests {
     fn lights_can_be_left_out() {
         let mut scene = Scene::default();
         let dark = ModelInstance { has_lights: false, ..instance(DAffine3::IDENTITY) };
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &dark);
+        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &dark, &mut Vec::new());
         assert!(scene.lights.is_empty());
     }
 
@@ -296,7 +310,7 @@ mod tests {
         let mut scene = Scene::default();
         let gold = scene.add_material(Material::default());
         let golden = ModelInstance { material: Some(gold), ..instance(DAffine3::IDENTITY) };
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &golden);
+        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &golden, &mut Vec::new());
         assert_eq!(scene.instances[0].material, gold);
     }
 
@@ -306,7 +320,11 @@ mod tests {
             let (mut scene, mut model) = (Scene::default(), model());
             model.instances[0].casts_shadow = model_casts;
             let instance = ModelInstance { casts_shadow, ..instance(DAffine3::IDENTITY) };
-            MergedModel::merge(&mut scene, model).instantiate(&mut scene, &instance);
+            MergedModel::merge(&mut scene, model).instantiate(
+                &mut scene,
+                &instance,
+                &mut Vec::new(),
+            );
             scene.instances[0].casts_shadow
         };
         let all = [casts(true, true), casts(true, false), casts(false, true)];
@@ -316,7 +334,11 @@ mod tests {
     #[test]
     fn a_camera_goes_with_its_model_and_sees_as_much_of_it() {
         let mut scene = Scene::default();
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &instance(turned()));
+        MergedModel::merge(&mut scene, model()).instantiate(
+            &mut scene,
+            &instance(turned()),
+            &mut Vec::new(),
+        );
         let camera = &scene.cameras[0];
         assert_eq!(camera.position, DVec3::new(10.0, 0.0, 2.0));
         assert_eq!((camera.forward, camera.up), (-DVec3::Z, -DVec3::X));
@@ -327,7 +349,11 @@ mod tests {
     fn a_camera_in_a_mirrored_model_is_no_mirror() {
         let mut scene = Scene::default();
         let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        MergedModel::merge(&mut scene, model()).instantiate(&mut scene, &instance(mirror));
+        MergedModel::merge(&mut scene, model()).instantiate(
+            &mut scene,
+            &instance(mirror),
+            &mut Vec::new(),
+        );
         let camera = &scene.cameras[0];
         assert_eq!(camera.right.cross(camera.forward), camera.up);
         scene.check().unwrap();
@@ -339,7 +365,12 @@ mod tests {
         let tilted = Camera::look_at(DVec3::Z, DVec3::Y, DVec3::Y, Projection::FovY(1.0)).unwrap();
         model.cameras = vec![tilted];
         let flat = DAffine3::from_scale(DVec3::new(1.0, 1e-12, 1.0));
-        MergedModel::merge(&mut scene, model).instantiate(&mut scene, &instance(flat));
-        assert_eq!((scene.cameras.len(), scene.warnings.len()), (0, 1));
+        let mut warnings = Vec::new();
+        MergedModel::merge(&mut scene, model).instantiate(
+            &mut scene,
+            &instance(flat),
+            &mut warnings,
+        );
+        assert_eq!((scene.cameras.len(), warnings.len()), (0, 1));
     }
 }

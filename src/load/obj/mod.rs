@@ -42,24 +42,26 @@ use glam::{DAffine3, DVec3};
 use self::material_library::MaterialLibrary;
 use self::state::FaceGroup;
 use crate::error::{Error, Result};
+use crate::load::Loaded;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::mesh_repair::repair;
+use crate::load::report::DropReason;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
+use crate::scene::{Instance, Mesh, Scene, Transfer};
 
 /// Loads an `.obj` file; its images are read if they are `wanted`.
 ///
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, wanted: bool) -> Result<Scene> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, wanted: bool) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(sandbox)?;
     import(&path, &bytes, sandbox, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, wanted: bool) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, wanted: bool) -> Result<Loaded> {
     let mut diagnostics = Diagnostics::default();
     // Vertices and faces, by tobj.
     let text = lexer::decode_text(bytes)?;
@@ -92,8 +94,8 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, wanted: bool) -> Result<
     if scene.instances.is_empty() {
         diagnostics.say("there is no face in the file");
     }
-    diagnostics.finish(path, &mut scene);
-    Ok(scene)
+    let report = diagnostics.finish(path, &scene);
+    Ok(Loaded { scene, report })
 }
 
 /// Returns the value of a full vertex colour: 1, or 255 where a value is above 1.

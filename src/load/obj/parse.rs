@@ -10,7 +10,7 @@ use super::state::{FaceGroup, FaceSettings, State, VertexCounts};
 use super::vertex_data::{self, scan_numbers};
 use crate::error::{self, Result};
 use crate::load::diagnostics::Diagnostics;
-use crate::scene::DropReason;
+use crate::load::report::DropReason;
 
 /// A chunk whose lines are sorted.
 #[derive(Debug, Default)]

@@ -1,4 +1,4 @@
-//! The importer of scene files: TOML in, a [`Scene`] out.
+//! The importer of scene files: TOML in, a [`Scene`](crate::scene::Scene) out.
 //!
 //! 1. `schema` holds the tables and values that may be written, and gives the JSON Schema of them.
 //! 2. serde reads the text into these tables; `errors` rewords its errors.
@@ -11,9 +11,8 @@ mod schema;
 mod source;
 
 use crate::error::{Error, Place, Result};
-use crate::load::Options;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::scene::Scene;
+use crate::load::{LoadOptions, Loaded};
 
 pub use schema::json_schema::schema;
 
@@ -22,7 +21,7 @@ pub use schema::json_schema::schema;
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &Options) -> Result<Scene> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Result<Loaded> {
     let path = &file.path.clone();
     let bytes = file.read(sandbox)?;
     let text = decode_utf8(&bytes).map_err(|e| e.at(path))?;

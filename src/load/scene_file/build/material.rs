@@ -1,7 +1,5 @@
 //! The materials.
 
-use glam::Vec3;
-
 use super::SceneBuilder;
 use super::textures::Sampling;
 use crate::error::Result;
@@ -86,7 +84,7 @@ impl SceneBuilder<'_> {
             // To find a line takes as long as there are lines before it.
             if self.too_bright <= MAX_WARNINGS {
                 let name = &material.name;
-                self.scene.warnings.push(format!(
+                self.report.warnings.push(format!(
                     "{}: the material `{name}` scatters more light than it gets (numbers in \
                      `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
                     self.source.location(span)
@@ -172,7 +170,7 @@ impl SceneBuilder<'_> {
         if let more @ 1.. = self.too_bright.saturating_sub(MAX_WARNINGS) {
             let file = self.source.location(&(0..0));
             let warning = format!("{file}: {more} more materials scatter more than they get");
-            self.scene.warnings.push(warning);
+            self.report.warnings.push(warning);
         }
     }
 }

@@ -24,9 +24,9 @@ use super::schema::spanned::At;
 use super::schema::tables::SceneTable;
 use super::source::{Source, Span};
 use crate::error::Result;
-use crate::load::Options;
 use crate::load::merge::MergedModel;
 use crate::load::sandbox::Sandbox;
+use crate::load::{LoadOptions, LoadReport, Loaded};
 use crate::scene::animation::Animated;
 use crate::scene::{MaterialId, Scene};
 
@@ -38,8 +38,8 @@ pub fn build_scene(
     source: &Source<'_>,
     tables: &SceneTable,
     sandbox: &Sandbox,
-    options: &Options,
-) -> Result<Scene> {
+    options: &LoadOptions,
+) -> Result<Loaded> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -58,6 +58,7 @@ pub fn build_scene(
         variant: options.variant.as_deref(),
         motions,
         scene: Scene { film, animation, ..Scene::default() },
+        report: LoadReport::default(),
         materials: HashMap::new(),
         default_material: None,
         textures: Textures::default(),
@@ -73,9 +74,9 @@ pub fn build_scene(
     tables.light.0.iter().try_for_each(|l| builder.add_light(&l.value.0))?;
     tables.model.0.iter().try_for_each(|m| builder.add_model(&m.value.0))?;
     builder.warn_of_bright_materials();
-    let SceneBuilder { mut scene, textures, .. } = builder;
+    let SceneBuilder { mut scene, report, textures, .. } = builder;
     textures::decode_images(textures, source, sandbox, &mut scene)?;
-    Ok(scene)
+    Ok(Loaded { scene, report })
 }
 
 /// A scene while it is built.
@@ -89,6 +90,8 @@ struct SceneBuilder<'a> {
     motions: ObjectMotions,
     /// The scene so far.
     scene: Scene,
+    /// The load report so far.
+    report: LoadReport,
     /// The file's own materials by name, each with the place of its name.
     materials: HashMap<String, (MaterialId, Span)>,
     /// The material of objects that name none, once there is such an object.

@@ -11,7 +11,7 @@ use crate::load::merge::{MergedModel, ModelInstance};
 use crate::load::sandbox::OpenedFile;
 use crate::load::scene_file::schema::spanned::At;
 use crate::load::scene_file::schema::tables::ModelTable;
-use crate::load::{self, Choice};
+use crate::load::{self, Choice, Loaded};
 use crate::scene::check::MAX_COORDINATE;
 
 /// The key by which a model is loaded once, however often a scene file names it.
@@ -57,7 +57,7 @@ impl SceneBuilder<'_> {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             has_lights: table.lights.unwrap_or(true),
         };
-        model.instantiate(&mut self.scene, &instance);
+        model.instantiate(&mut self.scene, &instance, &mut self.report.warnings);
         Ok(())
     }
 
@@ -79,15 +79,14 @@ impl SceneBuilder<'_> {
             variant: key.variant.as_deref(),
             pictures: self.image_use.uses_materials_of_model(&path),
         };
-        let mut model = load::model(file, self.sandbox, &choice)?;
+        let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &choice)?;
         if let Some(At { span, value }) = &table.variant {
-            load::check_variant(value, &model.report).map_err(|e| self.source.locate(span, e))?;
+            load::check_variant(value, &report).map_err(|e| self.source.locate(span, e))?;
         }
         // Each of the warnings names the model already.
-        self.scene.warnings.append(&mut model.warnings);
-        self.scene.report.add(std::mem::take(&mut model.report));
+        self.report.add(report);
         if self.scene.animation.is_none() && model.animation.take().is_some() {
-            self.scene.warnings.push(format!(
+            self.report.warnings.push(format!(
                 "{}: its animation is not played: the scene has no [animation]",
                 path.display()
             ));

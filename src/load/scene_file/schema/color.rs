@@ -1,4 +1,4 @@
-//! Colours as a scene file writes them.
+//! The colours of a scene file.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,12 +11,12 @@ use serde::{Deserialize, Deserializer};
 use super::values::{Amount, elements, list, value_schema};
 use crate::scene::Transfer;
 
-/// A colour, before the film's transfer is known.
+/// A colour as it is written, before the film's transfer curve is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Color {
-    /// The pixel value that it gives in the PNG.
+    /// The value of its pixels in the PNG.
     Pixel([u8; 3]),
-    /// Linear Rec. 709.
+    /// The linear colour, in Rec. 709.
     Linear(Vec3),
 }
 
@@ -27,8 +27,8 @@ impl Default for Color {
 }
 
 impl Color {
-    /// The linear colour; `transfer` is how the PNG encodes it.
-    pub fn linear(self, transfer: Transfer) -> Vec3 {
+    /// Returns the linear colour; `transfer` is the curve by which the PNG encodes light.
+    pub fn to_linear(self, transfer: Transfer) -> Vec3 {
         match self {
             Color::Linear(rgb) => rgb,
             Color::Pixel(rgb) => {
@@ -54,7 +54,9 @@ impl<'de> Visitor<'de> for ColorVisitor {
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
-        hex(text).map(Color::Pixel).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+        parse_hex(text)
+            .map(Color::Pixel)
+            .ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
     }
 
     fn visit_f64<E: Error>(self, grey: f64) -> Result<Color, E> {
@@ -83,7 +85,7 @@ value_schema!(Color, {
     ],
 });
 
-/// Two colours.
+/// A pair of colours.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair(pub [Color; 2]);
 
@@ -106,8 +108,8 @@ impl JsonSchema for Pair {
     }
 }
 
-/// The bytes of `#rgb` or `#rrggbb`.
-fn hex(text: &str) -> Option<[u8; 3]> {
+/// Parses the bytes of `#rgb` or `#rrggbb`.
+fn parse_hex(text: &str) -> Option<[u8; 3]> {
     let digits: Vec<u8> = text
         .strip_prefix('#')?
         .chars()
@@ -126,14 +128,14 @@ mod tests {
 
     #[test]
     fn hex_of_three_digits_doubles_each() {
-        assert_eq!(hex("#1aF"), Some([0x11, 0xaa, 0xff]));
+        assert_eq!(parse_hex("#1aF"), Some([0x11, 0xaa, 0xff]));
     }
 
     #[test]
-    fn hex_refuses_what_is_none() {
+    fn malformed_hex_colors_are_refused() {
         for text in ["", "#", "123456", "#12", "#1234", "#12345g", "#1234567", "#é12345", "#+1+2+3"]
         {
-            assert_eq!(hex(text), None, "{text}");
+            assert_eq!(parse_hex(text), None, "{text}");
         }
     }
 }

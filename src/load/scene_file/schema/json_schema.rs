@@ -6,18 +6,19 @@ use schemars::transform::transform_subschemas;
 
 use super::tables::SceneTable;
 
-/// The JSON Schema (draft 7) of the scene file.
+/// Returns the JSON Schema (draft 7) of the scene file.
 pub fn schema() -> Schema {
     SchemaSettings::draft07()
         // Editors show a key's comment and default only where they stand beside its type.
         .with(|settings| settings.inline_subschemas = true)
-        .with_transform(without_null)
+        .with_transform(remove_null)
         .into_generator()
         .into_root_schema_for::<SceneTable>()
 }
 
-/// TOML has no null: a key that may be left out is an `Option` in the types, and no more than that.
-fn without_null(schema: &mut Schema) {
+/// Removes null from a schema: keys that may be left out are an `Option` in the types, but TOML has no
+/// null.
+fn remove_null(schema: &mut Schema) {
     if let Some(types) = schema.get_mut("type").and_then(|t| t.as_array_mut()) {
         types.retain(|t| t != "null");
         if let [only] = &types[..] {
@@ -40,5 +41,5 @@ fn without_null(schema: &mut Schema) {
             }
         }
     }
-    transform_subschemas(&mut without_null, schema);
+    transform_subschemas(&mut remove_null, schema);
 }

@@ -1,4 +1,4 @@
-//! Wrappers that remember where in the text a value stood, and what shape it must have.
+//! The wrappers of values that keep their place in the text, and check their shape.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -14,7 +14,7 @@ use crate::load::scene_file::source::Span;
 /// A value and its place in the text; a table that has a header is at its header.
 #[derive(Clone, Debug)]
 pub struct At<T> {
-    /// Where it stands.
+    /// The place.
     pub span: Span,
     /// The value.
     pub value: T,
@@ -27,7 +27,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
     }
 }
 
-/// A table, and nothing else: serde alone would also take a list of its values in order.
+/// A table that must be written as one: serde alone would also take a list of its values in order.
 #[derive(Clone, Debug, Default)]
 pub struct Table<T>(pub T);
 
@@ -47,7 +47,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
     }
 }
 
-/// Tables under headers in double brackets, such as `[[sphere]]`.
+/// A list of tables under headers in double brackets, such as `[[sphere]]`.
 #[derive(Debug)]
 pub struct Tables<T>(pub Vec<At<Table<T>>>);
 
@@ -66,14 +66,14 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Tables<T> {
                 f.write_str("a list of tables")
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Tables<T>, A::Error> {
-                elements(seq).map(Tables)
+                read_elements(seq).map(Tables)
             }
         }
         deserializer.deserialize_seq(TablesVisitor(PhantomData))
     }
 }
 
-/// One table, such as `[camera]`, or several under double brackets.
+/// A table, such as `[camera]`, or several under double brackets.
 #[derive(Debug)]
 pub struct OneOrMore<T>(pub Vec<At<Table<T>>>);
 
@@ -96,7 +96,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
                 Ok(vec![At { span: 0..0, value: table }])
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
-                elements(seq)
+                read_elements(seq)
             }
         }
         struct Tables<T>(Vec<At<Table<T>>>);
@@ -114,7 +114,9 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
     }
 }
 
-fn elements<'de, T: Deserialize<'de>, A: SeqAccess<'de>>(mut seq: A) -> Result<Vec<T>, A::Error> {
+fn read_elements<'de, T: Deserialize<'de>, A: SeqAccess<'de>>(
+    mut seq: A,
+) -> Result<Vec<T>, A::Error> {
     let mut tables = Vec::with_capacity(seq.size_hint().unwrap_or(0));
     while let Some(table) = seq.next_element()? {
         tables.push(table);
@@ -122,7 +124,7 @@ fn elements<'de, T: Deserialize<'de>, A: SeqAccess<'de>>(mut seq: A) -> Result<V
     Ok(tables)
 }
 
-/// Where a value stands is no matter of the schema, and a table is what serde takes it for.
+/// Implements the schema of wrappers that change nothing of it.
 macro_rules! transparent_schema {
     ($($name:ident)*) => {$(
         impl<T: JsonSchema> JsonSchema for $name<T> {

@@ -1,4 +1,4 @@
-//! Values that are whole numbers, and those that are words.
+//! The values that are whole numbers, and the kinds of shadow.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -12,7 +12,7 @@ use crate::scene::Shadow;
 use crate::scene::animation::MAX_FRAMES;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 
-/// A kind of whole number: what to call it in a message, which numbers it holds, and its schema.
+/// Defines a type of whole number: its name in messages, the numbers that it holds, and its schema.
 macro_rules! whole {
     ($(#[$doc:meta])* $name:ident($of:ty), $expected:literal, $range:expr, $schema:tt) => {
         $(#[$doc])*
@@ -21,8 +21,8 @@ macro_rules! whole {
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let holds = |x| <$of>::try_from(x).ok().filter(|x| ($range).contains(x));
-                deserializer.deserialize_i64(WholeVisitor { expected: $expected, holds }).map(Self)
+                let convert = |x| <$of>::try_from(x).ok().filter(|x| ($range).contains(x));
+                deserializer.deserialize_i64(WholeVisitor { expected: $expected, convert }).map(Self)
             }
         }
 
@@ -31,30 +31,30 @@ macro_rules! whole {
 }
 
 whole!(
-    /// Pixels along a side of the picture; how many a picture can have is checked of both sides.
+    /// A number of pixels along a side of the image; the number in all is checked elsewhere.
     Whole(u32), "a whole number from 1 to 4294967295", 0..=u32::MAX,
     { "type": "integer", "minimum": 1, "maximum": 4_294_967_295_u32 });
 whole!(
-    /// Samples per pixel.
+    /// A number of samples per pixel.
     Samples(u32), "a whole number from 1 to 65536", 1..=MAX_SPP,
     { "type": "integer", "minimum": 1, "maximum": 65536 });
 whole!(
-    /// How many frames there are.
+    /// A number of frames.
     FrameCount(u32), "a whole number from 1 to 1000000", 1..=MAX_FRAMES,
     { "type": "integer", "minimum": 1, "maximum": 1_000_000 });
 whole!(
-    /// How many times light is followed from a surface.
+    /// A number of times that light is followed from a surface.
     Depth(u32), "a whole number from 0 to 65536", 0..=MAX_DEPTH,
     { "type": "integer", "minimum": 0, "maximum": 65536 });
 whole!(
-    /// What goes before what: the greater.
+    /// A priority among transparent bodies: the greatest one counts.
     Priority(i32), "a whole number from -2147483648 to 2147483647", i32::MIN..=i32::MAX,
     { "type": "integer", "minimum": -2_147_483_648_i32, "maximum": 2_147_483_647 });
 
 struct WholeVisitor<T> {
     expected: &'static str,
-    /// The number, if it is one of the kind.
-    holds: fn(i64) -> Option<T>,
+    /// Returns the number, if it is one of the kind.
+    convert: fn(i64) -> Option<T>,
 }
 
 impl<T> Visitor<'_> for WholeVisitor<T> {
@@ -65,11 +65,11 @@ impl<T> Visitor<'_> for WholeVisitor<T> {
     }
 
     fn visit_i64<E: Error>(self, x: i64) -> Result<T, E> {
-        (self.holds)(x).ok_or_else(|| E::invalid_value(Unexpected::Signed(x), &self))
+        (self.convert)(x).ok_or_else(|| E::invalid_value(Unexpected::Signed(x), &self))
     }
 }
 
-/// A width and a height in pixels.
+/// A size of an image: width and height in pixels.
 #[derive(Clone, Copy, Debug)]
 pub struct Size(pub [u32; 2]);
 
@@ -84,7 +84,7 @@ value_schema!(Size, {
     "type": "array", "minItems": 2, "maxItems": 2, "items": { "type": "integer", "minimum": 1 },
 });
 
-/// The fewest and the most samples per pixel.
+/// A range of samples per pixel: the fewest and the most.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleRange(pub [u32; 2]);
 
@@ -100,7 +100,7 @@ value_schema!(SampleRange, {
     "items": { "type": "integer", "minimum": 1, "maximum": 65536 },
 });
 
-/// What keeps a light from what lies behind it.
+/// A kind of shadow that a light casts.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowKind(pub Shadow);
 

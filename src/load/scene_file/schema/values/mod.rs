@@ -16,7 +16,7 @@ use crate::scene::check::MAX_COORDINATE;
 pub use integers::{Depth, FrameCount, Priority, SampleRange, Samples, ShadowKind, Size};
 pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, normalize};
 
-/// Gives a type of value its part of the JSON Schema.
+/// Implements the JSON Schema of a type of value.
 macro_rules! value_schema {
     ($name:ident, $schema:tt) => {
         impl JsonSchema for $name {
@@ -34,16 +34,16 @@ macro_rules! value_schema {
 }
 pub(super) use value_schema;
 
-/// A kind of number: what to call it in a message, which numbers it holds, and its schema.
+/// Defines a type of number: its name in messages, the numbers that it holds, and its schema.
 macro_rules! number {
-    ($(#[$doc:meta])* $name:ident, $expected:literal, $holds:expr, $schema:tt) => {
+    ($(#[$doc:meta])* $name:ident, $expected:literal, $is_valid:expr, $schema:tt) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, Default)]
         pub struct $name(pub f64);
 
         impl<'de> Deserialize<'de> for $name {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                let visitor = NumberVisitor { expected: $expected, holds: $holds };
+                let visitor = NumberVisitor { expected: $expected, is_valid: $is_valid };
                 deserializer.deserialize_f64(visitor).map(Self)
             }
         }
@@ -53,7 +53,7 @@ macro_rules! number {
 }
 
 number!(
-    /// Any finite number.
+    /// A finite number.
     Number, "a finite number", |_| true, { "type": "number" });
 number!(
     /// A coordinate in world space.
@@ -68,7 +68,7 @@ number!(
     Amount, "a number from 0 up (and at most 1e30)", |x| (0.0..=1e30).contains(&x),
     { "type": "number", "minimum": 0, "maximum": 1e30 });
 number!(
-    /// Phong's exponent, above 0.
+    /// A Phong exponent, above 0.
     Shininess, "a number above 0 (and at most 1e6)", |x| (1e-30..=1e6).contains(&x),
     { "type": "number", "exclusiveMinimum": 0, "maximum": 1e6 });
 number!(
@@ -76,7 +76,7 @@ number!(
     FieldOfView, "an angle in degrees, above 0 and below 180", |x| x > 1e-6 && x < 180.0 - 1e-6,
     { "type": "number", "exclusiveMinimum": 0, "exclusiveMaximum": 180 });
 number!(
-    /// Half the opening of a cone, in degrees.
+    /// A half-angle of a cone, in degrees.
     HalfAngle, "an angle in degrees, from 0 to 90", |x| (0.0..=90.0).contains(&x),
     { "type": "number", "minimum": 0, "maximum": 90 });
 number!(
@@ -95,7 +95,7 @@ number!(
     { "type": "number", "minimum": 0, "maximum": 1 });
 
 number!(
-    /// Frames in a second.
+    /// A number of frames per second.
     Rate, "a number above 0 (and at most 1000)", |x| (1e-6..=MAX_FPS).contains(&x),
     { "type": "number", "exclusiveMinimum": 0, "maximum": 1000 });
 number!(
@@ -105,7 +105,7 @@ number!(
 
 struct NumberVisitor {
     expected: &'static str,
-    holds: fn(f64) -> bool,
+    is_valid: fn(f64) -> bool,
 }
 
 impl Visitor<'_> for NumberVisitor {
@@ -116,7 +116,7 @@ impl Visitor<'_> for NumberVisitor {
     }
 
     fn visit_f64<E: Error>(self, x: f64) -> Result<f64, E> {
-        if x.is_finite() && (self.holds)(x) {
+        if x.is_finite() && (self.is_valid)(x) {
             Ok(x)
         } else {
             Err(E::invalid_value(Unexpected::Float(x), &self))

@@ -1,4 +1,4 @@
-//! Values of several numbers: places, directions, colours of a medium.
+//! The values of several numbers: points, directions, rotations, scales, absorption.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -45,13 +45,13 @@ value_schema!(Direction, {
     "type": "array", "minItems": 3, "maxItems": 3, "items": { "type": "number" },
 });
 
-/// The vector of length 1 along `v`, however long or short `v` is; none for zero.
+/// Returns the vector of length 1 along `v`, however long or short `v` is; none for zero.
 pub fn normalize(v: DVec3) -> Option<DVec3> {
     // Measured by its greatest component first, so that no square over- or underflows.
     (v / v.abs().max_element()).try_normalize()
 }
 
-/// Angles about x, y and z, in degrees.
+/// A rotation: angles about x, y and z, in degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotation(pub [f64; 3]);
 
@@ -63,7 +63,7 @@ impl<'de> Deserialize<'de> for Rotation {
 }
 
 impl Rotation {
-    /// The angles in radians.
+    /// Returns the angles in radians.
     pub fn radians(self) -> DVec3 {
         DVec3::from_array(self.0.map(f64::to_radians))
     }
@@ -100,7 +100,7 @@ where
     deserializer.deserialize_any(OneOrThree(expected, PhantomData))
 }
 
-/// A factor for all axes or one for each.
+/// A scale: one factor for all axes or one for each.
 #[derive(Clone, Copy, Debug)]
 pub struct Scale(pub DVec3);
 
@@ -121,7 +121,7 @@ value_schema!(Scale, {
     ],
 });
 
-/// One number for red, green and blue, or one for each.
+/// A number for each of red, green and blue, or one for all.
 #[derive(Clone, Copy, Debug)]
 pub struct Triple(pub Vec3);
 
