@@ -40,7 +40,7 @@ impl Needs {
 
     /// Whether it loads whole under a limit, and what is said otherwise.
     fn loads(&self, most: u64) -> Result<(), String> {
-        let limits = Limits::default().with(self.limit, most);
+        let limits = Limits::default().with_limit(self.limit, most);
         match load_with(&self.path(), &Options { limits, ..Options::default() }) {
             Ok(scene) if scene.warnings.is_empty() => Ok(()),
             Ok(scene) => Err(scene.warnings.join("\n")),

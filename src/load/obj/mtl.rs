@@ -195,7 +195,7 @@ mod tests {
     fn normalized(text: &str) -> (String, Vec<String>) {
         let mut diagnostics = Diagnostics::default();
         let text = normalize(text, Path::new("a.mtl"), &mut diagnostics);
-        (text, diagnostics.sentences(Path::new("a.obj")))
+        (text, diagnostics.warnings(Path::new("a.obj")))
     }
 
     #[test]

@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(read[6..], ["g 0", "f 1 2 3", "f 4 5 6"]);
         assert_eq!(info.groups.len(), 1);
         assert_eq!(info.groups[0].settings.material.as_deref(), Some("a"));
-        let said = diagnostics.sentences(std::path::Path::new("m"));
+        let said = diagnostics.warnings(std::path::Path::new("m"));
         assert!(said[0].ends_with(&format!("line {}", text.lines().count())), "{said:?}");
     }
 }
