@@ -30,7 +30,7 @@ pub struct Loading {
 impl Loading {
     /// The options of a load.
     pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
-        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
+        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with_limit(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
         let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
         LoadOptions { size, variant, allow_outside, limits }

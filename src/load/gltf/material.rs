@@ -262,7 +262,7 @@ impl<'a> Maker<'_, 'a> {
             }
         });
         let by = format!("{}.{place}.index", self.at);
-        self.textures.get(slot, set as u8, transfer, &by, self.scene, self.tally)
+        self.textures.texture(slot, set as u8, transfer, &by, self.scene, self.tally)
     }
 
     /// A channel of a texture of data.
