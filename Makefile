@@ -14,7 +14,7 @@ GALLERY = $(sort $(wildcard assets/scenes/gallery/*.toml))
 # The other build that must always work: no Embree, no libclang.
 PURE_RUST = --no-default-features --features cli
 
-.PHONY: help setup demo gallery test check install uninstall clean
+.PHONY: help setup demo gallery test check soak deny install uninstall clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
@@ -63,6 +63,15 @@ check: ## the inner loop: format, lints and unit tests, default features, no set
 	$(CARGO) fmt --check
 	$(CARGO) clippy --all-targets -- -D warnings
 	$(CARGO) test --lib --bins
+
+soak: setup ## what takes longer: sweeps, random cases, fuzzing, a corpus (SOAK=0.1 is a tenth)
+	@scripts/soak
+
+# Advisories need a network: `cargo deny check advisories` fetches their database.
+deny: ## hold licences, duplicates and sources of the dependencies to deny.toml
+	@command -v cargo-deny >/dev/null || \
+	    { echo 'make deny: first `cargo install cargo-deny --locked`' >&2; exit 1; }
+	$(CARGO) deny --locked check licenses bans sources
 
 # Embree goes along only if set-up fetched it: a system's own is found where it stands.
 install: setup ## build and install under PREFIX (default: ~/.local), with Embree if it was fetched

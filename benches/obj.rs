@@ -35,7 +35,7 @@ fn main() {
         let mut times = [(); 2].map(|()| Vec::new());
         for _ in 0..ROUNDS {
             times[0].push(seconds(|| drop(black_box(bare(&path)))));
-            times[1].push(seconds(|| drop(black_box(envers::load::load(&path).unwrap()))));
+            times[1].push(seconds(|| drop(black_box(envers::load(&path).unwrap()))));
         }
         let [tobj, ours] = times.map(median);
         println!(

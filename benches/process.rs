@@ -25,7 +25,7 @@ use bare::{Bare, Packet, Shapes, packets};
 use clock::median;
 use embree4_sys::RTCBuildQuality;
 use envers::intersect::{IntersectorBuilder, Precision};
-use envers::render::{self, Options};
+use envers::{RenderOptions, Renderer};
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use rayon::prelude::*;
@@ -109,12 +109,12 @@ fn bare_work(
     quality: RTCBuildQuality,
     picture: &image::RgbImage,
 ) -> impl Fn() -> Parts {
-    let scene = envers::load::load(scene).unwrap();
-    let options = Options::default();
+    let scene = envers::load(scene).unwrap();
+    let options = RenderOptions::default();
     let intersector =
         IntersectorBuilder::new(Default::default(), Precision::Fast, 0).build(&scene).unwrap();
     let recorder = Recorder::new(&*intersector);
-    render::with_intersector(&scene, &options, &recorder, &|_| {});
+    Renderer::new(&scene).options(options.clone()).render_with(&recorder);
     let center = scene.bounds().center();
     let rays = |batch| packets::<WIDTH>(&recorder.take(batch), center);
     let (coherent, shadow, incoherent) =

@@ -9,9 +9,9 @@ use std::path::Path;
 
 use envers::film::Film;
 use envers::load;
-use envers::render::{Options, render};
 use envers::scene::{Camera, Light, LightKind, Projection, Shadow};
 use envers::write::Settings;
+use envers::{RenderOptions, Renderer};
 use glam::{DVec3, Vec3};
 use image::imageops::{FilterType, replace, resize};
 use image::{Rgba, RgbaImage};
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Our picture of a model, from where the manifest says that the camera stands.
 fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
-    let mut scene = load::load(file)?;
+    let mut scene = envers::load(file)?;
     scene.warnings.iter().for_each(|warning| println!("{warning}"));
     let at = |i: usize| model["camera"]["translation"][i].as_f64().unwrap_or(0.0);
     let eye = DVec3::new(at(0), at(1), at(2));
@@ -76,7 +76,7 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     ];
     scene.film.size = [SIDE; 2];
     scene.film.background = Vec3::new(0.35, 0.34, 0.36);
-    let film = render(&scene, &Options::default(), &|_| {})?.film;
+    let film = Renderer::new(&scene).render()?.film;
     Ok(bytes(&film, &Settings::of(&scene.film)))
 }
 

@@ -6,17 +6,17 @@ use std::path::PathBuf;
 
 use envers::error::{Error, Result};
 use envers::load;
-use envers::render::{Options, render};
 use envers::write::{Settings, write};
+use envers::{RenderOptions, Renderer};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let (Some(model), Some(output)) = (arguments.next(), arguments.next()) else {
         return Err(Error::input("two files are needed").help("model MODEL OUTPUT"));
     };
-    let scene = load::load(&model)?;
+    let scene = envers::load(&model)?;
     scene.warnings.iter().for_each(|warning| eprintln!("{warning}"));
-    let rendering = render(&scene, &Options::default(), &|_| {})?;
+    let rendering = Renderer::new(&scene).render()?;
     write(&rendering.film, &output, &Settings { half: true, ..Settings::of(&scene.film) })?;
     println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
     Ok(())

@@ -4,8 +4,8 @@ use envers::film::Film;
 use envers::integrator::{Counts, FeatureCounts, Tiling, sample_steps};
 use envers::intersect::{Backend, Precision};
 use envers::load;
-use envers::render::{Options, render};
 use envers::scene::{Adaptive, Scene};
+use envers::{RenderOptions, Renderer};
 
 /// The scene with a camera that sees one unit of length for each pixel, 0 in the middle.
 fn scene(size: [u32; 2], objects: &str) -> Scene {
@@ -17,7 +17,7 @@ fn scene(size: [u32; 2], objects: &str) -> Scene {
          [camera]\nposition = [0, 0, 99]\nlook_at = [0, 0, 0]\northo_height = {height}\n{objects}"
     );
     std::fs::write(&path, text).unwrap();
-    load::load(&path).unwrap()
+    envers::load(&path).unwrap()
 }
 
 fn with_samples(scene: &Scene, min: u32, max: u32, threshold: f32) -> Scene {
@@ -34,19 +34,19 @@ fn regular(scene: &Scene, spp: u32) -> Scene {
 }
 
 /// The picture, and what was counted, but for work that is counted by the batch.
-fn made(scene: &Scene, options: &Options) -> (Film, Counts) {
-    let options = Options { precision: Precision::Certified, ..options.clone() };
-    let rendering = render(scene, &options, &|_| {}).unwrap();
+fn made(scene: &Scene, options: &RenderOptions) -> (Film, Counts) {
+    let options = RenderOptions { precision: Precision::Certified, ..options.clone() };
+    let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
     let counts = Counts { work: FeatureCounts::default(), ..rendering.statistics.counts };
     (rendering.film, counts)
 }
 
 fn film(scene: &Scene) -> Film {
-    made(scene, &Options::default()).0
+    made(scene, &RenderOptions::default()).0
 }
 
 fn counts(scene: &Scene) -> Counts {
-    made(scene, &Options::default()).1
+    made(scene, &RenderOptions::default()).1
 }
 
 /// Spheres before a lit wall, with shadows, a highlight and a mirror: edges of every kind.
@@ -80,10 +80,13 @@ fn squares() -> Scene {
 #[test]
 fn the_picture_is_the_same_on_any_number_of_threads() {
     let scene = with_samples(&varied(), 1, 25, 0.1);
-    let one = made(&scene, &Options { threads: 1, ..Options::default() });
+    let one = made(&scene, &RenderOptions { threads: 1, ..RenderOptions::default() });
     assert!(one.1.refined[1] > 0);
     for threads in [2, 5] {
-        assert!(made(&scene, &Options { threads, ..Options::default() }) == one, "{threads}");
+        assert!(
+            made(&scene, &RenderOptions { threads, ..RenderOptions::default() }) == one,
+            "{threads}"
+        );
     }
 }
 
@@ -91,10 +94,10 @@ fn the_picture_is_the_same_on_any_number_of_threads() {
 fn the_picture_is_the_same_however_it_is_cut_up() {
     for (min, max) in [(1, 25), (4, 20)] {
         let scene = with_samples(&varied(), min, max, 0.1);
-        let whole = made(&scene, &Options::default());
+        let whole = made(&scene, &RenderOptions::default());
         for (rows, columns, block) in [(1, 1, 1), (5, 7, 3), (3, 1 << 20, 2), (1 << 20, 9, 16)] {
             let tiling = Tiling { rows, columns, block };
-            let cut = made(&scene, &Options { tiling, ..Options::default() });
+            let cut = made(&scene, &RenderOptions { tiling, ..RenderOptions::default() });
             assert!(cut == whole, "{tiling:?}");
         }
     }
@@ -103,8 +106,8 @@ fn the_picture_is_the_same_however_it_is_cut_up() {
 #[test]
 fn the_picture_is_the_same_on_either_backend() {
     let scene = with_samples(&varied(), 1, 25, 0.1);
-    let rust = made(&scene, &Options { backend: Backend::Rust, ..Options::default() });
-    assert!(rust == made(&scene, &Options::default()));
+    let rust = made(&scene, &RenderOptions { backend: Backend::Rust, ..RenderOptions::default() });
+    assert!(rust == made(&scene, &RenderOptions::default()));
 }
 
 /// All edges of the squares lie between pixels, those of strips and tiles among them: a pixel is

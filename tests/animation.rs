@@ -6,13 +6,13 @@ use envers::geometry::{Bounds, Ray};
 use envers::intersect::{
     Backend, BuildStats, Coherence, Intersector, IntersectorBuilder, Precision,
 };
-use envers::render::{Options, render, render_frames};
 use envers::scene::animation::{
     Anchor, Animated, Animation, Curve, Interpolation, Keyframes, Motion, Node, Orbit,
 };
 use envers::scene::{
     Camera, Instance, Light, LightKind, MaterialId, Mesh, Projection, Scene, Shadow, Sphere,
 };
+use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// The spheres of the tutorial's scene.
@@ -22,7 +22,7 @@ const MOON: usize = 2;
 
 fn orbit() -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/tutorial/6-4-orbit.toml");
-    let mut scene = envers::load::load(&path).unwrap();
+    let mut scene = envers::load(&path).unwrap();
     scene.film.size = [100, 50];
     scene.film.spp = 1;
     scene
@@ -137,8 +137,9 @@ fn the_picture_shows_a_shadow_of_the_moon_in_no_other_frame() {
         let mut without = scene.clone();
         without.spheres[MOON].casts_shadow = false;
         let [a, b] = [&scene, &without].map(|scene| {
-            let options = Options { precision: Precision::Certified, ..Options::default() };
-            render(scene, &options, &|_| {}).unwrap().film
+            let options =
+                RenderOptions { precision: Precision::Certified, ..RenderOptions::default() };
+            Renderer::new(scene).options(options.clone()).render().unwrap().film
         });
         if a != b {
             assert!(eclipses(&scene, MOON, PLANET), "frame {frame}");
@@ -248,14 +249,20 @@ fn backends() -> Vec<(Backend, Precision)> {
 }
 
 /// The films of all frames, and what was built for them.
-fn rendered(scene: &Scene, times: &[f64], options: &Options) -> (Vec<Vec<[f32; 3]>>, BuildStats) {
+fn rendered(
+    scene: &Scene,
+    times: &[f64],
+    options: &RenderOptions,
+) -> (Vec<Vec<[f32; 3]>>, BuildStats) {
     let (mut films, mut built) = (Vec::new(), BuildStats::default());
-    render_frames(scene, times, options, &|_| {}, &mut |_, frame| {
-        built += frame.statistics.built;
-        films.push(frame.film.pixels);
-        Ok(())
-    })
-    .unwrap();
+    Renderer::new(scene)
+        .options(options.clone())
+        .render_frames(times, |_, frame| {
+            built += frame.statistics.built;
+            films.push(frame.film.pixels);
+            Ok(())
+        })
+        .unwrap();
     (films, built)
 }
 
@@ -268,7 +275,7 @@ fn times(scene: &Scene) -> Vec<f64> {
 fn each_mesh_is_built_once_for_all_frames() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = Options { backend, precision, ..Options::default() };
+        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
     }
@@ -286,7 +293,7 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
         lens: None,
     }];
     for (backend, precision) in backends() {
-        let options = Options { backend, precision, ..Options::default() };
+        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
         assert_eq!((built.tops, built.tops_kept), (1, 5), "{backend:?} {precision:?}");
@@ -304,7 +311,8 @@ fn places(built: BuildStats) -> [u64; 5] {
 fn embree_places_again_only_what_moved() {
     let scene = workshop();
     for precision in [Precision::Fast, Precision::Certified] {
-        let options = Options { backend: Backend::Embree, precision, ..Options::default() };
+        let options =
+            RenderOptions { backend: Backend::Embree, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!(places(built), [1, 5, 3, 5, 5], "{precision:?}");
     }
@@ -314,7 +322,7 @@ fn embree_places_again_only_what_moved() {
 fn nothing_is_placed_again_where_nothing_moved() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = Options { backend, precision, ..Options::default() };
+        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &[0.1; 4], &options);
         assert_eq!(places(built), [1, 3, 3, 0, 0], "{backend:?} {precision:?}");
     }
@@ -329,10 +337,11 @@ fn assert_alone(scene: &Scene) -> Vec<u64> {
         if precision != Precision::Certified {
             continue;
         }
-        let options = Options { backend, precision, ..Options::default() };
+        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(scene, &times(scene), &options);
         for (film, time) in films.iter().zip(times(scene)) {
-            let alone = render(&scene.at(time).unwrap(), &options, &|_| {}).unwrap();
+            let alone =
+                Renderer::new(&scene.at(time).unwrap()).options(options.clone()).render().unwrap();
             assert!(*film == alone.film.pixels, "{backend:?} at {time}");
         }
         tops.push(built.tops);
@@ -393,7 +402,7 @@ fn a_scene_that_is_still_traced_is_left_as_it_is() {
 fn a_frame_is_the_same_bytes_whichever_frames_come_before_it() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = Options { backend, precision, ..Options::default() };
+        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (all, _) = rendered(&scene, &times(&scene), &options);
         let (last, _) = rendered(&scene, &times(&scene)[5..], &options);
         assert!(all[5] == last[0], "{backend:?} {precision:?}");
@@ -404,7 +413,8 @@ fn a_frame_is_the_same_bytes_whichever_frames_come_before_it() {
 fn the_backends_agree_on_every_frame_to_the_bit() {
     let scene = workshop();
     let films = |backend| {
-        let options = Options { backend, precision: Precision::Certified, ..Options::default() };
+        let options =
+            RenderOptions { backend, precision: Precision::Certified, ..RenderOptions::default() };
         rendered(&scene, &times(&scene), &options).0
     };
     assert!(films(Backend::default()) == films(Backend::Rust));
@@ -436,10 +446,9 @@ fn a_mesh_in_the_place_of_another_is_not_taken_for_it() {
 fn a_frame_that_cannot_be_written_ends_the_rendering() {
     let scene = workshop();
     let mut count = 0;
-    let result =
-        render_frames(&scene, &times(&scene), &Options::default(), &|_| {}, &mut |_, _| {
-            count += 1;
-            Err(envers::error::Error::failed("the disk is full"))
-        });
+    let result = Renderer::new(&scene).render_frames(&times(&scene), |_, _| {
+        count += 1;
+        Err(envers::error::Error::failed("the disk is full"))
+    });
     assert!(result.is_err() && count == 1);
 }

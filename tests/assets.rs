@@ -6,7 +6,7 @@ mod make_assets;
 
 use std::path::Path;
 
-use envers::load::load;
+use envers::load;
 use envers::scene::LightKind;
 
 /// The largest file that is committed, in bytes.

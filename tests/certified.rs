@@ -364,7 +364,7 @@ fn primary(scene: &Scene, width: u32) -> Vec<Ray> {
 #[test]
 fn all_agree_on_the_demo_scenes() {
     for path in demo_scenes() {
-        let scene = load::load(&path).unwrap();
+        let scene = envers::load(&path).unwrap();
         let what = path.display().to_string();
         all_agree(&what, &scene, &primary(&scene, 200), BUDGET);
         if scene.triangle_count() > 0 {
@@ -386,7 +386,7 @@ fn corpus_meshes(corpus: &Path) -> Vec<PathBuf> {
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|e| e == "obj")
-                && load::load(&path).is_ok_and(|scene| scene.triangle_count() > 0)
+                && envers::load(&path).is_ok_and(|scene| scene.triangle_count() > 0)
             {
                 found.push(path);
             }
@@ -401,7 +401,7 @@ fn corpus_meshes(corpus: &Path) -> Vec<PathBuf> {
 fn all_agree_on_the_corpus_meshes() {
     let Some(corpus) = std::env::var_os("ENVERS_CORPUS") else { return };
     for path in corpus_meshes(Path::new(&corpus)) {
-        let scene = load::load(&path).unwrap();
+        let scene = envers::load(&path).unwrap();
         let what = path.display().to_string();
         all_agree(&what, &scene, &primary(&scene, 120), BUDGET / 8);
         all_agree(&what, &scene, &at_triangles(&scene, 3, 3000), BUDGET / 8);
@@ -415,7 +415,7 @@ fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
     use envers::film::View;
     use envers::intersect::Backend;
     use envers::measure::oracle::Oracle;
-    use envers::render::{self, Options};
+    use envers::{RenderOptions, Renderer};
     let mut scene = scene.clone();
     let [w, h] = scene.film.size;
     scene.film.size = [width, (width * h / w).max(1)];
@@ -424,9 +424,9 @@ fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
     let certified = Backend::default().build(&scene, Precision::Certified, 0).unwrap();
     let oracle = Oracle::new(&scene);
     for view in [View::Id, View::Depth, View::Beauty] {
-        let options = Options { view, ..Options::default() };
+        let options = RenderOptions { view, ..RenderOptions::default() };
         let film = |by: &dyn Intersector| {
-            let film = render::with_intersector(&scene, &options, by, &|_| {}).0;
+            let film = Renderer::new(&scene).options(options.clone()).render_with(by).film;
             film.pixels.iter().flatten().map(|x| x.to_bits()).collect::<Vec<u32>>()
         };
         let (found, expected) = (film(&*certified), film(&oracle));
@@ -439,7 +439,7 @@ fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
 #[cfg(feature = "measure")]
 fn pictures_of_the_demo_scenes_equal_the_oracles_to_the_bit() {
     for path in demo_scenes() {
-        equals_the_oracles(&path.display().to_string(), &load::load(&path).unwrap(), 120);
+        equals_the_oracles(&path.display().to_string(), &envers::load(&path).unwrap(), 120);
     }
 }
 
@@ -448,6 +448,6 @@ fn pictures_of_the_demo_scenes_equal_the_oracles_to_the_bit() {
 fn pictures_of_the_corpus_meshes_equal_the_oracles_to_the_bit() {
     let Some(corpus) = std::env::var_os("ENVERS_CORPUS") else { return };
     for path in corpus_meshes(Path::new(&corpus)) {
-        equals_the_oracles(&path.display().to_string(), &load::load(&path).unwrap(), 60);
+        equals_the_oracles(&path.display().to_string(), &envers::load(&path).unwrap(), 60);
     }
 }

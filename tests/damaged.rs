@@ -323,7 +323,7 @@ fn loads(path: &Path) -> Result<bool, String> {
     let file = path.to_owned();
     // A thread of its own: one that hangs is left behind.
     std::thread::spawn(move || {
-        let _ = sender.send(envers::load::load(&file));
+        let _ = sender.send(envers::load(&file));
     });
     let error = match receiver.recv_timeout(TIME_LIMIT) {
         Err(RecvTimeoutError::Timeout) => return Err("it takes too long".into()),
@@ -438,7 +438,7 @@ fn the_files_are_valid_before() {
     let folder = valid_files();
     for file in ["model.glb", "model.gltf", "inside.gltf", "packed.glb", "model.obj", "scene.toml"]
     {
-        let scene = envers::load::load(&folder.path(file)).unwrap_or_else(|e| panic!("{e}"));
+        let scene = envers::load(&folder.path(file)).unwrap_or_else(|e| panic!("{e}"));
         assert!(scene.triangle_count() > 0, "{file}");
     }
 }

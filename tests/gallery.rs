@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use envers::LoadOptions;
 use envers::film::Film;
-use envers::load::load_for;
-use envers::render::{Options, render};
 use envers::scene::Transfer;
 use envers::write::{Settings, png_bytes};
+use envers::{RenderOptions, Renderer};
 use image::RgbImage;
 
 /// The size of the pictures in `docs/images/gallery/`.
@@ -36,15 +36,18 @@ fn picture(
     name: &str,
     size: [u32; 2],
     spp: u32,
-    options: &Options,
+    options: &RenderOptions,
     depth: Option<u32>,
 ) -> (Film, Settings) {
     let path = root().join(format!("assets/scenes/gallery/{name}.toml"));
-    let mut scene = load_for(&path, Some(size)).unwrap_or_else(|e| panic!("{e}"));
+    let mut scene = LoadOptions::default().size(size).load(&path).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(scene.warnings, [""; 0], "{name}");
     scene.film.spp = spp;
     scene.film.max_depth = depth.unwrap_or(scene.film.max_depth);
-    (render(&scene, options, &|_| {}).expect(name).film, Settings::of(&scene.film))
+    (
+        Renderer::new(&scene).options(options.clone()).render().expect(name).film,
+        Settings::of(&scene.film),
+    )
 }
 
 #[test]
@@ -75,8 +78,11 @@ fn both_backends_make_the_same_radiance_in_certified_at_depth_16() {
     use envers::intersect::{Backend, Precision};
     for name in scenes() {
         let [embree, rust] = [Backend::Embree, Backend::Rust].map(|backend| {
-            let options =
-                Options { backend, precision: Precision::Certified, ..Options::default() };
+            let options = RenderOptions {
+                backend,
+                precision: Precision::Certified,
+                ..RenderOptions::default()
+            };
             let bits = |film: Film| -> Vec<[u32; 3]> {
                 film.pixels.iter().map(|pixel| pixel.map(f32::to_bits)).collect()
             };
@@ -94,7 +100,8 @@ fn the_committed_pictures_are_those_of_the_scenes() {
         let path = root().join(format!("docs/images/gallery/{name}.png"));
         let committed = image::open(&path).expect("the picture can be read").into_rgb8();
         assert_eq!(committed.dimensions(), SIZE.into(), "{name}");
-        let (film, settings) = picture(&name, SIZE.map(|s| s / 8), 64, &Options::default(), None);
+        let (film, settings) =
+            picture(&name, SIZE.map(|s| s / 8), 64, &RenderOptions::default(), None);
         let difference = mean_difference(&committed, &film, &png_bytes(&film, &settings));
         assert!(difference < 2.5, "{name}: {difference} of 255");
     }

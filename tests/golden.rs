@@ -7,10 +7,10 @@
 
 use std::path::{Path, PathBuf};
 
+use envers::LoadOptions;
 use envers::intersect::Backend;
-use envers::load::load_for;
-use envers::render::{Options, render};
 use envers::write::{Settings, png_bytes};
+use envers::{RenderOptions, Renderer};
 use image::{Rgb, RgbImage};
 
 /// The most that a channel may differ, of 255.
@@ -23,10 +23,12 @@ fn root() -> &'static Path {
 /// Renders `assets/scenes/NAME.toml` small.
 fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) -> RgbImage {
     let path = root().join("assets/scenes").join(name).with_extension("toml");
-    let mut scene = load_for(&path, Some([width, height])).expect("the scene loads");
+    let mut scene =
+        LoadOptions::default().size([width, height]).load(&path).expect("the scene loads");
     scene.film.spp = spp;
-    let options = Options { backend, ..Options::default() };
-    let film = render(&scene, &options, &|_| {}).expect("the scene renders").film;
+    let options = RenderOptions { backend, ..RenderOptions::default() };
+    let film =
+        Renderer::new(&scene).options(options.clone()).render().expect("the scene renders").film;
     let settings = Settings::of(&scene.film);
     RgbImage::from_raw(width, height, png_bytes(&film, &settings)).expect("ok: three bytes a pixel")
 }

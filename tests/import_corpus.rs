@@ -68,7 +68,7 @@ const OBJ: &[(&str, Expected)] = &[
 
 fn check(path: &Path, expected: Expected) {
     let name = path.display();
-    match (envers::load::load(path), expected) {
+    match (envers::load(path), expected) {
         (Ok(scene), Ok(triangles)) => {
             assert_eq!(scene.triangle_count(), triangles, "{name}: {:?}", scene.warnings);
         }
@@ -129,7 +129,7 @@ fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
     let Some(corpus) = corpus() else { return };
     let mut faces = 0;
     for path in files(&corpus, &["gltf", "glb", "obj"]) {
-        let Ok(scene) = envers::load::load(&path) else { continue };
+        let Ok(scene) = envers::load(&path) else { continue };
         let report = &scene.report;
         assert!(report.balances(), "{}: {report}", path.display());
         let mut shown: Vec<_> = scene.instances.iter().map(|i| i.mesh).collect();
@@ -148,7 +148,7 @@ fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
 const NOT_LOOKED_FOR: &[(&str, &str)] = &[
     (
         "ACCESSOR_ELEMENT_OUT_OF_MAX_BOUND",
-        "bounds are worked out from the vertices; those that a file declares are not read",
+        "bounds are computed from the vertices; those that a file declares are not read",
     ),
     ("ACCESSOR_ELEMENT_OUT_OF_MIN_BOUND", "as above"),
     ("ACCESSOR_MAX_MISMATCH", "as above"),
@@ -157,7 +157,7 @@ const NOT_LOOKED_FOR: &[(&str, &str)] = &[
     ("MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", "as above"),
     (
         "ACCESSOR_INDEX_OOB",
-        "a fault in the data, which is looked at where something shows it, and then counted in the report",
+        "a fault in the data, which is checked where something shows it, and then counted in the load report",
     ),
     ("ACCESSOR_INDEX_PRIMITIVE_RESTART", "as above"),
     ("ACCESSOR_INVALID_FLOAT", "as above"),
@@ -166,18 +166,18 @@ const NOT_LOOKED_FOR: &[(&str, &str)] = &[
         "ACCESSOR_NON_CLAMPED",
         "colours above 1 are used as they are; negative ones are a warning where they are shown",
     ),
-    ("ACCESSOR_INVALID_SIGN", "a tangent's sign counts as that of its number"),
+    ("ACCESSOR_INVALID_SIGN", "only the sign of a tangent's fourth number is used"),
     ("ACCESSOR_VECTOR3_NON_UNIT", "normals and tangents may have any length but 0"),
     (
         "ANIMATION_SAMPLER_INPUT_ACCESSOR_INVALID_FORMAT",
-        "the accessor is looked at where an animation uses it, and its channel then left out with a warning",
+        "the accessor is checked where an animation uses it; its channel is then left out with a warning",
     ),
-    ("BUFFER_DATA_URI_MIME_TYPE_INVALID", "what data are is told by their use"),
+    ("BUFFER_DATA_URI_MIME_TYPE_INVALID", "the kind of the data follows from its use"),
     ("BUFFER_MISSING_GLB_DATA", "an error as soon as something that is shown uses the buffer"),
-    ("IO_ERROR", "as above; a picture has a placeholder and a warning then"),
+    ("IO_ERROR", "as above; an image then gets a placeholder and a warning"),
     (
         "BUFFER_VIEW_INVALID_BYTE_STRIDE",
-        "a rule for what graphics processors take; bytes are read one by one here",
+        "a rule for graphics processors; envers reads byte by byte",
     ),
     ("BUFFER_VIEW_TARGET_OVERRIDE", "as above"),
     ("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "as above"),
@@ -187,17 +187,17 @@ const NOT_LOOKED_FOR: &[(&str, &str)] = &[
     ("SKIN_IBM_ACCESSOR_WITH_BYTESTRIDE", "as above"),
     (
         "GLB_CHUNK_LENGTH_UNALIGNED",
-        "all chunks can be found even so; the first of each kind counts",
+        "all chunks can be found all the same; the first of each kind is used",
     ),
     ("GLB_DUPLICATE_CHUNK", "as above"),
     ("GLB_UNEXPECTED_BIN_CHUNK", "as above"),
     (
         "IMAGE_DATA_INVALID",
-        "no material shows the picture, so that it is not read; where one does, a placeholder and a warning stand for it",
+        "no material uses the image, so it is not read; if one does, it gets a placeholder and a warning",
     ),
     ("IMAGE_UNEXPECTED_EOS", "as above"),
     ("INVALID_URI", "as above"),
-    ("IMAGE_MIME_TYPE_INVALID", "what a picture is is told by its bytes"),
+    ("IMAGE_MIME_TYPE_INVALID", "the format of an image is recognised by its bytes"),
     ("IMAGE_NON_ENABLED_MIME_TYPE", "as above: WebP is read without the extension, too"),
     ("TEXTURE_INVALID_IMAGE_MIME_TYPE", "as above"),
     ("INVALID_JSON", "a byte order mark, which is skipped"),
@@ -205,11 +205,14 @@ const NOT_LOOKED_FOR: &[(&str, &str)] = &[
         "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
         "a warning as soon as something that is shown lacks its texture coordinates",
     ),
-    ("SKIN_NO_COMMON_ROOT", "joints are posed by the nodes that they are, whatever these hang on"),
+    (
+        "SKIN_NO_COMMON_ROOT",
+        "joints are posed by their own nodes, whatever the parents of these are",
+    ),
     ("SKIN_SKELETON_INVALID", "the property is not read"),
     (
         "SKIN_IBM_INVALID_FORMAT",
-        "the accessor is looked at where a skin that is shown uses it, and then is an error",
+        "the accessor is checked where a skin that is shown uses it, and is then an error",
     ),
 ];
 
@@ -244,7 +247,7 @@ fn files_that_khronos_validator_finds_valid_load_without_complaint() {
         if !codes.is_empty() || bufferless {
             continue;
         }
-        match envers::load::load(&path) {
+        match envers::load(&path) {
             Ok(scene) => {
                 let complaint = scene.warnings.iter().find(|w| w.contains("not valid glTF"));
                 assert_eq!(complaint, None, "{}", path.display());
@@ -259,7 +262,7 @@ fn files_in_which_khronos_validator_finds_errors_are_refused_or_warned_of() {
     let Some(corpus) = corpus() else { return };
     let mut excused = BTreeSet::new();
     for (path, codes) in judged(&corpus) {
-        let Ok(scene) = envers::load::load(&path) else { continue };
+        let Ok(scene) = envers::load(&path) else { continue };
         // That a file shows nothing says nothing of its faults.
         let mut warnings = scene.warnings.iter().filter(|w| !w.contains("there is no triangle"));
         if codes.is_empty() || warnings.next().is_some() {

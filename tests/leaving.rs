@@ -2,11 +2,11 @@
 
 use envers::geometry::{Geometry, PrimitiveId};
 use envers::intersect::{Backend, Precision};
-use envers::render::{Options, Rendering, render};
 use envers::scene::{
     Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Plane, Projection,
     Scene, Shadow, Sphere,
 };
+use envers::{RenderOptions, Renderer, Rendering};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 /// An empty scene with one double-sided material, seen from `eye` toward `target` through 48 × 48
@@ -63,17 +63,17 @@ fn add(scene: &mut Scene, mesh: Mesh, transform: DAffine3) {
     scene.instances.push(Instance::new(mesh, transform, MaterialId(0)));
 }
 
-fn backends() -> impl Iterator<Item = Options> {
+fn backends() -> impl Iterator<Item = RenderOptions> {
     let mut backends = vec![Backend::Rust];
     if Backend::default() != Backend::Rust {
         backends.push(Backend::default());
     }
     backends.into_iter().flat_map(|backend| {
-        [Precision::Fast, Precision::Certified].map(|precision| Options {
+        [Precision::Fast, Precision::Certified].map(|precision| RenderOptions {
             backend,
             precision,
             threads: 1,
-            ..Options::default()
+            ..RenderOptions::default()
         })
     })
 }
@@ -82,7 +82,7 @@ fn backends() -> impl Iterator<Item = Options> {
 fn each(scene: &Scene, mut check: impl FnMut(Rendering, &str)) {
     for options in backends() {
         let name = format!("{:?} {}", options.backend, options.precision.name());
-        check(render(scene, &options, &|_| {}).unwrap(), &name);
+        check(Renderer::new(scene).options(options.clone()).render().unwrap(), &name);
     }
 }
 
@@ -113,8 +113,8 @@ fn assert_alike(scene: &Scene, expected: &Scene) {
 /// that rounding does to a cosine, and far below a shadow.
 #[track_caller]
 fn assert_alike_here(scene: &Scene, expected: &Scene) {
-    let options = Options { backend: Backend::Rust, threads: 1, ..Options::default() };
-    let expected = render(expected, &options, &|_| {}).unwrap().film;
+    let options = RenderOptions { backend: Backend::Rust, threads: 1, ..RenderOptions::default() };
+    let expected = Renderer::new(expected).options(options.clone()).render().unwrap().film;
     let bright = expected.pixels.iter().filter(|p| p[0] > 0.01).count();
     assert!(bright > 300, "only {bright} pixels are lit: nothing would be shown");
     each(scene, |rendering, name| {

@@ -2,11 +2,11 @@
 
 use envers::integrator::NotFinite;
 use envers::intersect::Backend;
-use envers::render::{Options, render};
 use envers::scene::{
     Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Projection, Scene,
     Shadow, Sphere,
 };
+use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A wall at z = 0 in one pixel, seen from z = 5.
@@ -43,8 +43,8 @@ fn matt(diffuse: f32) -> Material {
 /// Asserts what is counted, and that the pixel is finite; returns it.
 #[track_caller]
 fn assert_counted(scene: &Scene, expected: NotFinite) -> f32 {
-    let options = Options { backend: Backend::Rust, threads: 1, ..Options::default() };
-    let rendering = render(scene, &options, &|_| {}).unwrap();
+    let options = RenderOptions { backend: Backend::Rust, threads: 1, ..RenderOptions::default() };
+    let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
     assert_eq!(rendering.statistics.counts.not_finite, expected);
     let [r, g, b] = rendering.film.pixel(0, 0);
     assert!(r.is_finite() && g.is_finite() && b.is_finite(), "{r} {g} {b}");

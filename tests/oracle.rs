@@ -8,9 +8,9 @@ use envers::film::{Film, View};
 use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
 use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use envers::measure::oracle::{self, Oracle};
-use envers::render::{Options, with_intersector};
 use envers::scene::{Camera, Falloff, Light, LightKind, Projection, Scene, Shadow};
 use envers::write::Settings;
+use envers::{RenderOptions, Renderer};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -273,8 +273,8 @@ fn certified(scene: &Scene) -> Vec<Box<dyn Intersector + '_>> {
 }
 
 fn film(scene: &Scene, who: &dyn Intersector, view: View) -> Film {
-    let options = Options { view, ..Options::default() };
-    with_intersector(scene, &options, who, &|_| {}).0
+    let options = RenderOptions { view, ..RenderOptions::default() };
+    Renderer::new(scene).options(options.clone()).render_with(who).film
 }
 
 fn exr(film: &Film) -> Vec<u8> {

@@ -195,7 +195,7 @@ fn load(place: &Place, (_, file, text): &Reference, name: &str, allow_outside: b
         _ => path,
     };
     let options = Options { allow_outside, ..Options::default() };
-    match load_with(&path, &options) {
+    match options.load(&path) {
         Ok(scene) => scene.warnings.join("\n"),
         Err(error) => error.to_string(),
     }
@@ -333,9 +333,9 @@ fn a_model_in_a_scene_may_name_what_is_in_the_folder_of_the_scene() {
         "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n",
     );
     let scene = place.folder.write("scene/a.toml", "[[model]]\nfile = \"models/a.obj\"\n");
-    assert_eq!(envers::load::load(&scene).unwrap().warnings, [""; 0]);
+    assert_eq!(envers::load(&scene).unwrap().warnings, [""; 0]);
     // By itself the model has a folder of its own.
-    let alone = envers::load::load(&place.folder.path("scene/models/a.obj")).unwrap();
+    let alone = envers::load(&place.folder.path("scene/models/a.obj")).unwrap();
     assert!(alone.warnings[0].contains("not in the folder"), "{:?}", alone.warnings);
 }
 
@@ -346,6 +346,6 @@ fn a_file_may_be_named_through_a_link_and_has_the_folder_of_the_link() {
     let link = place.folder.path("scene/entry.gltf");
     symlink(target, &link).unwrap();
     // Its buffer is beside what the link leads to, not beside the link.
-    let error = envers::load::load(&link).unwrap_err().to_string();
+    let error = envers::load(&link).unwrap_err().to_string();
     assert!(error.contains("secret.bin"), "{error}");
 }

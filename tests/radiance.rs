@@ -1,11 +1,11 @@
 //! Radiance that can be worked out by hand.
 
 use envers::integrator::Counts;
-use envers::render::{Options, render};
 use envers::scene::{
     Camera, Checker, Falloff, Filter, Instance, Light, LightKind, Material, MaterialId, Mesh,
     Plane, Projection, Scene, Shadow, Sphere,
 };
+use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A scene that is seen along −z from `z = 5` through one pixel, straight ahead.
@@ -50,8 +50,8 @@ fn radiance(scene: &Scene) -> [f32; 3] {
 fn rendered(scene: &Scene) -> ([f32; 3], Counts) {
     use envers::intersect::Backend;
     let with = |backend| {
-        let options = Options { backend, threads: 1, ..Options::default() };
-        let rendering = render(scene, &options, &|_| {}).unwrap();
+        let options = RenderOptions { backend, threads: 1, ..RenderOptions::default() };
+        let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
         let mut counts = rendering.statistics.counts;
         counts.work.filters = 0; // Only Embree has any.
         (rendering.film.pixel(0, 0), counts)
@@ -276,7 +276,7 @@ fn ground_far_from_the_origin_does_not_shadow_itself() {
         scene.spheres.push(Sphere::new(at - DVec3::Y * 6.4e6, 6.4e6, MaterialId(0)));
         let toward = DVec3::new(0.2, -1.0, 0.1).normalize();
         scene.lights.push(light(LightKind::Directional { direction: toward }));
-        let rendering = render(&scene, &Options::default(), &|_| {}).unwrap();
+        let rendering = Renderer::new(&scene).render().unwrap();
         let lit = 0.5 * -toward.y as f32;
         let ground = rendering.film.pixels.iter().filter(|p| **p != [0.0; 3]).count();
         assert!(ground > 2000, "{ground} pixels at {offset}");

@@ -17,7 +17,7 @@ fn scene_file_of_the_readme_loads() {
     fs::copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(model), folder.path().join(model)).unwrap();
     let path = folder.path().join("scene.toml");
     fs::write(&path, scene).unwrap();
-    let scene = envers::load::load(&path).unwrap();
+    let scene = envers::load(&path).unwrap();
     assert_eq!(scene.spheres.len(), 1);
 }
 

@@ -3,7 +3,7 @@
 #[path = "../examples/reference/mod.rs"]
 mod reference;
 
-use envers::load::load;
+use envers::load;
 use envers::scene::Scene;
 use glam::DVec3;
 use reference::{knot, spheres};

@@ -16,7 +16,7 @@ mod random;
 use std::path::{Path, PathBuf};
 
 use envers::error::{Error, Place};
-use envers::load::load;
+use envers::load;
 use envers::scene::Scene;
 
 /// A camera in two lines, for scenes that are about something else.

@@ -6,12 +6,12 @@ mod common;
 use common::Random;
 use envers::geometry::{Geometry, Hit, Ray};
 use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::render::{Options, render};
 use envers::scene::{
     AlphaMode, Camera, Channel, Coverage, Filter, Image, Instance, Light, LightKind, Material,
     MaterialId, Mesh, NormalMap, OcclusionMap, Plane, Projection, Scene, Shadow, Sphere, Texture,
     TextureId, Transfer,
 };
+use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A matt white material, and one pixel that looks along −z at the origin from `z = 5`.
@@ -71,8 +71,8 @@ fn ambient() -> Light {
 /// The pixel, the same from every backend in either precision.
 fn radiance(scene: &Scene) -> [f32; 3] {
     let with = |backend, precision| {
-        let options = Options { backend, precision, threads: 1, ..Options::default() };
-        render(scene, &options, &|_| {}).unwrap().film.pixel(0, 0)
+        let options = RenderOptions { backend, precision, threads: 1, ..RenderOptions::default() };
+        Renderer::new(scene).options(options.clone()).render().unwrap().film.pixel(0, 0)
     };
     let rust = with(Backend::Rust, Precision::Fast);
     for precision in [Precision::Fast, Precision::Certified] {
@@ -362,7 +362,11 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
         Camera::look_at(eye, target, DVec3::Y, Projection::FovY(45f64.to_radians())).unwrap(),
     );
     (scene.film.size, scene.film.spp) = ([160, 90], spp);
-    let film = render(&scene, &Options { threads: 1, ..Options::default() }, &|_| {}).unwrap().film;
+    let film = Renderer::new(&scene)
+        .options(RenderOptions { threads: 1, ..RenderOptions::default() })
+        .render()
+        .unwrap()
+        .film;
     (0..90)
         .flat_map(|y| (0..160).map(move |x| (x, y)))
         .map(|(x, y)| film.pixel(x, y).into())

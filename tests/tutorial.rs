@@ -9,9 +9,9 @@
 use std::ops::{Add, Mul, Sub};
 use std::path::Path;
 
-use envers::load::load;
-use envers::render::{Options, render};
+use envers::load;
 use envers::write::{Settings, png_bytes};
+use envers::{RenderOptions, Renderer};
 
 const LONGUEUR: usize = 1000;
 const HAUTEUR: usize = 500;
@@ -155,7 +155,7 @@ fn compare(name: &str, part: Part) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes/tutorial").join(name);
     let scene = load(&path).expect("the scene loads");
     assert_eq!(scene.warnings, [""; 0]);
-    let film = render(&scene, &Options::default(), &|_| {}).expect("the scene renders").film;
+    let film = Renderer::new(&scene).render().expect("the scene renders").film;
     let settings = Settings::of(&scene.film);
     let ours = png_bytes(&film, &settings);
     let theirs = coloration(part);

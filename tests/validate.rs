@@ -3,13 +3,13 @@
 
 use std::path::Path;
 
+use envers::LoadOptions;
 use envers::intersect::Precision;
-use envers::load::load_for;
 use envers::measure::validate;
 
 fn passes(name: &str, size: [u32; 2]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);
-    let mut scene = load_for(&path, Some(size)).unwrap();
+    let mut scene = LoadOptions::default().size(size).load(&path).unwrap();
     scene.film.spp = 1;
     for precision in [Precision::Fast, Precision::Certified] {
         let found = validate(&scene, precision, 0, 0).unwrap();

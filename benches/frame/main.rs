@@ -18,8 +18,8 @@ use clock::{median, time};
 use envers::geometry::Ray;
 use envers::integrator::Tiling;
 use envers::intersect::{IntersectorBuilder, Precision};
-use envers::render::{self, Options};
 use envers::scene::Scene;
+use envers::{RenderOptions, Renderer};
 use rayon::prelude::*;
 use record::{Batch, Recorder};
 
@@ -34,8 +34,8 @@ struct Settings {
 }
 
 impl Settings {
-    fn options(&self) -> Options {
-        Options { tiling: self.tiling, ..Options::default() }
+    fn options(&self) -> RenderOptions {
+        RenderOptions { tiling: self.tiling, ..RenderOptions::default() }
     }
 }
 
@@ -149,14 +149,14 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
     if let Some(precision) = settings.ours {
         let (fast, options) = (build(precision), settings.options());
         for _ in 0..settings.rounds {
-            black_box(render::with_intersector(scene, &options, &*fast, &|_| {}));
+            black_box(Renderer::new(scene).options(options.clone()).render_with(&*fast));
         }
         return;
     }
     let (fast, certified) = (build(Precision::Fast), build(Precision::Certified));
     let options = settings.options();
     let recorder = Recorder::new(&*fast);
-    let (_, counts, _) = render::with_intersector(scene, &options, &recorder, &|_| {});
+    let (_, counts, _) = Renderer::new(scene).options(options.clone()).render_with(&recorder);
     let [width, height] = scene.film.size;
     println!("{name} {width}x{height}, {} threads: {:?}", settings.threads, counts.rays);
 
@@ -191,7 +191,7 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
 
     let frame = |intersector: &dyn envers::intersect::Intersector| {
         time(settings.threads, || {
-            black_box(render::with_intersector(scene, &options, intersector, &|_| {}));
+            black_box(Renderer::new(scene).options(options.clone()).render_with(intersector));
         })
     };
     let (mut ours, mut theirs, mut exact) = (Vec::new(), Vec::new(), Vec::new());

@@ -18,9 +18,9 @@ use batches::Batches;
 use criterion::{Criterion, Throughput};
 use envers::geometry::Ray;
 use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
-use envers::render::{self, Options};
 use envers::scene::{IncidentLight, Scene};
 use envers::surface::Surface;
+use envers::{RenderOptions, Renderer};
 use glam::Vec3;
 
 struct Case {
@@ -158,14 +158,14 @@ fn price(case: &Case) {
         );
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let options = Options::default();
+    let options = RenderOptions::default();
     let frame = |intersector: &Embree<'_>| {
         pool.install(|| {
-            black_box(render::with_intersector(&case.scene, &options, intersector, &|_| {}));
+            black_box(Renderer::new(&case.scene).options(options.clone()).render_with(intersector));
         });
     };
     let (_, counts, _) =
-        pool.install(|| render::with_intersector(&case.scene, &options, &fast, &|_| {}));
+        pool.install(|| Renderer::new(&case.scene).options(options.clone()).render_with(&fast));
     beside(
         &format!("{} frame", case.name),
         ["certified", "fast"],

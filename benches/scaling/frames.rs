@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::hint::black_box;
 
 use envers::intersect::{Embree, Precision};
-use envers::render::{self, Options};
 use envers::scene::{LightKind, Scene};
+use envers::{RenderOptions, Renderer};
 use glam::DVec3;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -29,8 +29,7 @@ fn pool(threads: usize) -> ThreadPool {
 
 /// Renders a frame on the current pool; returns how many rays that took.
 fn frame(scene: &Scene, intersector: &Embree<'_>) -> u64 {
-    let (film, counts, _) =
-        render::with_intersector(scene, &Options::default(), intersector, &|_| {});
+    let (film, counts, _) = Renderer::new(scene).render_with(intersector);
     black_box(film);
     counts.rays.total()
 }

@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::cli::load_report::Loaded;
+use crate::cli::load_report::LoadSummary;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
 use crate::intersect::{BuildQuality, BuildStats};
+use crate::load::LoadReport;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
 
@@ -40,7 +41,7 @@ pub struct Stats {
     /// What of it Embree had, at its own peak; null without Embree.
     pub embree_peak_memory_bytes: Option<u64>,
     /// What became of the scene's files.
-    pub report: Loaded,
+    pub report: LoadSummary,
     pub warnings: Vec<String>,
 }
 
@@ -171,13 +172,14 @@ impl Stats {
     pub fn new(
         scene: &Scene,
         frames: usize,
+        report: &LoadReport,
         statistics: &Statistics,
         layers: u64,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
     ) -> Self {
         let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
-        let (name, version) = statistics.backend.clone();
+        let (name, version) = (statistics.backend, statistics.backend_version.clone());
         let Counts { rays, not_finite, .. } = statistics.counts;
         let work = work(scene, statistics, layers);
         Self {
@@ -198,7 +200,7 @@ impl Stats {
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),
             embree_peak_memory_bytes: embree_peak_memory(statistics),
-            report: (&scene.report).into(),
+            report: report.into(),
             warnings,
         }
     }

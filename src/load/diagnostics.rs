@@ -4,7 +4,8 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::scene::{DropReason, LoadReport, Scene};
+use crate::load::report::{DropReason, LoadReport};
+use crate::scene::Scene;
 
 /// Counts, by reason, with the first place of each.
 #[derive(Debug, Default)]
@@ -103,9 +104,9 @@ impl Diagnostics {
         self.report.add(later.report);
     }
 
-    /// Gives a scene its report, and its warnings: one sentence for each reason, with the file's
-    /// name before it. Meshes that stand nowhere are counted as dropped.
-    pub fn finish(mut self, file: &Path, scene: &mut Scene) {
+    /// The load report of a file that was imported as `scene`, with one warning for each reason,
+    /// which begins with the file's name. Meshes without an instance are counted as dropped.
+    pub fn finish(mut self, file: &Path, scene: &Scene) -> LoadReport {
         let mut stands = vec![false; scene.meshes.len()];
         for instance in &scene.instances {
             if let Some(stands) = stands.get_mut(instance.mesh.0 as usize) {
@@ -135,17 +136,15 @@ impl Diagnostics {
                 Kind::Unsupported => self.report.unsupported.push(sentence.clone()),
                 Kind::Placeholder => self.report.placeholders.push(sentence.clone()),
             }
-            scene.warnings.push(sentence);
+            self.report.warnings.push(sentence);
         }
-        scene.report.add(self.report);
+        self.report
     }
 
     /// What it says, without a scene to say it of.
     #[cfg(test)]
     pub fn sentences(self, file: &Path) -> Vec<String> {
-        let mut scene = Scene::default();
-        self.finish(file, &mut scene);
-        scene.warnings
+        self.finish(file, &Scene::default()).warnings
     }
 }
 
@@ -211,12 +210,11 @@ mod tests {
         tally.add("{} normals mended", 1, || "meshes[0]".into());
         tally.unsupported("{} meshes are knitted", 1, || "meshes[1]".into());
         tally.placeholder("images[0] is not there");
-        let mut scene = Scene::default();
-        tally.finish(Path::new("a"), &mut scene);
-        assert_eq!(scene.warnings.len(), 4);
-        assert_eq!(scene.report.unsupported, ["a: meshes are knitted, at meshes[1]"]);
-        assert_eq!(scene.report.placeholders, ["a: images[0] is not there"]);
-        assert_eq!(scene.report.to_string(), "3 read = 0 handed over + 3 not-finite");
+        let report = tally.finish(Path::new("a"), &Scene::default());
+        assert_eq!(report.warnings.len(), 4);
+        assert_eq!(report.unsupported, ["a: meshes are knitted, at meshes[1]"]);
+        assert_eq!(report.placeholders, ["a: images[0] is not there"]);
+        assert_eq!(report.to_string(), "3 read = 0 handed over + 3 not-finite");
     }
 
     #[test]
@@ -229,7 +227,7 @@ mod tests {
             triangles: vec![[0; 3]],
             ..Mesh::default()
         });
-        tally.finish(Path::new("a"), &mut scene);
-        assert_eq!(scene.report.dropped, [(DropReason::Flat, 1)].into());
+        let report = tally.finish(Path::new("a"), &scene);
+        assert_eq!(report.dropped, [(DropReason::Flat, 1)].into());
     }
 }

@@ -4,7 +4,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::diagnostics::Diagnostics;
-use crate::scene::{DropReason, GRAIN, Mesh};
+use crate::load::report::DropReason;
+use crate::scene::{GRAIN, Mesh};
 
 /// Drops triangles that cannot be had, and mends normals, texture coordinates and colours, so
 /// that the mesh is valid.

@@ -13,7 +13,6 @@ mod mesh;
 mod metallic;
 mod mipmap;
 pub mod precision_warnings;
-mod report;
 mod shapes;
 mod texels;
 mod texture;
@@ -33,7 +32,6 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic::{Metallic, MetallicMaps, ShadingParams, sharpness, shininess};
 pub use mipmap::{MipLevel, Mipmap};
-pub use report::{DropReason, LoadReport};
 pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
@@ -72,10 +70,6 @@ pub struct Scene {
     /// How the scene changes with time. What is above is the scene as its files place it;
     /// [`Scene::at`] says how it is at a time.
     pub animation: Option<Animation>,
-    /// What the loader could not do as the files ask, or found odd; one sentence each.
-    pub warnings: Vec<String>,
-    /// What became of its files: what was read, dropped, and not supported.
-    pub report: LoadReport,
 }
 
 impl Scene {

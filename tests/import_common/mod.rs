@@ -35,7 +35,7 @@ impl Folder {
 
     /// Writes a file and loads it.
     pub fn load(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<Scene> {
-        envers::load::load(&self.write(name, bytes))
+        envers::load(&self.write(name, bytes))
     }
 }
 
@@ -288,7 +288,7 @@ pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
 pub fn load_all(files: &[PathBuf]) -> (usize, usize) {
     let (mut loaded, mut refused) = (0, 0);
     for path in files {
-        match envers::load::load(path) {
+        match envers::load(path) {
             Ok(_) => loaded += 1,
             Err(error) => {
                 assert!(!error.message().is_empty(), "{}", path.display());

@@ -138,7 +138,7 @@ fn more_triangles_than_the_limit_are_an_error_that_names_it() {
     let path = folder.write("model.glb", square().glb());
     let limits = Limits::default().with(Limit::Triangles, 1);
     let options = Options { limits, ..Options::default() };
-    let error = envers::load::load_with(&path, &options).unwrap_err().to_string();
+    let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("larger than the limits allow"), "{error}");
 }
 
@@ -151,6 +151,6 @@ fn each_attribute_that_is_unpacked_counts_towards_the_elements() {
     let path = folder.write("model.glb", model.glb());
     let limits = Limits::default().with(Limit::Elements, 100);
     let options = Options { limits, ..Options::default() };
-    let error = envers::load::load_with(&path, &options).unwrap_err().to_string();
+    let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("elements"), "{error}");
 }

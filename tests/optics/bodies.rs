@@ -111,6 +111,6 @@ fn parallel_rays_that_begin_on_both_sides_of_a_surface_each_begin_in_their_own_m
     let absorption = Vec3::splat(1.0);
     let water = scene.add_material(Material { absorption, ..glass(WATER) });
     scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, water));
-    let film = envers::render::render(&scene, &Default::default(), &|_| {}).unwrap().film;
+    let film = Renderer::new(&scene).render().unwrap().film;
     assert_eq!([film.pixel(0, 0)[0], film.pixel(0, 1)[0]], [1.0, 0.0]);
 }

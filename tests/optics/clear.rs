@@ -1,11 +1,11 @@
 //! What is no surface leaves no trace.
 
 use envers::intersect::{Backend, Precision};
-use envers::render::{Options, render};
 use envers::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Projection, Scene,
     Shadow, Sphere,
 };
+use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::common::*;
@@ -47,8 +47,8 @@ fn scene() -> Scene {
 }
 
 fn pixels(scene: &Scene, backend: Backend, precision: Precision) -> Vec<[f32; 3]> {
-    let options = Options { backend, precision, ..Options::default() };
-    render(scene, &options, &|_| {}).unwrap().film.pixels
+    let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+    Renderer::new(scene).options(options.clone()).render().unwrap().film.pixels
 }
 
 /// Compares two scenes bit by bit: in `certified` on each backend, and in `fast` on the one whose

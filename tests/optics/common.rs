@@ -2,8 +2,8 @@
 
 use envers::integrator::Counts;
 use envers::intersect::{Backend, Precision};
-use envers::render::{Options, render};
 use envers::scene::{Camera, Material, MaterialId, Projection, Scene, Sphere};
+use envers::{RenderOptions, Renderer};
 use glam::{DVec3, Vec3};
 
 /// A scene that is seen through one pixel, whose one ray goes from `eye` to `target`.
@@ -40,8 +40,8 @@ pub fn sphere(scene: &mut Scene, center: DVec3, radius: f64, material: Material)
 /// The pixel and the counts; the same from each backend in each precision.
 pub fn rendered(scene: &Scene) -> ([f32; 3], Counts) {
     let with = |backend, precision| {
-        let options = Options { backend, precision, threads: 1, ..Options::default() };
-        let rendering = render(scene, &options, &|_| {}).unwrap();
+        let options = RenderOptions { backend, precision, threads: 1, ..RenderOptions::default() };
+        let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
         (rendering.film.pixel(0, 0), rendering.statistics.counts)
     };
     let judge = with(Backend::Rust, Precision::Certified);

@@ -1,8 +1,8 @@
 //! How far light is followed, and what that costs.
 
 use envers::integrator::{RayCounts, Tiling};
-use envers::render::{Options, render};
 use envers::scene::{Material, Plane, Scene};
+use envers::{RenderOptions, Renderer};
 use glam::{DVec3, Vec3};
 
 use super::common::*;
@@ -95,8 +95,8 @@ fn the_picture_does_not_depend_on_tiles_where_waves_are_cut() {
     let picture = |rows, columns| {
         let tiling = Tiling { rows, columns, ..Tiling::default() };
         let precision = envers::intersect::Precision::Certified;
-        let options = Options { tiling, precision, ..Options::default() };
-        let rendering = render(&scene, &options, &|_| {}).unwrap();
+        let options = RenderOptions { tiling, precision, ..RenderOptions::default() };
+        let rendering = Renderer::new(&scene).options(options.clone()).render().unwrap();
         (rendering.film.pixels, rendering.statistics.counts)
     };
     let (whole, counts) = picture(16, 24);

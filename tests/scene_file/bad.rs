@@ -540,7 +540,7 @@ fn a_file_that_is_not_utf8_is_refused_at_the_byte() {
 fn a_file_that_is_not_there_is_named() {
     let file = File::new("");
     let path = file.beside("none.toml");
-    let error = envers::load::load(&path).unwrap_err();
+    let error = envers::load(&path).unwrap_err();
     assert_eq!((error.path(), error.kind()), (Some(&*path), ErrorKind::Input));
 }
 

@@ -65,7 +65,7 @@ fn warnings_of_a_model_name_it_and_come_once() {
     let scene = scene("[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"two.obj\"\n");
     assert!(!scene.warnings.is_empty());
     assert!(scene.warnings.iter().all(|w| w.contains("two.obj: ")), "{:?}", scene.warnings);
-    let alone = envers::load::load(&file("").beside("two.obj")).unwrap();
+    let alone = envers::load(&file("").beside("two.obj")).unwrap();
     assert_eq!(scene.warnings.len(), alone.warnings.len());
 }
 

@@ -15,8 +15,9 @@ use super::topology;
 use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::mesh_repair::repair;
+use crate::load::report::DropReason;
+use crate::scene::Mesh;
 use crate::scene::animation::{Influences, Morph};
-use crate::scene::{DropReason, Mesh};
 
 /// A primitive, read.
 #[derive(Clone)]

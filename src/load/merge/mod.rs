@@ -43,7 +43,7 @@ pub struct Placement {
 impl MergedModel {
     /// Adds what a model is made of to a scene; nothing of it is seen before it is placed.
     ///
-    /// The model's film and warnings are dropped.
+    /// The model's film is dropped.
     pub fn add(scene: &mut Scene, mut model: Scene) -> Self {
         if scene.animation.is_none() {
             // What is flat as the file places it would be there at another time only.
@@ -85,15 +85,15 @@ impl MergedModel {
     }
 
     /// Places the model in the scene that it was added to. Its own animation is played where the
-    /// scene has one.
-    pub fn place(&self, scene: &mut Scene, placement: &Placement) {
+    /// scene has one. What cannot be placed as it should be is added to `warnings`.
+    pub fn place(&self, scene: &mut Scene, placement: &Placement, warnings: &mut Vec<String>) {
         let transform = &placement.transform;
         let first = Firsts {
             instance: scene.instances.len(),
             sphere: scene.spheres.len(),
             light: scene.lights.len(),
         };
-        self.place_shapes(scene, placement);
+        self.place_shapes(scene, placement, warnings);
         scene.instances.extend(self.instances.iter().map(|instance| Instance {
             transform: *transform * instance.transform,
             material: placement.material.unwrap_or(instance.material),
@@ -113,7 +113,7 @@ impl MergedModel {
                 }
                 None => {
                     cameras.push(None);
-                    scene.warnings.push(format!(
+                    warnings.push(format!(
                         "the model's camera `{}` is left out: its scale leaves it no upward \
                          direction",
                         camera.name
@@ -198,7 +198,7 @@ mod tests {
     fn indices_are_moved_past_what_the_scene_has() {
         let mut scene = model();
         let part = MergedModel::add(&mut scene, model());
-        part.place(&mut scene, &placed(DAffine3::IDENTITY));
+        part.place(&mut scene, &placed(DAffine3::IDENTITY), &mut Vec::new());
         let instance = &scene.instances[1];
         assert_eq!((instance.mesh, instance.material), (MeshId(1), MaterialId(1)));
         assert_eq!(scene.materials[1].diffuse_map, Some(TextureId(1)));
@@ -209,8 +209,8 @@ mod tests {
     fn placing_twice_stores_the_mesh_once() {
         let mut scene = Scene::default();
         let part = MergedModel::add(&mut scene, model());
-        part.place(&mut scene, &placed(DAffine3::IDENTITY));
-        part.place(&mut scene, &placed(turned()));
+        part.place(&mut scene, &placed(DAffine3::IDENTITY), &mut Vec::new());
+        part.place(&mut scene, &placed(turned()), &mut Vec::new());
         assert_eq!((scene.meshes.len(), scene.materials.len(), scene.textures.len()), (1, 1, 1));
         assert_eq!((scene.instances.len(), scene.lights.len(), scene.cameras.len()), (2, 2, 2));
         scene.check().unwrap();
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn the_placement_comes_after_the_models_own_transform() {
         let mut scene = Scene::default();
-        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()), &mut Vec::new());
         // (1, 0, 0) by the model, then turned to y, doubled and moved.
         assert_eq!(scene.instances[0].to_world([0.0; 3]), DVec3::new(10.0, 2.0, 0.0));
     }
@@ -234,7 +234,7 @@ mod tests {
     #[test]
     fn a_light_moves_and_turns_and_keeps_its_strength() {
         let mut scene = Scene::default();
-        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()), &mut Vec::new());
         let light = &scene.lights[0];
         let LightKind::Spot { position, direction, range, .. } = light.kind else {
             panic!("a spot");
@@ -247,7 +247,7 @@ mod tests {
     fn lights_can_be_left_out() {
         let mut scene = Scene::default();
         let dark = Placement { lights: false, ..placed(DAffine3::IDENTITY) };
-        MergedModel::add(&mut scene, model()).place(&mut scene, &dark);
+        MergedModel::add(&mut scene, model()).place(&mut scene, &dark, &mut Vec::new());
         assert!(scene.lights.is_empty());
     }
 
@@ -256,7 +256,7 @@ mod tests {
         let mut scene = Scene::default();
         let gold = scene.add_material(Material::default());
         let golden = Placement { material: Some(gold), ..placed(DAffine3::IDENTITY) };
-        MergedModel::add(&mut scene, model()).place(&mut scene, &golden);
+        MergedModel::add(&mut scene, model()).place(&mut scene, &golden, &mut Vec::new());
         assert_eq!(scene.instances[0].material, gold);
     }
 
@@ -266,7 +266,7 @@ mod tests {
             let (mut scene, mut model) = (Scene::default(), model());
             model.instances[0].casts_shadow = model_casts;
             let placement = Placement { casts_shadow, ..placed(DAffine3::IDENTITY) };
-            MergedModel::add(&mut scene, model).place(&mut scene, &placement);
+            MergedModel::add(&mut scene, model).place(&mut scene, &placement, &mut Vec::new());
             scene.instances[0].casts_shadow
         };
         let all = [casts(true, true), casts(true, false), casts(false, true)];
@@ -276,7 +276,7 @@ mod tests {
     #[test]
     fn a_camera_goes_with_its_model_and_sees_as_much_of_it() {
         let mut scene = Scene::default();
-        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()));
+        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(turned()), &mut Vec::new());
         let camera = &scene.cameras[0];
         assert_eq!(camera.position, DVec3::new(10.0, 0.0, 2.0));
         assert_eq!((camera.forward, camera.up), (-DVec3::Z, -DVec3::X));
@@ -287,7 +287,7 @@ mod tests {
     fn a_camera_in_a_mirrored_model_is_no_mirror() {
         let mut scene = Scene::default();
         let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
-        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(mirror));
+        MergedModel::add(&mut scene, model()).place(&mut scene, &placed(mirror), &mut Vec::new());
         let camera = &scene.cameras[0];
         assert_eq!(camera.right.cross(camera.forward), camera.up);
         scene.check().unwrap();
@@ -299,7 +299,8 @@ mod tests {
         let tilted = Camera::look_at(DVec3::Z, DVec3::Y, DVec3::Y, Projection::FovY(1.0)).unwrap();
         model.cameras = vec![tilted];
         let flat = DAffine3::from_scale(DVec3::new(1.0, 1e-12, 1.0));
-        MergedModel::add(&mut scene, model).place(&mut scene, &placed(flat));
-        assert_eq!((scene.cameras.len(), scene.warnings.len()), (0, 1));
+        let mut warnings = Vec::new();
+        MergedModel::add(&mut scene, model).place(&mut scene, &placed(flat), &mut warnings);
+        assert_eq!((scene.cameras.len(), warnings.len()), (0, 1));
     }
 }

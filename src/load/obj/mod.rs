@@ -30,24 +30,26 @@ use glam::{DAffine3, DVec3};
 use self::library::Library;
 use self::setting::Part;
 use crate::error::{Error, Result};
+use crate::load::Loaded;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::mesh_repair::repair;
+use crate::load::report::DropReason;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::scene::{DropReason, Instance, Mesh, Scene, Transfer};
+use crate::scene::{Instance, Mesh, Scene, Transfer};
 
 /// Loads an `.obj` file; its pictures are read where they are `wanted`.
 ///
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(file: OpenedFile, guard: &Sandbox, wanted: bool) -> Result<Scene> {
+pub fn load(file: OpenedFile, guard: &Sandbox, wanted: bool) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(guard)?;
     import(&path, &bytes, guard, wanted).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], guard: &Sandbox, wanted: bool) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], guard: &Sandbox, wanted: bool) -> Result<Loaded> {
     let mut tally = Diagnostics::default();
     let text = lines::decode(bytes)?;
     let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
@@ -76,8 +78,8 @@ fn import(path: &Path, bytes: &[u8], guard: &Sandbox, wanted: bool) -> Result<Sc
     if scene.instances.is_empty() {
         tally.say("there is no face in the file");
     }
-    tally.finish(path, &mut scene);
-    Ok(scene)
+    let report = tally.finish(path, &scene);
+    Ok(Loaded { scene, report })
 }
 
 /// What stands for a full vertex colour: 1, or 255 where a value is above 1.

@@ -10,7 +10,7 @@ use super::setting::{Counts, Part, Place, Setting};
 use super::vertices;
 use crate::error::{self, Result};
 use crate::load::diagnostics::Diagnostics;
-use crate::scene::DropReason;
+use crate::load::report::DropReason;
 
 /// A chunk sorted.
 #[derive(Debug, Default)]

@@ -1,4 +1,4 @@
-//! What may be written about motion: `[animation]` and its tables.
+//! The tables of a scene file that describe motion: `[animation]` and those in it.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -14,69 +14,71 @@ use super::values::{
     Rotation, Scale, Seconds,
 };
 
-/// What moves, and for how long.
+/// The motion of objects, and its length.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AnimationTable {
-    /// How many frames there are, from 1 to 1000000.
+    /// The number of frames, from 1 to 1000000.
     pub frames: FrameCount,
-    /// Frames in a second.
+    /// The number of frames per second.
     #[schemars(extend("default" = 24))]
     pub fps: Option<Rate>,
-    /// Objects that go round others, or along with them.
+    /// Objects that circle around others, or move along with them.
     #[serde(default)]
     pub orbit: Tables<OrbitTable>,
-    /// Objects whose keys change with time.
+    /// Objects whose keys change over time.
     #[serde(default)]
     pub track: Tables<TrackTable>,
 }
 
-/// An object that goes round a centre, from where its own table places it.
+/// An orbit: an object circles around a centre, starting where its own table places it.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OrbitTable {
-    /// The name of the object that goes round.
+    /// The name of the object that circles.
     pub object: At<String>,
     /// The centre: a point, or the name of an object, which may move itself.
     pub around: At<PointOrName>,
-    /// Seconds for one turn; without it the object only keeps beside its centre.
+    /// The seconds for one turn. Without it the object does not circle, but moves along with its
+    /// centre.
     pub period: Option<Seconds>,
-    /// The axis, of any length but zero: counterclockwise seen against it.
+    /// The axis of the orbit, of any length but zero. Seen from the axis's end, the object circles
+    /// counterclockwise.
     #[schemars(extend("default" = [0, 1, 0]))]
     pub axis: Option<Direction>,
-    /// Whether it turns as it goes round, so that the same side always faces the centre.
+    /// True if the object turns as it circles, so that the same side always faces the centre.
     #[schemars(extend("default" = false))]
     pub turn: Option<bool>,
 }
 
-/// Values at certain times of keys of an object's own table, in place of the one value there.
+/// A track: values over time for keys of an object's own table, which replace the one value there.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TrackTable {
     /// The name of the object.
     pub object: At<String>,
-    /// Times in seconds, increasing: one for each value.
+    /// The times of the values in seconds, increasing: one for each value.
     pub times: At<List<At<Coordinate>>>,
-    /// What is between the values: a straight line, nothing, or a curve without corners.
+    /// The interpolation between the values: linear, a step, or a smooth curve.
     #[schemars(extend("default" = "linear"))]
     pub interpolation: Option<Interpolation>,
     /// Centres (sphere).
     pub center: Option<At<List<Point>>>,
     /// Radii (sphere).
     pub radius: Option<At<List<Length>>>,
-    /// Where its origin goes (model).
+    /// Positions of the origin (model).
     pub translate: Option<At<List<Point>>>,
-    /// Angles in degrees, each of the three changing by itself (model).
+    /// Angles in degrees, each of which is interpolated by itself (model).
     pub rotate: Option<At<List<Rotation>>>,
-    /// Factors, one or three (model).
+    /// Scales: one factor, or three (model).
     pub scale: Option<At<List<Scale>>>,
-    /// Where it stands (light, camera).
+    /// Positions (light, camera).
     pub position: Option<At<List<Point>>>,
-    /// Where it travels or looks (light, camera).
+    /// Directions in which the light travels or the camera looks (light, camera).
     pub direction: Option<At<List<Direction>>>,
-    /// Points that it looks at (camera).
+    /// Points that the camera looks at (camera).
     pub look_at: Option<At<List<Point>>>,
-    /// Factors of its colour (light).
+    /// Factors on the colour (light).
     pub intensity: Option<At<List<Amount>>>,
     /// Fields of view from the lower to the upper edge, in degrees (camera).
     pub fov_y: Option<At<List<FieldOfView>>>,
@@ -84,20 +86,20 @@ pub struct TrackTable {
     pub fov_x: Option<At<List<FieldOfView>>>,
     /// Distances from the eye to the picture, in pixels of the film's `size` (camera).
     pub focal_px: Option<At<List<Length>>>,
-    /// Heights of what is seen, for a camera without perspective (camera).
+    /// Heights of the view, for an orthographic camera (camera).
     pub ortho_height: Option<At<List<Length>>>,
 }
 
-/// What is between two values.
+/// The interpolation between two values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Interpolation {
     /// A straight line.
     #[default]
     Linear,
-    /// The value stays, and then jumps.
+    /// The first value, then a jump.
     Step,
-    /// A curve without corners that starts and ends at rest and does not go beyond the values.
+    /// A smooth curve that starts and ends at rest and does not go beyond the values.
     Smooth,
 }
 

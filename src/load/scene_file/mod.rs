@@ -1,4 +1,4 @@
-//! The scene file: TOML in, a [`Scene`] out.
+//! The scene file: TOML in, a [`Scene`](crate::scene::Scene) out.
 //!
 //! Three steps, each in its own files: `tables` and what it is made of say what may be written
 //! (and give the JSON Schema); serde reads the text into them and `report` puts what it refuses
@@ -26,9 +26,8 @@ mod track;
 mod values;
 
 use crate::error::{Error, Place, Result};
-use crate::load::Options;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::scene::Scene;
+use crate::load::{LoadOptions, Loaded};
 
 pub use schema::schema;
 
@@ -37,7 +36,7 @@ pub use schema::schema;
 /// # Errors
 /// When a file cannot be read, or says something that it cannot mean; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(file: OpenedFile, guard: &Sandbox, options: &Options) -> Result<Scene> {
+pub fn load(file: OpenedFile, guard: &Sandbox, options: &LoadOptions) -> Result<Loaded> {
     let path = &file.path.clone();
     let bytes = file.read(guard)?;
     let text = utf8(&bytes).map_err(|e| e.at(path))?;

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::load::limits::Limit;
 use crate::load::merge::{MergedModel, Placement};
 use crate::load::sandbox::OpenedFile;
-use crate::load::{self, Choice};
+use crate::load::{self, Choice, Loaded};
 use crate::scene::check::MAX_COORDINATE;
 
 /// The model files loaded so far, by their canonical paths, the animations that they play and the
@@ -41,17 +41,17 @@ impl Models {
                     variant: variant.as_deref(),
                     pictures: resolver.shown.model(&path),
                 };
-                let mut model = load::model(file, resolver.guard, &choice)?;
+                let Loaded { scene: mut model, report } =
+                    load::model(file, resolver.guard, &choice)?;
                 if let Some(At { span, value }) = &table.variant {
-                    load::check_variant(value, &model.report)
+                    load::check_variant(value, &report)
                         .map_err(|e| resolver.source.place(span, e))?;
                 }
-                // Each names the model already.
-                resolver.scene.warnings.append(&mut model.warnings);
-                resolver.scene.report.add(std::mem::take(&mut model.report));
+                // Its warnings name the model already.
+                resolver.report.add(report);
                 let is_still = resolver.scene.animation.is_none();
                 if is_still && model.animation.take().is_some() {
-                    resolver.scene.warnings.push(format!(
+                    resolver.report.warnings.push(format!(
                         "{}: its animation is not played: the scene has no [animation]",
                         path.display()
                     ));
@@ -78,7 +78,8 @@ impl Models {
         let place = |e| resolver.source.place(&table.file.span, e);
         self.placed += part.count();
         resolver.guard.check(Limit::Instances, self.placed).map_err(place)?;
-        part.place(&mut resolver.scene, &placement);
+        let warnings = &mut resolver.report.warnings;
+        part.place(&mut resolver.scene, &placement, warnings);
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
-//! What may be written in a scene file: one type a table, one field a key.
+//! The tables of a scene file: one type per table, one field per key.
 //!
-//! The comments and the defaults here are those of the JSON Schema; a test holds the defaults to
+//! The comments and defaults here become those of the JSON Schema. A test compares the defaults with
 //! what a missing key means.
 
 use schemars::JsonSchema;
@@ -15,17 +15,17 @@ use super::values::{
 };
 use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
 
-/// A scene for envers: what stands in it, what lights it, and who looks at it.
+/// The contents of a scene file: objects, lights, cameras, and the picture to make of them.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 #[schemars(title = "envers scene")]
 pub struct SceneTable {
-    /// What the picture is to be.
+    /// The size and quality of the picture.
     pub film: Table<FilmTable>,
-    /// The eye; several under `[[camera]]`, of which the first is used unless another is asked
-    /// for. Without one: the first model's own camera, or one that frames the scene.
+    /// The camera. Several are written as `[[camera]]`; the first is used unless another is chosen.
+    /// Without one: the first model's own camera, or one that frames the scene.
     pub camera: OneOrMore<CameraTable>,
-    /// What things are made of.
+    /// Materials.
     pub material: Tables<MaterialTable>,
     /// Spheres.
     pub sphere: Tables<SphereTable>,
@@ -35,11 +35,11 @@ pub struct SceneTable {
     pub model: Tables<ModelTable>,
     /// Lights.
     pub light: Tables<LightTable>,
-    /// What moves, and for how long.
+    /// The motion of objects, and its length.
     pub animation: Option<At<Table<AnimationTable>>>,
 }
 
-/// What the picture is to be.
+/// The size and quality of the picture.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct FilmTable {
@@ -49,147 +49,147 @@ pub struct FilmTable {
     /// Samples per pixel, from 1 to 65536.
     #[schemars(extend("default" = 1))]
     pub spp: Option<Samples>,
-    /// The fewest and the most samples per pixel, in place of `spp`: more than the fewest where
-    /// neighbouring ones disagree in what they hit, in its normal or in colour.
+    /// The fewest and the most samples per pixel, in place of `spp`. A pixel gets more than the
+    /// fewest where neighbouring samples differ in what they hit, in its normal or in colour.
     pub adaptive: Option<At<SampleRange>>,
-    /// From which difference on two colours disagree, from 0 (always) to 1; for `adaptive`, where it
-    /// is 0.1 unless it is said.
+    /// The difference from which two colours count as different for `adaptive`, from 0 (always) to
+    /// 1; 0.1 by default.
     pub threshold: Option<At<Share>>,
-    /// How the PNG encodes light, and what hex colours are decoded by: the sRGB curve, or none.
+    /// The curve by which the PNG encodes light and hex colours are decoded: sRGB, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,
-    /// The PNG's light is multiplied with 2 to the power of this.
+    /// The exposure of the PNG, in EV: its light is multiplied by 2 to this power.
     #[schemars(extend("default" = 0))]
     pub exposure: Option<Number>,
-    /// How the PNG shows what is brighter than white: as white, or by a tone curve.
+    /// The tone curve of the PNG, which decides how light brighter than white is shown.
     #[schemars(extend("default" = "none"))]
     pub tone: Option<Tone>,
-    /// The colour where there is nothing.
+    /// The colour where a ray hits nothing.
     #[schemars(extend("default" = "#000000"))]
     pub background: Option<Color>,
-    /// Where in its pixel a sample is centred: the middle or the upper left corner.
+    /// The point of its pixel on which a sample is centred: the middle or the upper left corner.
     #[schemars(extend("default" = "center"))]
     pub sample_position: Option<SamplePosition>,
-    /// How often light is followed off mirrors and through glass, from 0 to 65536.
+    /// The most reflections and refractions in a row, from 0 to 65536.
     #[schemars(extend("default" = 8))]
     pub max_depth: Option<Depth>,
-    /// Rays that can add no more than this share of what they see are not followed; 0 leaves out
-    /// only those that add nothing.
+    /// The share of a pixel up to which a secondary ray is not traced; 0 leaves out only rays that
+    /// add nothing.
     #[schemars(extend("default" = 0))]
     pub cutoff: Option<Share>,
 }
 
-/// The eye. It looks at `look_at` or along `direction`, and sees as much as one of `fov_y`,
-/// `fov_x`, `focal_px` and `ortho_height` says.
+/// A camera. It looks at `look_at` or along `direction`. One of `fov_y`, `fov_x`, `focal_px` and
+/// `ortho_height` says how much it sees.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
-    /// A name to choose it by, and to move it by; unique among all objects.
+    /// The name by which the camera is chosen and moved; unique among all objects.
     pub name: Option<At<String>>,
-    /// Where it stands.
+    /// The position of the camera.
     pub position: Point,
-    /// The point that it looks at, or the name of the object.
+    /// The point that the camera looks at, or the name of an object.
     pub look_at: Option<At<PointOrName>>,
-    /// The direction that it looks in, in place of `look_at`.
+    /// The direction in which the camera looks, in place of `look_at`.
     pub direction: Option<At<Direction>>,
-    /// What is upward in the picture.
+    /// The direction that is upward in the picture.
     #[schemars(extend("default" = [0, 1, 0]))]
     pub up: Option<At<Direction>>,
-    /// Field of view from the lower to the upper edge, in degrees.
+    /// The field of view from the lower to the upper edge, in degrees.
     #[schemars(extend("default" = 45))]
     pub fov_y: Option<At<FieldOfView>>,
-    /// Field of view from the left to the right edge, in degrees.
+    /// The field of view from the left to the right edge, in degrees.
     pub fov_x: Option<At<FieldOfView>>,
-    /// Distance from the eye to the picture, in pixels of the film's `size`.
+    /// The distance from the eye to the picture, in pixels of the film's `size`.
     pub focal_px: Option<At<Length>>,
-    /// Height of what is seen, in world units, for a camera without perspective.
+    /// The height of the view in world units, for an orthographic camera.
     pub ortho_height: Option<At<Length>>,
 }
 
-/// What things are made of: Lambert's diffuse and Phong's specular reflection.
+/// A material: Lambert's diffuse and Phong's specular reflection, mirrors and glass.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MaterialTable {
-    /// The name that objects refer to it by; unique among the materials.
+    /// The name by which objects refer to the material; unique among the materials.
     pub name: At<String>,
-    /// Share of the light that is scattered to all sides.
+    /// The share of the light that is scattered in all directions.
     #[schemars(extend("default" = 0.8))]
     pub diffuse: Option<At<Color>>,
-    /// Picture file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied with
-    /// `diffuse`.
+    /// An image file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied
+    /// by `diffuse`.
     pub diffuse_map: Option<At<String>>,
-    /// Share of the light in the highlight.
+    /// The share of the light in Phong's highlight.
     #[schemars(extend("default" = 0))]
     pub specular: Option<Color>,
-    /// Picture file, in sRGB, multiplied with `specular`.
+    /// An image file, in sRGB, multiplied by `specular`.
     pub specular_map: Option<At<String>>,
     /// Phong's exponent: the greater, the smaller the highlight.
     #[schemars(extend("default" = 50))]
     pub shininess: Option<Shininess>,
-    /// Light of its own, which lights nothing else.
+    /// The light that the surface emits; it lights nothing else.
     #[schemars(extend("default" = 0))]
     pub emission: Option<Color>,
-    /// Picture file, in sRGB, multiplied with `emission`.
+    /// An image file, in sRGB, multiplied by `emission`.
     pub emission_map: Option<At<String>>,
-    /// Picture file of normals in tangent space, as in glTF: linear, y up in the picture.
+    /// An image file of normals in tangent space, as in glTF: linear, y up in the image.
     pub normal_map: Option<At<String>>,
-    /// How the pictures are read: `"nearest"`, `"linear"`, or `"mipmap"`, which averages what each
-    /// sample sees of them.
+    /// The filter of the material's images: `"nearest"`, `"linear"`, or `"mipmap"`, which averages
+    /// the area that a sample covers.
     #[schemars(extend("default" = "linear"))]
     pub filter: Option<MapFilter>,
-    /// What the alpha of `diffuse_map` means: nothing, a hole where it is below `alpha_cutoff`, or
-    /// how much is covered of what lies behind.
+    /// The meaning of the alpha of `diffuse_map`: none; a hole where it is below `alpha_cutoff`; or
+    /// the share of what lies behind that the surface covers.
     #[schemars(extend("default" = "opaque"))]
     pub alpha_mode: Option<At<MapAlpha>>,
-    /// The alpha below which `alpha_mode = "mask"` cuts holes; 0.5 unless it is said.
+    /// The alpha below which `alpha_mode = "mask"` cuts holes. The default is 0.5.
     pub alpha_cutoff: Option<At<Share>>,
-    /// Share of what is seen in it as in a mirror.
+    /// The share of the light that is reflected as by a mirror.
     #[schemars(extend("default" = 0))]
     pub reflect: Option<At<Color>>,
-    /// Share of what is seen through it as through glass, less what Fresnel's law reflects.
+    /// The share of the light that goes through as through glass, less what Fresnel's law reflects.
     #[schemars(extend("default" = 0))]
     pub transmit: Option<At<Color>>,
-    /// Index of refraction of what is inside.
+    /// The index of refraction of the inside.
     #[schemars(extend("default" = 1.5))]
     pub ior: Option<Index>,
-    /// What is lost on the way through it, for each unit of length: light falls to e^(−absorption).
-    /// One number, or three for red, green and blue.
+    /// The absorption of the inside per unit of length: light falls to e^(−absorption). One number,
+    /// or three for red, green and blue.
     #[schemars(extend("default" = 0))]
     pub absorption: Option<Triple>,
-    /// Whether it is a thin sheet, such as a pane, with nothing inside.
+    /// True if the object is a thin sheet, such as a pane, with no inside.
     #[schemars(extend("default" = false))]
     pub thin: Option<bool>,
-    /// Which of two things holds where both are: the one with the greater priority, of two equal
-    /// ones the smaller thing.
+    /// The priority where two transparent bodies overlap: the body with the greater one fills the
+    /// place; with equal ones, the smaller body does.
     #[schemars(extend("default" = 0))]
     pub priority: Option<Priority>,
-    /// Whether a sphere is lit on its inside too; planes and meshes always are.
+    /// True if a sphere is lit on its inside too. Planes and meshes always are.
     #[schemars(extend("default" = false))]
     pub double_sided: Option<bool>,
 }
 
-/// How pictures are read.
+/// The filter by which images are read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MapFilter {
-    /// The pixel that holds the point.
+    /// The pixel at the point.
     Nearest,
-    /// The four around it, in proportion.
+    /// The four pixels around the point, weighted by distance.
     #[default]
     Linear,
-    /// The mean of what a sample sees.
+    /// The mean of the area that a sample covers.
     Mipmap,
 }
 
-/// What the alpha of a picture means.
+/// The meaning of the alpha of an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum MapAlpha {
-    /// Nothing.
+    /// No meaning: the surface is opaque.
     Opaque,
-    /// A hole where it is below a cutoff.
+    /// A hole where the alpha is below a cutoff.
     Mask,
-    /// How much is covered of what lies behind.
+    /// The share of what lies behind that the surface covers.
     Blend,
 }
 
@@ -197,15 +197,15 @@ pub enum MapAlpha {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SphereTable {
-    /// A name to move it by, or to look at it; unique among all objects.
+    /// The name by which the sphere is moved or looked at; unique among all objects.
     pub name: Option<At<String>>,
-    /// Its centre.
+    /// The centre of the sphere.
     pub center: Point,
-    /// Its radius, above 0.
+    /// The radius of the sphere, above 0.
     pub radius: At<Length>,
-    /// The name of its material; without one it is of a plain grey.
+    /// The name of the sphere's material. The default is plain grey.
     pub material: Option<At<String>>,
-    /// Whether it keeps light from what lies behind it.
+    /// True if the sphere casts shadows.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
 }
@@ -214,18 +214,18 @@ pub struct SphereTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaneTable {
-    /// Any point of it.
+    /// Any point of the plane.
     pub point: Point,
-    /// Its normal, of any length but zero.
+    /// The normal of the plane, of any length but zero.
     pub normal: Direction,
-    /// The name of its material; without one it is of a plain grey.
+    /// The name of the plane's material. The default is plain grey.
     pub material: Option<At<String>>,
     /// A checker in place of the material's diffuse colour.
     pub checker: Option<Table<CheckerTable>>,
-    /// The side of the square that a picture of its material takes before it repeats.
+    /// The side of the square that an image of the material covers before it repeats.
     #[schemars(extend("default" = 1))]
     pub texture_size: Option<Length>,
-    /// Whether it keeps light from what lies behind it.
+    /// True if the plane casts shadows.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
 }
@@ -234,41 +234,42 @@ pub struct PlaneTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CheckerTable {
-    /// The colours of its squares.
+    /// The two colours of the squares.
     pub colors: Pair,
     /// The side of a square.
     #[schemars(extend("default" = 1))]
     pub size: Option<Length>,
 }
 
-/// A model from another file, placed by translate · rotate · scale.
+/// A model from another file: scaled, then rotated, then translated.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelTable {
-    /// A name to move it by, or to look at it; unique among all objects.
+    /// The name by which the model is moved or looked at; unique among all objects.
     pub name: Option<At<String>>,
-    /// The file, `.gltf`, `.glb` or `.obj`, relative to the scene file.
+    /// The model file, `.gltf`, `.glb` or `.obj`, relative to the scene file.
     pub file: At<String>,
-    /// Where its origin goes.
+    /// The position of the model's origin.
     #[schemars(extend("default" = [0, 0, 0]))]
     pub translate: Option<Point>,
-    /// Angles in degrees about the fixed x axis, then y, then z.
+    /// The rotation: angles in degrees about the fixed x axis, then y, then z.
     #[schemars(extend("default" = [0, 0, 0]))]
     pub rotate: Option<Rotation>,
-    /// One factor, or one for each axis; not zero, negative to mirror.
+    /// The scale: one factor, or one for each axis; not zero, negative to mirror.
     #[schemars(extend("default" = 1))]
     pub scale: Option<Scale>,
-    /// The name of a material in place of the model's own.
+    /// The name of a material that replaces the model's own.
     pub material: Option<At<String>>,
-    /// Whether it keeps light from what lies behind it.
+    /// True if the model casts shadows.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
-    /// Whether the lights in the model's file shine.
+    /// True if the lights in the model's file shine.
     #[schemars(extend("default" = true))]
     pub lights: Option<bool>,
-    /// Which of the animations in a glTF file it plays, by name; without one, the first.
+    /// The name of the animation that a glTF model plays. The default is its first.
     pub animation: Option<At<String>>,
-    /// Which variant of its materials a glTF file shows, by name; without one, the default.
+    /// The name of the material variant that a glTF model shows. The default is the one of the
+    /// file.
     pub variant: Option<At<String>>,
 }
 
@@ -276,47 +277,48 @@ pub struct ModelTable {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
-    /// A name to move it by, or to look at it; unique among all objects.
+    /// The name by which the light is moved or looked at; unique among all objects.
     pub name: Option<At<String>>,
-    /// From a point to all sides, from far away, from a point within a cone, or from everywhere.
+    /// The kind of light: point, directional (very far away), spot (a point with a cone) or
+    /// ambient.
     pub kind: At<Kind>,
-    /// Where it stands (point, spot).
+    /// The position of the light (point, spot).
     pub position: Option<At<Point>>,
-    /// Where the light travels (directional, spot).
+    /// The direction in which the light travels (directional, spot).
     pub direction: Option<At<Direction>>,
-    /// Half-angle of the cone within which the light is whole, in degrees (spot).
+    /// The half-angle, in degrees, of the cone that has full light (spot).
     #[schemars(extend("default" = 0))]
     pub inner_angle: Option<At<HalfAngle>>,
-    /// Half-angle of the cone beyond which there is no light, in degrees (spot).
+    /// The half-angle, in degrees, of the cone outside which there is no light (spot).
     #[schemars(extend("default" = 45))]
     pub outer_angle: Option<At<HalfAngle>>,
-    /// Its colour.
+    /// The colour of the light.
     #[schemars(extend("default" = [1, 1, 1]))]
     pub color: Option<Color>,
-    /// A factor of its colour.
+    /// A factor on the colour.
     #[schemars(extend("default" = 1))]
     pub intensity: Option<At<Amount>>,
-    /// How it weakens with distance: not at all, or with the square (point, spot).
+    /// The decrease with distance: none, or with its square (point, spot).
     #[schemars(extend("default" = "none"))]
     pub falloff: Option<At<Falloff>>,
-    /// The distance at which it has faded to nothing; without one there is none (point, spot).
+    /// The distance at which the light has faded to nothing. The default is no limit (point, spot).
     pub range: Option<At<Length>>,
-    /// Whether things keep it from what lies behind them (all but ambient): `true` and `"tinted"`
-    /// let glass pass on what its colour leaves, `"opaque"` does not.
+    /// The shadows of the light (not ambient): with `true` and `"tinted"` glass lets light through
+    /// and tints it; with `"opaque"` glass blocks it; `false` means no shadows.
     #[schemars(extend("default" = true))]
     pub shadow: Option<At<ShadowKind>>,
 }
 
-/// What kind of light.
+/// The kind of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// From a point to all sides.
+    /// A point that shines in all directions.
     Point,
-    /// From very far away.
+    /// A light from very far away.
     Directional,
-    /// From a point within a cone.
+    /// A point that shines within a cone.
     Spot,
-    /// From everywhere: Phong's ambient term.
+    /// Light from everywhere: Phong's ambient term.
     Ambient,
 }

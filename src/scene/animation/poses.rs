@@ -40,8 +40,6 @@ impl<'a> Poses<'a> {
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             animation: None,
-            warnings: scene.warnings.clone(),
-            report: scene.report.clone(),
         };
         let mesh_bounds = vec![None; scene.meshes.len()];
         Self { scene, posed, lacks_flat: false, mesh_bounds, shapes: Vec::new() }

@@ -65,7 +65,7 @@ impl Resolver<'_> {
             self.too_bright += 1;
             // To find a line takes as long as there are lines before it.
             if self.too_bright <= MAX_NAMED {
-                self.scene.warnings.push(format!(
+                self.report.warnings.push(format!(
                     "{}: the material `{name}` scatters more light than it gets (numbers in \
                      `diffuse` go from 0 to 1; for values from 0 to 255 write \"#rrggbb\")",
                     self.source.shown(span)

@@ -18,8 +18,8 @@ use super::source::{Source, Span};
 use super::spanned::{At, Table};
 use super::tables::{CameraTable, LightTable, PlaneTable, SceneTable, SphereTable};
 use crate::error::Result;
-use crate::load::Options;
 use crate::load::sandbox::Sandbox;
+use crate::load::{LoadOptions, LoadReport, Loaded};
 use crate::scene::animation::Animated;
 use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Checker, MaterialId, Plane, Scene, Sphere};
@@ -32,8 +32,8 @@ pub fn scene(
     source: &Source<'_>,
     tables: SceneTable,
     guard: &Sandbox,
-    options: &Options,
-) -> Result<Scene> {
+    options: &LoadOptions,
+) -> Result<Loaded> {
     if tables.camera.0.is_empty() && tables.model.0.is_empty() {
         let end = source.text.trim_end().len();
         return Err(source
@@ -51,6 +51,7 @@ pub fn scene(
         variant: options.variant.as_deref(),
         rigs: &rigs,
         scene: Scene { film, animation, ..Scene::default() },
+        report: LoadReport::default(),
         materials: HashMap::new(),
         plain: None,
         pictures: Pictures::default(),
@@ -63,13 +64,13 @@ pub fn scene(
     tables.light.0.iter().try_for_each(|l| resolver.light(&l.value.0))?;
     let mut models = Models::default();
     tables.model.0.iter().try_for_each(|m| models.place(&mut resolver, &m.value.0))?;
-    let mut scene = resolver.scene;
+    let Resolver { mut scene, mut report, .. } = resolver;
     resolver.pictures.decode(source, guard, &mut scene)?;
     if let more @ 1.. = resolver.too_bright.saturating_sub(MAX_NAMED) {
         let file = source.shown(&(0..0));
-        scene.warnings.push(format!("{file}: {more} more materials scatter more than they get"));
+        report.warnings.push(format!("{file}: {more} more materials scatter more than they get"));
     }
-    Ok(scene)
+    Ok(Loaded { scene, report })
 }
 
 /// What is under way while a scene is put together.
@@ -88,6 +89,8 @@ pub struct Resolver<'a> {
     pub rigs: &'a Rigs,
     /// The scene so far.
     pub scene: Scene,
+    /// The load report so far.
+    pub report: LoadReport,
     /// The file's own materials by name, each with the place of its name.
     materials: HashMap<String, (MaterialId, Span)>,
     /// The material of what names none, once there is such a thing.

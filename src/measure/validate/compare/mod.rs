@@ -13,7 +13,7 @@ use crate::integrator::sample_positions;
 use crate::intersect::{Coherence, Intersector, Precision};
 use crate::measure::mismatch::{MismatchCause, MismatchClassifier};
 use crate::measure::replay::ray_to_text;
-use crate::render::{self, Options};
+use crate::render::Renderer;
 use crate::scene::{RayGenerator, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
@@ -191,11 +191,9 @@ impl Comparer<'_> {
 
     /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
     fn pictures(&self, heatmap: &mut Film) -> (Differing, Tally) {
-        let options = Options { camera: self.camera, ..Options::default() };
         let settings = Settings::of(&self.scene.film);
-        let film = |intersector: &dyn Intersector| {
-            render::with_intersector(self.scene, &options, intersector, &|_| {}).0
-        };
+        let renderer = Renderer::new(self.scene).camera(self.camera);
+        let film = |intersector: &dyn Intersector| renderer.render_with(intersector).film;
         let witness = Witness::new(self);
         let (a, b) = (film(self.subject), film(&witness));
         let values = |film: &Film| film.pixels.as_flattened().to_vec();

@@ -1,9 +1,22 @@
-//! What became of a scene's files when they were loaded.
+//! The load report: warnings, and what became of everything that a scene's files hold.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
-/// What importers read, handed over, dropped and could not do as the files ask.
+use crate::scene::Scene;
+
+/// A scene, and beside it the report of its load.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Loaded {
+    /// The scene, complete and checked.
+    pub scene: Scene,
+    /// The load report.
+    pub report: LoadReport,
+}
+
+/// The account of a load: what importers read, handed over, dropped and could not do as the files
+/// ask.
 ///
 /// A face is a triangle; a polygon of n corners counts as the n − 2 triangles that it is cut into,
 /// and each point, line or curve counts as one. A mesh is read once, however often it stands in the
@@ -16,11 +29,13 @@ pub struct LoadReport {
     pub handed_over: u64,
     /// Faces that do not, by reason; no reason has 0.
     pub dropped: BTreeMap<DropReason, u64>,
+    /// Warnings: what could not be done as the files ask, or looks odd; one sentence each.
+    pub warnings: Vec<String>,
     /// Features that a file uses and that are not supported; one sentence each, also among the
-    /// scene's warnings.
-    pub unsupported: Vec<String>,
-    /// Pictures and materials in whose place a placeholder stands; one sentence each, also among the scene's
     /// warnings.
+    pub unsupported: Vec<String>,
+    /// Pictures and materials in whose place a placeholder stands; one sentence each, also among
+    /// the warnings.
     pub placeholders: Vec<String>,
     /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
     pub variants: BTreeSet<String>,
@@ -98,6 +113,7 @@ impl LoadReport {
         for (reason, count) in other.dropped {
             *self.dropped.entry(reason).or_default() += count;
         }
+        self.warnings.extend(other.warnings);
         self.unsupported.extend(other.unsupported);
         self.placeholders.extend(other.placeholders);
         self.variants.extend(other.variants);
