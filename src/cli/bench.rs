@@ -11,8 +11,8 @@ use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::measure::bench::{self, Options, Samples, Setup};
+use crate::scene::Scene;
 use crate::scene::check::MAX_SPP;
-use crate::scene::{Scene, precision_warnings};
 use crate::write;
 
 /// The longer side of a quick picture, at most.
@@ -100,7 +100,7 @@ pub fn run(arguments: &Bench) -> Outcome {
     let [json, csv, plot, html] = &files;
     output::write_json(json, &found)?;
     for (path, text) in [(csv, found.csv()), (plot, svg), (html, page)] {
-        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        write::write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     }
     output::print(&format!("{found}{}\n", html.display()))?;
     Ok(Verdict::Good)
@@ -177,7 +177,7 @@ fn warnings(scene: &Scene, mut warnings: Vec<String>, options: &Options) -> Vec<
         .setups
         .iter()
         .any(|setup| setup.backend.name() != "rust" && setup.precision == Precision::Fast);
-    warnings.extend(precision_warnings::precision_warnings(scene, f32_rays));
+    warnings.extend(report::precision_warnings(scene, f32_rays));
     warnings
 }
 

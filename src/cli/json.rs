@@ -59,7 +59,7 @@ pub struct Adaptive {
 
 impl Adaptive {
     fn of(film: &FilmSettings, counts: &Counts) -> Option<Self> {
-        let scene::Adaptive { max, threshold } = film.adaptive?;
+        let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
         let steps = sample_steps(film);
         let refined = counts.refined[..steps.len() - 1].to_vec();
         Some(Self { max, threshold, steps, refined })
@@ -193,7 +193,7 @@ impl Stats {
             geometry: Geometry::of(scene),
             build: statistics.into(),
             rays: rays.into(),
-            skipped: skipped(&SceneFeatures::of(scene), &work),
+            skipped: skipped(&SceneFeatures::from_scene(scene), &work),
             work,
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },

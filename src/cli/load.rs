@@ -30,7 +30,7 @@ pub struct Loading {
 impl Loading {
     /// The options of a load.
     pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
-        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
+        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with_limit(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
         let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
         LoadOptions { size, variant, allow_outside, limits }
@@ -91,7 +91,7 @@ impl Tracing {
     /// As [`Tracing::load_animated`].
     pub fn load(&self) -> Result<Input> {
         let input = self.load_animated()?;
-        Ok(Input { scene: input.scene.at(0.0)?, ..input })
+        Ok(Input { scene: input.scene.at_time(0.0)?, ..input })
     }
 
     /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
@@ -122,7 +122,7 @@ impl Tracing {
                 let error = Error::input("the scene has no animation, and so no --time");
                 return Err(error.at(&self.scene).help("leave --time out"));
             }
-            scene = scene.at(time).map_err(|e| e.at(&self.scene))?;
+            scene = scene.at_time(time).map_err(|e| e.at(&self.scene))?;
         }
         Ok(Input { scene, report, camera })
     }

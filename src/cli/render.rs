@@ -15,8 +15,8 @@ use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
-use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, Tone, precision_warnings};
+use crate::scene::animation::PosedScene;
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene, Tone};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -48,7 +48,7 @@ pub fn run(arguments: &Render) -> Outcome {
     let settings = Settings {
         half: arguments.half,
         metadata: metadata(&scene, camera, view, precision),
-        ..Settings::of(&scene.film)
+        ..Settings::from_film(&scene.film)
     };
     let mut sink = Sink::new(&plan, settings, &options, scene.film.size)?;
     let times: Vec<f64> = plan.frames.iter().map(|(_, time)| *time).collect();
@@ -63,7 +63,7 @@ pub fn run(arguments: &Render) -> Outcome {
 
     let mut warnings = loaded.warnings.clone();
     let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
+    warnings.extend(report::precision_warnings(&first, f32_rays));
     warnings.extend(oddities(&first, camera, view, &done));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
@@ -87,8 +87,9 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
         (film.spp, film.adaptive) = (1, None);
     }
     if let Some(SampleRange { min, max }) = arguments.adaptive {
-        let threshold = film.adaptive.map_or(Adaptive::THRESHOLD, |adaptive| adaptive.threshold);
-        (film.spp, film.adaptive) = (min, Some(Adaptive { max, threshold }));
+        let threshold =
+            film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
+        (film.spp, film.adaptive) = (min, Some(AdaptiveSampling { max, threshold }));
     }
     match (arguments.threshold, &mut film.adaptive) {
         (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
@@ -104,7 +105,7 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
 /// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
 /// what only a check of its numbers finds, such as a way out of bounds, is found in its turn.
 fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
-    let mut poses = Poses::new(scene);
+    let mut poses = PosedScene::new(scene);
     for (i, (frame, time)) in plan.frames.iter().enumerate() {
         poses.pose(*time)?;
         let files: Vec<PathBuf> = plan.files(*frame).collect();
@@ -198,7 +199,7 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
             return Err(Error::input("this output is named twice").at(path).help("name it once"));
         }
     }
-    let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
+    let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
     if arguments.half && !formats.contains(&Format::Exr) {
         return Err(Error::input("--half is about EXR, and no .exr is asked for")
             .help("add `-o NAME.exr`, or leave --half out"));
@@ -305,7 +306,7 @@ fn metadata(
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
-    if let Some(Adaptive { max, threshold }) = scene.film.adaptive {
+    if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));
     }

@@ -10,7 +10,7 @@ use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::{Scene, Transfer, precision_warnings};
+use crate::scene::{Scene, Transfer};
 use crate::write::{self, Settings};
 
 /// `validate --json`.
@@ -33,7 +33,7 @@ pub fn run(arguments: &Validate) -> Outcome {
     files::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = Precision::from(arguments.tracing.precision);
     let mut warnings = loaded.warnings.clone();
-    warnings.extend(precision_warnings::precision_warnings(&scene, precision == Precision::Fast));
+    warnings.extend(report::precision_warnings(&scene, precision == Precision::Fast));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
     }

@@ -142,7 +142,7 @@ mod tests {
     fn repaired(mut mesh: Mesh) -> (Mesh, Vec<String>) {
         let mut diagnostics = Diagnostics::default();
         repair(&mut mesh, &mut diagnostics, "here");
-        (mesh, diagnostics.sentences(std::path::Path::new("m")))
+        (mesh, diagnostics.warnings(std::path::Path::new("m")))
     }
 
     #[test]

@@ -85,7 +85,7 @@ fn radiance(film: &Film) -> Picture {
 
 /// The values of a PNG, and its bytes.
 fn shown(film: &Film, scene: &Scene) -> (Picture, Vec<u8>) {
-    let bytes = png_bytes(film, &Settings::of(&scene.film));
+    let bytes = png_bytes(film, &Settings::from_film(&scene.film));
     let values = bytes.iter().map(|&b| f32::from(b) / 255.0).collect();
     (Picture { values, ..radiance(film) }, bytes)
 }

@@ -18,8 +18,8 @@ use crate::load::limits::Limit;
 use crate::load::sandbox::Sandbox;
 use crate::load::spelling;
 use crate::scene::animation::{
-    Animated, Animation, Curve, Interpolation, Keyframes, MAX_FRAMES, Motion, Node, NodeId,
-    Rotation, Value,
+    Animated, Animation, Curve, Interpolate, Interpolation, Keyframes, MAX_FRAMES, Motion, Node,
+    NodeId, Rotation,
 };
 
 /// The frames per second of a model's own animation, which has times alone.
@@ -35,8 +35,8 @@ pub struct AnimationClip {
     duration: f64,
     /// The animated nodes of the scene that is shown.
     scene_nodes: Vec<Node>,
-    /// The properties of the scene that are animated.
-    pub movers: Vec<Animated>,
+    /// The animated objects of the scene.
+    pub objects: Vec<Animated>,
 }
 
 /// The curves of a node's transform.
@@ -64,7 +64,7 @@ impl AnimationClip {
             weights: HashMap::new(),
             duration: 0.0,
             scene_nodes: Vec::new(),
-            movers: Vec::new(),
+            objects: Vec::new(),
         };
         let index = name.map_or(Ok(0), |name| find_animation(root, name))?;
         let Some(animation) = root.animations.get(index) else { return Ok(clip) };
@@ -139,14 +139,14 @@ impl AnimationClip {
         (self.duration > 0.0).then_some(self.duration)
     }
 
-    /// Adds a node of the file to the animation, if it moves. `place` takes the space of its parent
+    /// Adds a node of the file to the animation, if it moves. `base` takes the space of its parent
     /// to that of the animation's node `parent`.
     pub fn add_node(
         &mut self,
         index: usize,
         node: &json::Node,
         parent: Option<NodeId>,
-        place: DAffine3,
+        base: DAffine3,
     ) -> Option<NodeId> {
         let NodeCurves { translation, rotation, scale } = self.nodes.get(&index)?;
         let still = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
@@ -160,20 +160,20 @@ impl AnimationClip {
                 rotation.clone().unwrap_or_else(|| Curve::constant(still)),
             ),
             scale: scale.clone().unwrap_or_else(|| constant(node.scale.unwrap_or([1.0; 3]))),
-            repeats: self.period(),
+            period: self.period(),
         };
-        self.scene_nodes.push(Node { parent, place, motion: Motion::Keys(keys) });
+        self.scene_nodes.push(Node { parent, base, motion: Motion::Keyframes(keys) });
         Some(NodeId(self.scene_nodes.len() as u32 - 1))
     }
 
     /// Returns the animation, as long as the file's; `None` if nothing moves.
     pub fn into_animation(self) -> Option<Animation> {
-        if self.movers.is_empty() {
+        if self.objects.is_empty() {
             return None;
         }
         // Rounding in f32 makes no frame of its own.
         let frames = (self.duration * FPS - 1e-3).ceil().clamp(1.0, f64::from(MAX_FRAMES)) as u32;
-        Some(Animation { frames, fps: FPS, nodes: self.scene_nodes, movers: self.movers })
+        Some(Animation { frames, fps: FPS, nodes: self.scene_nodes, objects: self.objects })
     }
 }
 
@@ -270,7 +270,7 @@ impl SamplerReader<'_> {
 
     /// Returns the curve of the sampler; `convert` makes a value of its numbers, or a slope where
     /// the flag is not set.
-    fn curve<T: Value, const N: usize>(
+    fn curve<T: Interpolate, const N: usize>(
         &self,
         convert: impl Fn([f32; N], bool) -> T,
     ) -> Result<Curve<T>> {

@@ -28,7 +28,7 @@ impl Importer<'_> {
         primitive: &ImportedPrimitive,
         node: &SceneNode,
     ) -> Result<MeshAtNode> {
-        let PrimitiveMesh { mesh: base, morphs, influences } = &primitive.mesh;
+        let PrimitiveMesh { mesh: base, morph_targets, influences } = &primitive.mesh;
         let mesh = node.node.mesh.map_or(usize::MAX, |mesh| mesh.value());
 
         // The joints of the skin, if there is one.
@@ -36,7 +36,7 @@ impl Importer<'_> {
         let skin = match (node.node.skin, influences) {
             (Some(skin), Some(influences)) => {
                 let joints = self.joints(skin.value(), &by)?;
-                let stray = influences.beyond(joints.still.len());
+                let stray = influences.count_out_of_range(joints.still.len());
                 let reason = "{} corners hang on joints that their skin does not have";
                 self.diagnostics.add(reason, stray, || by);
                 Some((joints, influences.clone()))
@@ -48,8 +48,8 @@ impl Importer<'_> {
         let of_mesh = self.root.meshes.get(mesh).and_then(|mesh| mesh.weights.as_ref());
         let own = node.node.weights.as_ref().or(of_mesh);
         let weight = |i: usize| own.and_then(|w| w.get(i)).map_or(0.0, |w| f64::from(*w));
-        let weights: Vec<_> = (0..morphs.len()).map(weight).collect();
-        let curves = self.clip.weights(node.index).filter(|c| c.len() == morphs.len());
+        let weights: Vec<_> = (0..morph_targets.len()).map(weight).collect();
+        let curves = self.clip.weights(node.index).filter(|c| c.len() == morph_targets.len());
         let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
         if skin.is_none() && !is_morphed {
             return Ok(MeshAtNode { id: self.add_mesh_once(primitive, mesh), is_skinned: false });
@@ -60,16 +60,20 @@ impl Importer<'_> {
         self.sandbox.take(Limit::Deformed, base.positions.len() as u64).map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
-            morphs: morphs.clone(),
+            morph_targets: morph_targets.clone(),
             weights: weights.into_iter().map(Curve::constant).collect(),
-            repeats: None,
+            period: None,
             skin: skin.as_ref().map(|(joints, influences)| Skin {
                 joints: joints.still.clone(),
                 influences: influences.clone(),
-                space: Joint { node: None, place: DAffine3::IDENTITY, bind: DAffine3::IDENTITY },
+                space: Joint {
+                    node: None,
+                    transform: DAffine3::IDENTITY,
+                    inverse_bind: DAffine3::IDENTITY,
+                },
             }),
         };
-        let id = self.scene.add_mesh(deformation.mesh(0.0, &[]));
+        let id = self.scene.add_mesh(deformation.deform(0.0, &[]));
         // Each shape is stored, and counted as read.
         self.diagnostics.read(base.triangles.len() as u64);
 
@@ -78,12 +82,12 @@ impl Importer<'_> {
             if let Some(curves) = curves {
                 deformation.weights = curves.to_vec();
             }
-            deformation.repeats = self.clip.period();
+            deformation.period = self.clip.period();
             if let (Some(skin), Some((joints, _))) = (&mut deformation.skin, &skin) {
                 skin.joints.clone_from(&joints.animated);
             }
             let (mesh, deformation) = (id.0 as usize, Box::new(deformation));
-            self.clip.movers.push(Animated::Mesh { mesh, deformation });
+            self.clip.objects.push(Animated::Mesh { mesh, deformation });
         }
         Ok(MeshAtNode { id, is_skinned: skin.is_some() })
     }

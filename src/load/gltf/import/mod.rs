@@ -129,7 +129,7 @@ impl Importer<'_> {
             {
                 let (camera, node) = (self.scene.cameras.len(), node.animated);
                 let animated = Animated::Camera { camera, node, rest, aim: None, lens: None };
-                self.clip.movers.push(animated);
+                self.clip.objects.push(animated);
             }
             self.scene.cameras.push(camera);
         }
@@ -139,7 +139,7 @@ impl Importer<'_> {
             {
                 let (light, node) = (self.scene.lights.len(), node.animated);
                 let (direction, intensity) = (None, None);
-                self.clip.movers.push(Animated::Light { light, node, rest, direction, intensity });
+                self.clip.objects.push(Animated::Light { light, node, rest, direction, intensity });
             }
             self.scene.lights.push(light);
         }

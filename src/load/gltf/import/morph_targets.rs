@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{error_at, list};
-use crate::scene::animation::Morph;
+use crate::scene::animation::MorphTarget;
 
 /// Reads the morph targets of a primitive of `count` vertices.
 ///
@@ -20,8 +20,8 @@ pub fn read(
     count: usize,
     diagnostics: &mut Diagnostics,
     path: &str,
-) -> Result<Vec<Morph>> {
-    let mut morphs = Vec::new();
+) -> Result<Vec<MorphTarget>> {
+    let mut targets = Vec::new();
     for (i, target) in primitive.targets.iter().flatten().enumerate() {
         let path = format!("{path}.targets[{i}]");
         let read = |index: &Option<json::Index<json::Accessor>>, name: &str| {
@@ -34,17 +34,17 @@ pub fn read(
             }
             Ok(values)
         };
-        let mut morph = Morph {
+        let mut target = MorphTarget {
             positions: read(&target.positions, "POSITION")?,
             normals: read(&target.normals, "NORMAL")?,
         };
-        let values = morph.positions.iter_mut().chain(&mut morph.normals).flatten();
+        let values = target.positions.iter_mut().chain(&mut target.normals).flatten();
         let bad = values.filter(|x| !x.is_finite()).map(|x| *x = 0.0).count() as u64;
         let reason = "{} numbers of morph targets are not finite and become 0";
         diagnostics.add(reason, bad, || path);
-        morphs.push(morph);
+        targets.push(target);
     }
-    Ok(morphs)
+    Ok(targets)
 }
 
 /// Returns the number of attributes of a primitive's targets that are not supported.

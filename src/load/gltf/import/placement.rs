@@ -35,7 +35,7 @@ impl Importer<'_> {
             let instance = Instance::new(mesh.id, node.to_world * transform, primitive.material);
             // An instance that moves may be flat at one time and not at another.
             if let Some(animated) = node.animated {
-                self.clip.movers.push(Animated::Instance {
+                self.clip.objects.push(Animated::Instance {
                     instance: self.scene.instances.len(),
                     node: animated,
                     transform: node.to_animated * transform,
@@ -62,7 +62,7 @@ impl Importer<'_> {
                 match implicit_shapes::transformed_sphere(&node.to_world, radius) {
                     Some(sphere) => {
                         if node.animated.is_some() {
-                            self.clip.movers.push(Animated::Sphere {
+                            self.clip.objects.push(Animated::Sphere {
                                 sphere: scene.spheres.len(),
                                 node: node.animated,
                                 center: node.to_animated.translation,
@@ -91,7 +91,8 @@ impl Importer<'_> {
             }
             ImplicitShape::Mesh(mesh) => *mesh,
         };
-        let mesh = PrimitiveMesh { mesh: Arc::new(mesh), morphs: [].into(), influences: None };
+        let mesh =
+            PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
         let primitive = ImportedPrimitive { mesh, material, id: None };
         self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
     }

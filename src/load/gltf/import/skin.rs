@@ -111,13 +111,13 @@ pub fn read_joints(
     for (i, (joint, matrix)) in source.joints.iter().zip(&matrices).enumerate() {
         let by = format_args!("skins[{skin}].joints[{i}]");
         lookup(&root.nodes, joint.value(), "node", by)?;
-        let bind = DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from)));
+        let inverse_bind = DAffine3::from_mat4(DMat4::from_cols_array(&matrix.map(f64::from)));
         // A node that no scene has stands at the origin.
-        let mut still = Joint { node: None, place: DAffine3::IDENTITY, bind };
+        let mut still = Joint { node: None, transform: DAffine3::IDENTITY, inverse_bind };
         let mut animated = still;
         if let Some(node) = nodes.get(&joint.value()) {
-            still.place = node.to_world;
-            (animated.node, animated.place) = (node.animated, node.to_animated);
+            still.transform = node.to_world;
+            (animated.node, animated.transform) = (node.animated, node.to_animated);
         }
         joints.is_animated |= animated.node.is_some();
         joints.still.push(still);

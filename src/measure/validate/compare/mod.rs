@@ -60,7 +60,7 @@ struct Place<'m> {
 impl Comparer<'_> {
     pub fn run(&self) -> Validation {
         let size = self.scene.film.size;
-        let rays = self.scene.cameras[self.camera].rays(size);
+        let rays = self.scene.cameras[self.camera].ray_generator(size);
         let mut heatmap = Film::new(size, View::Beauty);
         let width = size[0] as usize;
         let tallies: Vec<Tally> = heatmap
@@ -191,7 +191,7 @@ impl Comparer<'_> {
 
     /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
     fn pictures(&self, heatmap: &mut Film) -> (Differing, Tally) {
-        let settings = Settings::of(&self.scene.film);
+        let settings = Settings::from_film(&self.scene.film);
         let renderer = Renderer::new(self.scene).camera(self.camera);
         let film = |intersector: &dyn Intersector| renderer.render_with(intersector).film;
         let witness = Witness::new(self);

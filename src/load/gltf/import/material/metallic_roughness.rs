@@ -6,7 +6,7 @@ use gltf::json::extensions::material::Volume;
 
 use super::reader::{MaterialReader, clamped};
 use crate::error::Result;
-use crate::scene::{Material, Metallic, MetallicMaps, TextureId, sharpness};
+use crate::scene::{Material, MetallicRoughness, MetallicRoughnessMaps, TextureId, mirror_share};
 
 /// The index of refraction of materials that name none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -17,7 +17,7 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
     let key = "pbrMetallicRoughness";
     let base = reader
         .color_texture(pbr.base_color_texture.as_ref(), format_args!("{key}.baseColorTexture"))?;
-    let factors = Metallic {
+    let factors = MetallicRoughness {
         base: base_color(reader),
         metallic: clamped(pbr.metallic_factor.0),
         roughness: clamped(pbr.roughness_factor.0),
@@ -26,7 +26,7 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
         transmission: 0.0,
         ior: ior(reader),
     };
-    let mut maps = MetallicMaps { base, ..MetallicMaps::new(factors) };
+    let mut maps = MetallicRoughnessMaps { base, ..MetallicRoughnessMaps::new(factors) };
     // Roughness is in the green channel, and metalness in the blue; a factor of 0 leaves nothing of
     // the map.
     let info = pbr.metallic_roughness_texture.as_ref();
@@ -35,7 +35,7 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
     maps.metallic = reader.channel(info.filter(|_| factors.metallic > 0.0), 2, &key)?;
     specular(reader, &mut maps)?;
     transmission(reader, &mut maps)?;
-    material.set_metallic(maps);
+    material.set_metallic_roughness(maps);
     if material.may_transmit() {
         volume(reader, material);
     }
@@ -62,7 +62,7 @@ fn ior(reader: &mut MaterialReader) -> f32 {
 }
 
 /// Sets the parameters of KHR_materials_specular.
-fn specular(reader: &mut MaterialReader, maps: &mut MetallicMaps) -> Result<()> {
+fn specular(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Result<()> {
     let extensions = reader.source.extensions.as_ref();
     let Some(source) = extensions.and_then(|e| e.specular.as_ref()) else { return Ok(()) };
     let key = |key: &str| format!("extensions.KHR_materials_specular.{key}");
@@ -76,7 +76,7 @@ fn specular(reader: &mut MaterialReader, maps: &mut MetallicMaps) -> Result<()> 
 }
 
 /// Sets the parameters of KHR_materials_transmission.
-fn transmission(reader: &mut MaterialReader, maps: &mut MetallicMaps) -> Result<()> {
+fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Result<()> {
     let extensions = reader.source.extensions.as_ref();
     let Some(source) = extensions.and_then(|e| e.transmission.as_ref()) else { return Ok(()) };
     maps.factors.transmission = clamped(source.transmission_factor.0);
@@ -86,7 +86,7 @@ fn transmission(reader: &mut MaterialReader, maps: &mut MetallicMaps) -> Result<
     let key = "extensions.KHR_materials_transmission.transmissionTexture";
     maps.transmission = reader.channel(source.transmission_texture.as_ref(), 0, key)?;
     // The light that such a rough surface transmits is too blurred to be drawn sharp.
-    if sharpness(maps.factors.roughness) == 0.0 && maps.factors.metallic < 1.0 {
+    if mirror_share(maps.factors.roughness) == 0.0 && maps.factors.metallic < 1.0 {
         reader.report_unsupported(if maps.roughness.is_none() {
             "{} frosted materials are drawn clear"
         } else {

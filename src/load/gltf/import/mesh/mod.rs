@@ -20,7 +20,7 @@ use crate::load::gltf::json::error_at;
 use crate::load::mesh_repair::repair;
 use crate::load::report::DropReason;
 use crate::scene::Mesh;
-use crate::scene::animation::{Influences, Morph};
+use crate::scene::animation::{Influences, MorphTarget};
 
 /// The mesh of a primitive, with what can deform it.
 #[derive(Clone)]
@@ -28,7 +28,7 @@ pub struct PrimitiveMesh {
     /// The mesh as it was modelled.
     pub mesh: Arc<Mesh>,
     /// Its morph targets.
-    pub morphs: Arc<[Morph]>,
+    pub morph_targets: Arc<[MorphTarget]>,
     /// The joints that influence its vertices, if it can be skinned.
     pub influences: Option<Arc<Influences>>,
 }
@@ -124,7 +124,7 @@ impl PrimitiveReader<'_> {
         if needed.tangents && !mesh.normals.is_empty() {
             mesh.tangents = self.attribute(Semantic::Tangents, count)?;
         }
-        let mut morphs = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
+        let mut targets = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
         let mut influences =
             skin::read_influences(primitive, accessors, count, self.diagnostics, path)?;
 
@@ -133,19 +133,19 @@ impl PrimitiveReader<'_> {
         repair(&mut mesh, self.diagnostics, path);
         self.diagnostics.read(before - mesh.triangles.len() as u64);
         if let Some(kept) = compact(&mut mesh) {
-            for morph in &mut morphs {
-                retain_vertices(&mut morph.positions, &kept);
-                retain_vertices(&mut morph.normals, &kept);
+            for target in &mut targets {
+                retain_vertices(&mut target.positions, &kept);
+                retain_vertices(&mut target.normals, &kept);
             }
             if let Some(influences) = &mut influences {
-                influences.keep(&kept);
+                influences.retain_vertices(&kept);
             }
         }
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
         let influences = influences.map(Arc::new);
-        Ok(Some(PrimitiveMesh { mesh: Arc::new(mesh), morphs: morphs.into(), influences }))
+        Ok(Some(PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: targets.into(), influences }))
     }
 
     /// The index of an attribute's accessor.
