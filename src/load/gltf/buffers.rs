@@ -180,9 +180,14 @@ pub fn unreadable(what: &str, uri: &str, error: &Error) -> Error {
         Some((cut, _)) => format!("{}…", &uri[..cut]),
         None => uri.to_owned(),
     };
-    let advice = "keep a .gltf file together with the files that it names";
-    Error::input(format!("the {what} `{uri}` cannot be loaded: {}", error.message()))
-        .help(error.advice().unwrap_or(advice))
+    let advice =
+        error.advice().unwrap_or("keep a .gltf file together with the files that it names");
+    let message = format!("the {what} `{uri}` cannot be loaded: {}", error.message());
+    let unreadable = Error::input(message).help(advice);
+    match error.remedy() {
+        Some(remedy) => unreadable.remedied_by(remedy),
+        None => unreadable,
+    }
 }
 
 /// Returns `length` bytes from `offset`, if they are there.

@@ -11,9 +11,10 @@ use gltf::json::accessor::ComponentType;
 use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result};
 use crate::load::gltf::accessor::{Accessors, DecompressedAttribute};
 use crate::load::gltf::json::{as_index, at_path, error_at};
+use crate::load::limits::Limit;
 
 const NAME: &str = "KHR_draco_mesh_compression";
 /// The bytes of attributes that are allowed for each triangle that is.
@@ -86,12 +87,11 @@ fn decode(bytes: &[u8], max_faces: u64) -> Result<draco_core::Mesh> {
     let decoded = draco_core::MeshDecoder::new().decode(&mut buffer, &mut mesh);
     match decoded {
         Ok(()) => Ok(mesh),
-        Err(error) if error.kind() == ErrorKind::LimitExceeded => Err(Error::input(format!(
-            "its data make a mesh larger than the limits allow: {error}"
-        ))
-        .help(
-            "`--limit elements=NUMBER` allows more, four for each triangle, if you trust the file",
-        )),
+        Err(error) if error.kind() == ErrorKind::LimitExceeded => {
+            Err(Error::input(format!("its data make a mesh larger than the limits allow: {error}"))
+                .help("raise the limit `elements`, four for each triangle, if you trust the file")
+                .remedied_by(Remedy::RaiseLimit { name: Limit::Elements.name(), least: None }))
+        }
         Err(error) => Err(Error::input(format!("its data cannot be decompressed: {error}"))
             .help("the file is damaged or was written wrong; export it again")),
     }

@@ -35,7 +35,7 @@ pub struct AnimationClip {
     duration: f64,
     /// The animated nodes of the scene that is shown.
     scene_nodes: Vec<Node>,
-    /// The properties of the scene that are animated.
+    /// The animated objects of the scene.
     pub objects: Vec<Animated>,
 }
 
@@ -139,14 +139,14 @@ impl AnimationClip {
         (self.duration > 0.0).then_some(self.duration)
     }
 
-    /// Adds a node of the file to the animation, if it moves. `place` takes the space of its parent
+    /// Adds a node of the file to the animation, if it moves. `base` takes the space of its parent
     /// to that of the animation's node `parent`.
     pub fn add_node(
         &mut self,
         index: usize,
         node: &json::Node,
         parent: Option<NodeId>,
-        place: DAffine3,
+        base: DAffine3,
     ) -> Option<NodeId> {
         let NodeCurves { translation, rotation, scale } = self.nodes.get(&index)?;
         let still = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
@@ -162,7 +162,7 @@ impl AnimationClip {
             scale: scale.clone().unwrap_or_else(|| constant(node.scale.unwrap_or([1.0; 3]))),
             period: self.period(),
         };
-        self.scene_nodes.push(Node { parent, base: place, motion: Motion::Keyframes(keys) });
+        self.scene_nodes.push(Node { parent, base, motion: Motion::Keyframes(keys) });
         Some(NodeId(self.scene_nodes.len() as u32 - 1))
     }
 

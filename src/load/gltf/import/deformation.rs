@@ -28,7 +28,7 @@ impl Importer<'_> {
         primitive: &ImportedPrimitive,
         node: &SceneNode,
     ) -> Result<MeshAtNode> {
-        let PrimitiveMesh { mesh: base, morphs, influences } = &primitive.mesh;
+        let PrimitiveMesh { mesh: base, morph_targets, influences } = &primitive.mesh;
         let mesh = node.node.mesh.map_or(usize::MAX, |mesh| mesh.value());
 
         // The joints of the skin, if there is one.
@@ -48,8 +48,8 @@ impl Importer<'_> {
         let of_mesh = self.root.meshes.get(mesh).and_then(|mesh| mesh.weights.as_ref());
         let own = node.node.weights.as_ref().or(of_mesh);
         let weight = |i: usize| own.and_then(|w| w.get(i)).map_or(0.0, |w| f64::from(*w));
-        let weights: Vec<_> = (0..morphs.len()).map(weight).collect();
-        let curves = self.clip.weights(node.index).filter(|c| c.len() == morphs.len());
+        let weights: Vec<_> = (0..morph_targets.len()).map(weight).collect();
+        let curves = self.clip.weights(node.index).filter(|c| c.len() == morph_targets.len());
         let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
         if skin.is_none() && !is_morphed {
             return Ok(MeshAtNode { id: self.add_mesh_once(primitive, mesh), is_skinned: false });
@@ -60,7 +60,7 @@ impl Importer<'_> {
         self.sandbox.take(Limit::Deformed, base.positions.len() as u64).map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
-            morph_targets: morphs.clone(),
+            morph_targets: morph_targets.clone(),
             weights: weights.into_iter().map(Curve::constant).collect(),
             period: None,
             skin: skin.as_ref().map(|(joints, influences)| Skin {

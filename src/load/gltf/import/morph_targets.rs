@@ -21,7 +21,7 @@ pub fn read(
     diagnostics: &mut Diagnostics,
     path: &str,
 ) -> Result<Vec<MorphTarget>> {
-    let mut morphs = Vec::new();
+    let mut targets = Vec::new();
     for (i, target) in primitive.targets.iter().flatten().enumerate() {
         let path = format!("{path}.targets[{i}]");
         let read = |index: &Option<json::Index<json::Accessor>>, name: &str| {
@@ -34,17 +34,17 @@ pub fn read(
             }
             Ok(values)
         };
-        let mut morph = MorphTarget {
+        let mut target = MorphTarget {
             positions: read(&target.positions, "POSITION")?,
             normals: read(&target.normals, "NORMAL")?,
         };
-        let values = morph.positions.iter_mut().chain(&mut morph.normals).flatten();
+        let values = target.positions.iter_mut().chain(&mut target.normals).flatten();
         let bad = values.filter(|x| !x.is_finite()).map(|x| *x = 0.0).count() as u64;
         let reason = "{} numbers of morph targets are not finite and become 0";
         diagnostics.add(reason, bad, || path);
-        morphs.push(morph);
+        targets.push(target);
     }
-    Ok(morphs)
+    Ok(targets)
 }
 
 /// Returns the number of attributes of a primitive's targets that are not supported.

@@ -91,7 +91,8 @@ impl Importer<'_> {
             }
             ImplicitShape::Mesh(mesh) => *mesh,
         };
-        let mesh = PrimitiveMesh { mesh: Arc::new(mesh), morphs: [].into(), influences: None };
+        let mesh =
+            PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
         let primitive = ImportedPrimitive { mesh, material, id: None };
         self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
     }

@@ -32,6 +32,7 @@ pub fn estimated_memory(bytes: &[u8]) -> u64 {
 const MAX_VALIDATED_MEMORY: u64 = 1 << 28;
 
 /// The JSON of a file.
+#[derive(Debug)]
 pub struct Document {
     /// The crate's types.
     pub root: json::Root,

@@ -28,7 +28,7 @@ pub struct PrimitiveMesh {
     /// The mesh as it was modelled.
     pub mesh: Arc<Mesh>,
     /// Its morph targets.
-    pub morphs: Arc<[MorphTarget]>,
+    pub morph_targets: Arc<[MorphTarget]>,
     /// The joints that influence its vertices, if it can be skinned.
     pub influences: Option<Arc<Influences>>,
 }
@@ -124,7 +124,7 @@ impl PrimitiveReader<'_> {
         if needed.tangents && !mesh.normals.is_empty() {
             mesh.tangents = self.attribute(Semantic::Tangents, count)?;
         }
-        let mut morphs = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
+        let mut targets = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
         let mut influences =
             skin::read_influences(primitive, accessors, count, self.diagnostics, path)?;
 
@@ -133,9 +133,9 @@ impl PrimitiveReader<'_> {
         repair(&mut mesh, self.diagnostics, path);
         self.diagnostics.read(before - mesh.triangles.len() as u64);
         if let Some(kept) = compact(&mut mesh) {
-            for morph in &mut morphs {
-                retain_vertices(&mut morph.positions, &kept);
-                retain_vertices(&mut morph.normals, &kept);
+            for target in &mut targets {
+                retain_vertices(&mut target.positions, &kept);
+                retain_vertices(&mut target.normals, &kept);
             }
             if let Some(influences) = &mut influences {
                 influences.retain_vertices(&kept);
@@ -145,7 +145,7 @@ impl PrimitiveReader<'_> {
             return Ok(None);
         }
         let influences = influences.map(Arc::new);
-        Ok(Some(PrimitiveMesh { mesh: Arc::new(mesh), morphs: morphs.into(), influences }))
+        Ok(Some(PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: targets.into(), influences }))
     }
 
     /// The index of an attribute's accessor.
