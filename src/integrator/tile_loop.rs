@@ -58,7 +58,7 @@ pub struct RefineStrip<'a> {
 /// A pixel that gets more samples.
 #[derive(Clone, Copy)]
 struct ActivePixel {
-    /// Its index in the strip.
+    /// The index of the pixel in the strip.
     index: usize,
     record: PixelRecord,
 }
