@@ -58,15 +58,15 @@ impl Needs {
     #[track_caller]
     fn check_with(self, warning: &str) {
         let said = self.loads(self.exactly).unwrap_err();
-        assert!(said.contains(warning) && !said.contains("--limit"), "{said}");
+        assert!(said.contains(warning) && !said.contains("raise the limit"), "{said}");
         self.check_one_less();
     }
 
     #[track_caller]
     fn check_one_less(self) {
         let said = self.loads(self.exactly - 1).unwrap_err();
-        let flag = format!("`--limit {}=", self.limit.name());
-        assert!(said.contains(&flag), "{said}");
+        let advice = format!("raise the limit `{}` to ", self.limit.name());
+        assert!(said.contains(&advice), "{said}");
     }
 }
 

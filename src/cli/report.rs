@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::error::{Error, Place};
+use crate::error::{Error, Place, Remedy};
 
 /// Prints an error: file, place and message; the line in question; the way out.
 pub fn error(error: &Error) {
@@ -68,10 +68,23 @@ fn format(error: &Error) -> String {
         let mark = "^".repeat(*length);
         text += &format!("{margin} |\n{number} | {quote}\n{margin} | {lead}{mark}\n");
     }
-    if let Some(help) = error.advice() {
-        text += &format!("help: {help}\n");
+    let flag = error.remedy().map(flag);
+    let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
+    if !help.is_empty() {
+        text += &format!("help: {}\n", help.join(": "));
     }
     text
+}
+
+/// The flag of the command that is a way out of an error.
+fn flag(remedy: Remedy) -> String {
+    match remedy {
+        Remedy::AllowOutside => "`--allow-outside`".to_owned(),
+        Remedy::RaiseLimit { name, least: Some(least) } => format!("`--limit {name}={least}`"),
+        Remedy::RaiseLimit { name, least: None } => format!("`--limit {name}=NUMBER`"),
+        Remedy::RustBackend => "`--backend rust`".to_owned(),
+        Remedy::ReferenceSamples(samples) => format!("`--reference-spp {samples}`"),
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result};
 
 /// Something that a load has no more of than its [`Limits`] say, whatever number of files it reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -147,7 +147,8 @@ impl Limits {
             return Ok(());
         }
         Err(Error::input(format!("{found} {} are more than the limit of {most}", limit.counted()))
-            .help(format!("`--limit {name}={found}` allows so many, if you trust the file")))
+            .help(format!("raise the limit `{name}` to {found} if you trust the file"))
+            .remedied_by(Remedy::RaiseLimit { name, least: Some(found) }))
     }
 }
 
@@ -184,7 +185,9 @@ mod tests {
             let limits = Limits::default().with(limit, 7);
             assert!(limits.check(limit, 7).is_ok());
             let error = limits.check(limit, 8).unwrap_err();
-            let allows = format!("`--limit {}=8`", limit.name());
+            let remedy = Remedy::RaiseLimit { name: limit.name(), least: Some(8) };
+            assert_eq!(error.remedy(), Some(remedy));
+            let allows = format!("the limit `{}` to 8 ", limit.name());
             assert!(error.advice().is_some_and(|advice| advice.contains(&allows)), "{error}");
         }
     }

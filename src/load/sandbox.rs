@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::limits::{Limit, Limits};
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result};
 
 /// The bounds of one load, and what it has taken of its limits.
 pub struct Sandbox {
@@ -102,10 +102,12 @@ impl Sandbox {
             Refusal::Kind(what) => Error::input(format!("this is {what}, not a file")),
             Refusal::Outside => {
                 let folder = self.folder.as_deref().unwrap_or(Path::new("/"));
-                Error::input(format!("it is not in the folder {}", folder.display())).help(
-                    "files are read beside and below the one that is named on the command line; \
-                     `--allow-outside` lifts this, if you trust the file",
-                )
+                Error::input(format!("it is not in the folder {}", folder.display()))
+                    .help(
+                        "files are read beside and below the one that was named; allow others if \
+                         you trust the file",
+                    )
+                    .remedied_by(Remedy::AllowOutside)
             }
         }
     }

@@ -45,7 +45,11 @@ impl<'a> Source<'a> {
     pub fn cannot_have(&self, span: &Span, what: &str, name: &str, error: &Error) -> Error {
         let message = format!("the {what} {}: {}", self.file(name).display(), error.message());
         let help = error.advice().unwrap_or("a path is relative to the scene file's folder");
-        self.error(span, message).help(help)
+        let named = self.error(span, message).help(help);
+        match error.remedy() {
+            Some(remedy) => named.remedied_by(remedy),
+            None => named,
+        }
     }
 
     /// The line of a place, counted from 1.
