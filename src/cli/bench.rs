@@ -10,7 +10,7 @@ use crate::cli::values::{BackendName, PrecisionName, SampleRange, sample_range, 
 use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
-use crate::measure::bench::{self, Options, Samples, Setup};
+use crate::measure::bench::{self, BenchOptions, Samples, Setup};
 use crate::scene::check::MAX_SPP;
 use crate::scene::{Scene, precision_warnings};
 use crate::write;
@@ -92,11 +92,11 @@ pub fn run(arguments: &Bench) -> Outcome {
     let bar = report::progress_bar(arguments.quiet);
     let step = |share: f32| bar.set_position((share * 1000.0) as u64);
     let name = arguments.scene.file_name().unwrap_or_default().to_string_lossy();
-    let found = bench::bench(&name, &scene, &options, &step);
+    let found = bench::run(&name, &scene, &options, &step);
     bar.finish_and_clear();
     let found = found.map_err(|e| e.at(&arguments.scene))?;
     let svg = bench::plot(&found)?;
-    let page = bench::page(&found, &svg)?;
+    let page = bench::html(&found, &svg)?;
     let [json, csv, plot, html] = &files;
     output::write_json(json, &found)?;
     for (path, text) in [(csv, found.csv()), (plot, svg), (html, page)] {
@@ -131,7 +131,7 @@ fn tracing(arguments: &Bench) -> Tracing {
     }
 }
 
-fn options(arguments: &Bench, camera: usize) -> Result<Options> {
+fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
     let (spp, adaptive, reference_spp, runs) = match arguments.quick {
         true => (&[1, 4][..], &[(1, 9)][..], 16, 3),
         false => (&[1, 4, 16][..], &[(1, 25), (4, 36)][..], 64, 5),
@@ -147,8 +147,8 @@ fn options(arguments: &Bench, camera: usize) -> Result<Options> {
     adaptive.sort_unstable();
     adaptive.dedup();
     let regular = spp.into_iter().map(Samples::Regular);
-    let adaptive = adaptive.into_iter().map(|(min, max)| Samples::Adaptive(min, max));
-    let mut options = Options {
+    let adaptive = adaptive.into_iter().map(|(min, max)| Samples::Adaptive { min, max });
+    let mut options = BenchOptions {
         samples: regular.chain(adaptive).collect(),
         reference_spp,
         runs: arguments.runs.unwrap_or(runs),
@@ -172,7 +172,7 @@ fn quick_size(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| (f64::from(side) * scale).round().max(1.0) as u32)
 }
 
-fn warnings(scene: &Scene, mut warnings: Vec<String>, options: &Options) -> Vec<String> {
+fn warnings(scene: &Scene, mut warnings: Vec<String>, options: &BenchOptions) -> Vec<String> {
     let f32_rays = options
         .setups
         .iter()

@@ -6,8 +6,8 @@ use crate::cli::args::Diff;
 use crate::cli::{Outcome, Verdict, files, output};
 use crate::error::Error;
 use crate::film::{Film, View};
-use crate::measure::flip::Seen;
-use crate::measure::{Comparison, Picture, compare};
+use crate::measure::flip::PerceivedImage;
+use crate::measure::{Comparison, Picture, compare_pictures};
 use crate::scene::Transfer;
 use crate::write::{self, Format, Settings};
 
@@ -38,9 +38,9 @@ pub fn run(arguments: &Diff) -> Outcome {
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
     let (a, b) = (Picture::read(&arguments.a)?, Picture::read(&arguments.b)?);
-    let found = compare(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
+    let found = compare_pictures(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
     let transfer = if format == Format::Png { Transfer::Srgb } else { Transfer::None };
-    let seen = Seen::of(&a, transfer).zip(Seen::of(&b, transfer));
+    let seen = PerceivedImage::from_picture(&a, transfer).zip(PerceivedImage::from_picture(&b, transfer));
     let flip = seen.map(|(a, b)| a.flip(&b).mean);
     if output::stdout_is_free(arguments.json.as_ref()) {
         let shown = flip.map_or(String::new(), |mean| format!(", FLIP {mean:.6}"));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::cli::args::Stress;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
-use crate::measure::stress::{Options, Table, plot, stress};
+use crate::measure::stress::{self, StressOptions, Table, plot};
 use crate::write;
 
 /// Rays of a point of the plot.
@@ -15,17 +15,17 @@ pub fn run(arguments: &Stress) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     check_svg(arguments.plot.as_ref())?;
     check_resume(arguments)?;
-    let mut options = Options {
-        rays: if arguments.quick { Options::QUICK } else { Options::FULL },
+    let mut options = StressOptions {
+        rays: if arguments.quick { StressOptions::QUICK } else { StressOptions::FULL },
         seed: arguments.seed,
         resume: arguments.resume.clone(),
-        ..Options::default()
+        ..StressOptions::default()
     };
     if !arguments.goal.is_empty() {
         options.goals.retain(|goal| arguments.goal.contains(goal));
     }
     let bar = report::progress_bar(arguments.quiet);
-    let rows = stress(&options, &|share| bar.set_position((share * 1000.0) as u64))?;
+    let rows = stress::run(&options, &|share| bar.set_position((share * 1000.0) as u64))?;
     bar.finish_and_clear();
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&Table(&rows).to_string())?;
