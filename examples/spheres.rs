@@ -4,12 +4,12 @@
 
 use std::path::Path;
 
+use envers::Renderer;
 use envers::error::Result;
 use envers::scene::{
     Camera, Checker, Falloff, Light, LightKind, Material, Plane, Projection, Scene, Shadow, Sphere,
 };
 use envers::write::{Settings, write};
-use envers::{RenderOptions, Renderer};
 use glam::{DVec3, Vec3};
 
 fn main() -> Result<()> {

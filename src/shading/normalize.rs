@@ -1,50 +1,45 @@
-//! Directions of length 1, without the square roots and divisions of f64, which take as long as
-//! all else that light on a surface needs.
+//! Normalization of vectors without the square roots and divisions of f64, which take as long as
+//! the rest of direct lighting.
 
 use glam::DVec3;
 
-/// The direction of a vector that is not zero: of length 1, to within 1e-13.
-///
-/// By one step of Newton's method for 1/√x from a first guess y in f32, y (3 − x y²) / 2: a guess
-/// with a relative error e becomes one with 3 e²/2, and three roundings in f32 make e less than
-/// 1.8e-7.
-#[inline]
-pub fn normalize(v: DVec3) -> DVec3 {
-    v * inverse_root(v.length_squared())
-}
-
-/// Where the guess and what is made of it keep their digits.
+/// The range of squared lengths in which the guess and its refinement keep their digits.
 const LEAST: f64 = 1.0 / GREATEST;
 const GREATEST: f64 = (1u128 << 100) as f64;
 
-/// 1/√x.
+/// Returns 1/√x.
 #[inline]
 fn inverse_root(x: f64) -> f64 {
-    if is_moderate(x) { refined(x) } else { 1.0 / x.sqrt() }
+    if is_in_range(x) { refined(x) } else { 1.0 / x.sqrt() }
 }
 
 #[inline(always)]
-fn is_moderate(x: f64) -> bool {
+fn is_in_range(x: f64) -> bool {
     (LEAST < x) & (x < GREATEST)
 }
 
+/// Returns 1/√x for an x in range.
 #[inline(always)]
 fn refined(x: f64) -> f64 {
     let y = f64::from(1.0 / (x as f32).sqrt());
     y * (1.5 - (0.5 * x) * (y * y))
 }
 
-/// As [`normalize()`] for vectors that stand side by side, axis by axis; those that are not `here` may
-/// become anything.
+/// Normalizes vectors that are stored side by side, axis by axis: the result has length 1 to within
+/// 1e-13. Vectors that are zero or not active may become anything.
+///
+/// By one step of Newton's method for 1/√x from a first guess y in f32, y (3 − x y²) / 2: a guess
+/// with a relative error e becomes one with 3 e²/2, and three roundings in f32 make e less than
+/// 1.8e-7.
 #[inline(always)]
-pub fn normalize16<const N: usize>(v: &[[f64; N]; 3], here: &[bool; N]) -> [[f64; N]; 3] {
-    let (mut square, mut factor, mut odd) = ([0.0; N], [0.0; N], [0u64; N]);
+pub fn normalize16<const N: usize>(v: &[[f64; N]; 3], is_active: &[bool; N]) -> [[f64; N]; 3] {
+    let (mut square, mut factor, mut out_of_range) = ([0.0; N], [0.0; N], [0u64; N]);
     for i in 0..N {
         square[i] = DVec3::new(v[0][i], v[1][i], v[2][i]).length_squared();
         factor[i] = refined(square[i]);
-        odd[i] = u64::from(here[i] & !is_moderate(square[i]));
+        out_of_range[i] = u64::from(is_active[i] & !is_in_range(square[i]));
     }
-    if odd.iter().fold(0, |all, odd| all | odd) != 0 {
+    if out_of_range.iter().fold(0, |all, one| all | one) != 0 {
         factor = square.map(inverse_root);
     }
     let mut unit = *v;
@@ -61,9 +56,13 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn normalize(v: DVec3) -> DVec3 {
+        normalize16(&v.to_array().map(|x| [x]), &[true]).map(|[x]| x).into()
+    }
+
     proptest! {
         #[test]
-        fn a_unit_vector_has_length_1_whatever_it_was_made_of(
+        fn normalized_vectors_have_length_1(
             v in prop::array::uniform3(-1.0..1.0f64),
             scale in -300..300i32,
         ) {
@@ -75,7 +74,7 @@ mod tests {
         }
 
         #[test]
-        fn vectors_side_by_side_are_made_as_one_alone(
+        fn vectors_side_by_side_equal_those_normalized_alone(
             v in prop::array::uniform16(prop::array::uniform3(-1.0..1.0f64)),
             scale in prop::array::uniform16(-60..60i32),
         ) {
