@@ -64,15 +64,7 @@ impl Goal {
 
     /// Returns the name, `G1` to `G7`.
     pub const fn name(self) -> &'static str {
-        match self {
-            Goal::SphereDistance => "G1",
-            Goal::Tangency => "G2",
-            Goal::Traversal => "G3",
-            Goal::Watertight => "G4",
-            Goal::Grazing => "G5",
-            Goal::SelfShadow => "G6",
-            Goal::Invariance => "G7",
-        }
+        ["G1", "G2", "G3", "G4", "G5", "G6", "G7"][self as usize]
     }
 
     fn cases(self, method: Method) -> Vec<Case> {

@@ -20,31 +20,18 @@ struct Curve {
     is_f32: bool,
 }
 
+impl Curve {
+    const fn new(name: &'static str, color: u32, method: Method, is_f32: bool) -> Self {
+        let [_, red, green, blue] = color.to_be_bytes();
+        Self { name, color: RGBColor(red, green, blue), method, is_f32 }
+    }
+}
+
 const CURVES: [Curve; 4] = [
-    Curve {
-        name: "b² − 4ac in f32",
-        color: RGBColor(0xc4, 0x4e, 0x32),
-        method: textbook::sphere_f32,
-        is_f32: true,
-    },
-    Curve {
-        name: "b² − 4ac in f64",
-        color: RGBColor(0xd9, 0x9a, 0x2b),
-        method: textbook::sphere,
-        is_f32: false,
-    },
-    Curve {
-        name: "Haines in f64 (fast)",
-        color: RGBColor(0x2f, 0x6d, 0xb5),
-        method: sphere_distance::fast,
-        is_f32: false,
-    },
-    Curve {
-        name: "certified",
-        color: RGBColor(0x2e, 0x8b, 0x57),
-        method: sphere_distance::certified,
-        is_f32: false,
-    },
+    Curve::new("b² − 4ac in f32", 0xc44e32, textbook::sphere_f32, true),
+    Curve::new("b² − 4ac in f64", 0xd99a2b, textbook::sphere, false),
+    Curve::new("Haines in f64 (fast)", 0x2f6db5, sphere_distance::fast, false),
+    Curve::new("certified", 0x2e8b57, sphere_distance::certified, false),
 ];
 const SIZE: (u32, u32) = (900, 560);
 

@@ -40,13 +40,6 @@ const BLUE: [f32; 3] = [0.2, 0.4, 1.0];
 /// The colour of a pixel in which both hit something.
 const GREY: [f32; 3] = [0.15; 3];
 
-/// The closest hits of one ray.
-#[derive(Clone, Copy)]
-struct HitPair<'h> {
-    tested: Option<&'h Hit>,
-    reference: Option<&'h Hit>,
-}
-
 impl Comparer<'_> {
     /// Compares all camera, shadow and secondary rays, and the pictures.
     pub fn run(&self) -> Validation {
@@ -108,8 +101,8 @@ impl Comparer<'_> {
                     row[x] = GREY;
                 }
                 let camera_ray = CameraRay { pixel: [x as u32, y as u32], ray, mark: &mut row[x] };
-                let hits = HitPair { tested: tested[x].as_ref(), reference: reference[x].as_ref() };
-                self.compare_hits(ray, Some(camera_ray), hits, &mut differences);
+                let (tested, reference) = (tested[x].as_ref(), reference[x].as_ref());
+                self.compare_hits(ray, Some(camera_ray), tested, reference, &mut differences);
             }
             self.compare_shadows(y, &rays, &reference, row, &mut differences);
         }
@@ -121,10 +114,10 @@ impl Comparer<'_> {
         &self,
         ray: &Ray,
         camera_ray: Option<CameraRay<'_>>,
-        hits: HitPair<'_>,
+        tested: Option<&Hit>,
+        reference: Option<&Hit>,
         differences: &mut Differences,
     ) {
-        let HitPair { tested, reference } = hits;
         let same_primitive = tested.map(|h| h.id) == reference.map(|h| h.id);
         let pair = tested.zip(reference).filter(|_| same_primitive);
         let t_error_ulp = pair.map(|(a, b)| ulps_between(a.t, b.t));

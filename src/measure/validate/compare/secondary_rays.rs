@@ -2,7 +2,7 @@
 
 use std::sync::Mutex;
 
-use super::{Comparer, Differences, HitPair};
+use super::{Comparer, Differences};
 use crate::geometry::{Hit, Ray};
 use crate::intersect::{Coherence, Intersector};
 use crate::measure::trace::closest;
@@ -45,8 +45,8 @@ impl Intersector for SecondaryRayComparer<'_> {
         let mut differences =
             Differences { secondary: rays.len() as u64, ..Differences::default() };
         for ((ray, tested), reference) in rays.iter().zip(&tested).zip(&*hits) {
-            let hits = HitPair { tested: tested.as_ref(), reference: reference.as_ref() };
-            self.comparer.compare_hits(ray, None, hits, &mut differences);
+            let (tested, reference) = (tested.as_ref(), reference.as_ref());
+            self.comparer.compare_hits(ray, None, tested, reference, &mut differences);
         }
         let mut all = self.differences.lock().unwrap_or_else(|e| e.into_inner());
         *all = std::mem::take(&mut *all).merge(differences);
