@@ -9,7 +9,6 @@ use crate::cli::{Outcome, messages, output};
 use crate::error::{Error, Result};
 use crate::intersect::{Backend, Precision};
 use crate::measure::bench::{self, BenchOptions, Samples, Setup};
-use crate::scene::precision_warnings;
 use crate::write;
 
 /// The longest side of a quick picture in pixels.
@@ -19,7 +18,7 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
     check_folder(&arguments.out)?;
     let input = &arguments.input;
     let SceneInput { scene, report, camera } = input.load(false)?;
-    let mut scene = scene.at(0.0)?;
+    let mut scene = scene.at_time(0.0)?;
     if arguments.quick && input.size.is_none() {
         scene.film.size = quick_size(scene.film.size);
     }
@@ -32,8 +31,8 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
         let has_f32_rays =
             |setup: &Setup| setup.backend != Backend::Rust && setup.precision == Precision::Fast;
         let has_f32_rays = options.setups.iter().any(has_f32_rays);
-        let more = precision_warnings::precision_warnings(&scene, has_f32_rays);
-        report.warnings.iter().chain(&more).for_each(|w| messages::warning(w));
+        let warnings = messages::scene_warnings(&report, &scene, has_f32_rays);
+        warnings.iter().for_each(|w| messages::warning(w));
     }
 
     let bar = messages::progress_bar(input.quiet);
@@ -48,7 +47,7 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
     let [json, csv, plot, html] = &files;
     output::write_json(json, &results)?;
     for (path, text) in [(csv, results.csv()), (plot, svg), (html, page)] {
-        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        write::write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     }
     output::print(&format!("{results}{}\n", html.display()))?;
     Ok(Outcome::Success)

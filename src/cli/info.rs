@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
-use crate::scene::{LightKind, Projection, Scene, SceneFeatures, precision_warnings};
+use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
 
 /// The contents of a scene: `info --json`.
 #[derive(Serialize)]
@@ -63,11 +63,11 @@ struct AnimationSummary {
 impl AnimationSummary {
     fn new(animation: &Animation) -> Self {
         let count =
-            |is_kind: fn(&&Animated) -> bool| animation.movers.iter().filter(is_kind).count();
+            |is_kind: fn(&&Animated) -> bool| animation.objects.iter().filter(is_kind).count();
         Self {
             frames: animation.frames,
             fps: animation.fps,
-            seconds: animation.seconds(),
+            seconds: animation.duration(),
             spheres: count(|moved| matches!(moved, Animated::Sphere { .. })),
             instances: count(|moved| matches!(moved, Animated::Instance { .. })),
             meshes: count(|moved| matches!(moved, Animated::Mesh { .. })),
@@ -102,7 +102,7 @@ pub fn run(arguments: &Info) -> Result<Outcome> {
     let Loaded { scene, report } = arguments.load.options(None).load(&arguments.scene)?;
     let animation = scene.animation.as_ref().map(AnimationSummary::new);
     // All but the animation is that of the first frame.
-    let summary = Summary::new(&scene.at(0.0)?, &report, animation);
+    let summary = Summary::new(&scene.at_time(0.0)?, &report, animation);
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&messages::escape_controls(&summary.to_string()))?;
         summary.warnings.iter().for_each(|w| messages::warning(w));
@@ -122,8 +122,7 @@ impl Summary {
         let bounds = scene.bounds();
         // The default of `render`: precision fast, on Embree if it is built in.
         let has_f32_rays = Backend::default() != Backend::Rust;
-        let more = precision_warnings::precision_warnings(scene, has_f32_rays);
-        let features = SceneFeatures::of(scene);
+        let features = SceneFeatures::from_scene(scene);
         Self {
             size: scene.film.size,
             spp: scene.film.spp,
@@ -134,14 +133,18 @@ impl Summary {
             materials: scene.materials.len(),
             textures: scene.textures.len(),
             lights: scene.lights.iter().map(|l| labelled(light_kind(&l.kind), &l.name)).collect(),
-            cameras: scene.cameras.iter().map(|c| labelled(&lens(&c.lens), &c.name)).collect(),
+            cameras: scene
+                .cameras
+                .iter()
+                .map(|c| labelled(&lens(&c.projection), &c.name))
+                .collect(),
             animation,
             bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
-            needed: features.done().map(|(feature, why)| (feature.name(), why)).collect(),
+            needed: features.used().map(|(feature, why)| (feature.name(), why)).collect(),
             skipped: features.skipped().map(|(feature, why)| (feature.name(), why)).collect(),
             report: report.into(),
             faces: report.to_string(),
-            warnings: [&report.warnings[..], &more].concat(),
+            warnings: messages::scene_warnings(report, scene, has_f32_rays),
         }
     }
 }

@@ -63,7 +63,7 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     if is_stdout(path) {
         return print(&text);
     }
-    write::atomically(path, |out| out.write_all(text.as_bytes()))
+    write::write_atomically(path, |out| out.write_all(text.as_bytes()))
 }
 
 /// Prints to standard output. A closed pipe, as `head` leaves it, is no error.

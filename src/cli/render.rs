@@ -15,8 +15,8 @@ use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
-use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, precision_warnings};
+use crate::scene::animation::PosedScene;
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Result<Outcome> {
@@ -59,9 +59,8 @@ pub fn run(arguments: &Render) -> Result<Outcome> {
     let mut totals = writer.finish()?;
 
     // Report warnings, the summary and the statistics.
-    let mut warnings = report.warnings.clone();
     let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
-    warnings.extend(precision_warnings::precision_warnings(&first, has_f32_rays));
+    let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(image_warning(&first, &options, &totals));
     totals.load = load_time;
@@ -84,8 +83,9 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
         (film.spp, film.adaptive) = (1, None);
     }
     if let Some(SampleRange { min, max }) = arguments.adaptive {
-        let threshold = film.adaptive.map_or(Adaptive::THRESHOLD, |adaptive| adaptive.threshold);
-        (film.spp, film.adaptive) = (min, Some(Adaptive { max, threshold }));
+        let threshold =
+            film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
+        (film.spp, film.adaptive) = (min, Some(AdaptiveSampling { max, threshold }));
     }
     match (arguments.threshold, &mut film.adaptive) {
         (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
@@ -98,10 +98,10 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
     Ok(())
 }
 
-/// Poses every frame and checks its files before any frame is rendered. Returns the scene of the
+/// PosedScene every frame and checks its files before any frame is rendered. Returns the scene of the
 /// first frame. Numbers that are out of bounds in a pose are only found when it is rendered.
 fn check_frames(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
-    let mut poses = Poses::new(scene);
+    let mut poses = PosedScene::new(scene);
     for (i, frame) in plan.frames.iter().enumerate() {
         poses.pose(frame.time)?;
         let files: Vec<PathBuf> = plan.files(frame.number).collect();
@@ -159,8 +159,11 @@ impl<'a> FrameWriter<'a> {
             write: Duration::ZERO,
             total: Duration::ZERO,
         };
-        let settings =
-            Settings { half, metadata: metadata(scene, options), ..Settings::of(&scene.film) };
+        let settings = Settings {
+            half,
+            metadata: metadata(scene, options),
+            ..Settings::from_film(&scene.film)
+        };
         let movies = plan.movies.iter().map(movie).collect::<Result<_>>()?;
         Ok(Self { plan, settings, movies, totals })
     }
@@ -214,7 +217,7 @@ fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
             return Err(Error::input("this output is given twice").at(path).help("give it once"));
         }
     }
-    let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
+    let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
     check_format_flags(arguments, &formats)?;
     Ok(outputs)
 }
@@ -316,7 +319,7 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
-    if let Some(Adaptive { max, threshold }) = scene.film.adaptive {
+    if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));
     }

@@ -39,7 +39,7 @@ impl RenderPlan {
     /// # Errors
     /// When the flags do not fit the scene, or files of several frames would have the same name.
     pub fn new(arguments: &Render, scene: &Scene, outputs: Vec<PathBuf>) -> Result<Self> {
-        let is_movie = |path: &PathBuf| Format::of(path).is_ok_and(Format::is_animated);
+        let is_movie = |path: &PathBuf| Format::from_path(path).is_ok_and(Format::is_animated);
         let (movies, stills): (Vec<_>, Vec<_>) = outputs.into_iter().partition(is_movie);
         let mut plan = Self {
             frames: vec![Frame { number: None, time: 0.0 }],

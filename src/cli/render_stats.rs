@@ -61,7 +61,7 @@ pub struct Adaptive {
 
 impl Adaptive {
     fn new(film: &FilmSettings, counts: &Counts) -> Option<Self> {
-        let scene::Adaptive { max, threshold } = film.adaptive?;
+        let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
         let steps = sample_steps(film);
         let refined = counts.refined[..steps.len() - 1].to_vec();
         Some(Self { max, threshold, steps, refined })
@@ -174,7 +174,7 @@ impl RenderStats {
             geometry: Geometry::new(scene),
             build: statistics.into(),
             rays,
-            skipped: skipped(&SceneFeatures::of(scene), &work),
+            skipped: skipped(&SceneFeatures::from_scene(scene), &work),
             work,
             not_finite,
             mrays_per_second: rays.total() as f64 / seconds.render.max(1e-9) * 1e-6,

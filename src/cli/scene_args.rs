@@ -31,7 +31,7 @@ pub struct LoadArgs {
 impl LoadArgs {
     /// Returns the options of a load.
     pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
-        let set = |limits: Limits, &NamedLimit(limit, value): &_| limits.with(limit, value);
+        let set = |limits: Limits, &NamedLimit(limit, value): &_| limits.with_limit(limit, value);
         LoadOptions {
             size,
             variant: self.variant.clone(),
@@ -146,7 +146,7 @@ impl TraceArgs {
                 .at(path)
                 .help("leave out --time"));
             }
-            *scene = scene.at(time).map_err(|e| e.at(path))?;
+            *scene = scene.at_time(time).map_err(|e| e.at(path))?;
         }
         Ok(input)
     }

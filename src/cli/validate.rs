@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::{Scene, precision_warnings};
+use crate::scene::Scene;
 
 /// The result of a validation: `validate --json`.
 #[derive(Serialize)]
@@ -28,14 +28,13 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     output::check_heatmap(arguments.heatmap.as_ref())?;
     let input = &arguments.trace.input;
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
-    let scene = scene.at(0.0)?;
+    let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
         return replay(arguments, &scene, ray);
     }
     paths::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = arguments.trace.precision;
-    let mut warnings = report.warnings;
-    warnings.extend(precision_warnings::precision_warnings(&scene, precision == Precision::Fast));
+    let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
     if !input.quiet {
         warnings.iter().for_each(|w| messages::warning(w));
     }

@@ -62,8 +62,10 @@ pub(super) struct PixelRun {
 }
 
 impl Tile {
-    /// Sets the tile to the rectangle of a size at an origin in the picture.
-    pub fn set_rectangle(&mut self, origin: [usize; 2], size: [usize; 2], block: usize) {
+    /// Sets the tile to the one at `origin`, in the picture, of a strip of this width and height.
+    pub fn set(&mut self, tiling: &Tiling, origin: [usize; 2], [width, rows]: [usize; 2]) {
+        let (columns, block) = (tiling.columns.min(width - origin[0]), tiling.block);
+        let size = [columns, rows];
         self.origin = origin;
         // Most tiles have the size of the one before.
         if (self.size, self.block) == (size, block) {
@@ -71,7 +73,6 @@ impl Tile {
         }
         (self.size, self.block) = (size, block);
         self.clear();
-        let [columns, rows] = size;
         for y in (0..rows).step_by(block) {
             for x in (0..columns).step_by(block) {
                 let end = (x + block).min(columns);

@@ -57,7 +57,7 @@ fn bvh_equals_brute_force_to_the_bit() {
 fn bvh_occlusion_equals_brute_force() {
     each_scene(|seed, scene, rays| {
         let rays: Vec<Ray> =
-            rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+            rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
         let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
         assert!(expected.contains(&true) && expected.contains(&false), "scene {seed}: all alike");
         assert_eq!(expected, occluded(&Bvh::build(scene, Precision::Fast), &rays), "scene {seed}");
@@ -110,7 +110,7 @@ mod embree {
             let embree = Embree::build(scene, Precision::Fast, 1).unwrap();
             let classifier = MismatchClassifier { scene, margin: embree.margin() };
             let rays: Vec<Ray> =
-                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
             let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
             let found = occluded(&embree, &rays);
             for (i, truth) in expected.iter().enumerate().filter(|(i, b)| found[*i] != **b) {
@@ -142,7 +142,7 @@ mod embree {
             let mut spheres = scene.clone();
             spheres.instances.clear();
             let rays: Vec<Ray> =
-                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
             let expected = occluded(&BruteForce::new(&spheres, Precision::Fast), &rays);
             let embree = Embree::build(&spheres, Precision::Fast, 1).unwrap();
             assert_eq!(expected, occluded(&embree, &rays), "scene {seed}");

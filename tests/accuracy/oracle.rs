@@ -407,8 +407,8 @@ proptest! {
         let (origin, direction) = (DVec3::from(origin), DVec3::from(target) - DVec3::from(origin));
         let normal = triangle::area_normal(triangle);
         let sine = normal.normalize_or_zero().dot(direction.normalize_or_zero()).abs();
-        let edges = triangle::Edges::new(triangle, origin, direction);
-        let least = edges.functions.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
+        let edges = triangle::EdgeFunctions::new(triangle, origin, direction);
+        let least = edges.values.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
         prop_assume!(normal.length() > 0.1 && sine > 0.1 && least > 1e-9 && edges.t.abs() > 1e-3);
         let fast = triangle::intersect(triangle, origin, direction).filter(|hit| hit.t > 0.0);
         let exact = oracle::triangle(triangle, &Ray::new(origin, direction));

@@ -37,7 +37,7 @@ impl Needs {
 
     /// Loads it under a limit; returns the warnings or the error where it does not load whole.
     fn loads(&self, most: u64) -> Result<(), String> {
-        let limits = Limits::default().with(self.limit, most);
+        let limits = Limits::default().with_limit(self.limit, most);
         match LoadOptions::default().limits(limits).load(self.path()) {
             Ok(scene) if scene.report.warnings.is_empty() => Ok(()),
             Ok(scene) => Err(scene.report.warnings.join("\n")),

@@ -170,7 +170,7 @@ impl MeshTree {
             DVec3::new(f64::from(x), f64::from(y), f64::from(z))
         };
         let bounds: Vec<Bounds> =
-            mesh.triangles.par_iter().map(|t| Bounds::of(t.map(point))).collect();
+            mesh.triangles.par_iter().map(|t| Bounds::from_points(t.map(point))).collect();
         Self(build(&bounds))
     }
 }

@@ -42,7 +42,11 @@ pub struct F32Space {
 impl F32Space {
     pub fn around(bounds: Bounds) -> Self {
         if bounds.is_empty() {
-            return Self { center: DVec3::ZERO, bounds: Bounds::of([DVec3::ZERO]), extent: 1.0 };
+            return Self {
+                center: DVec3::ZERO,
+                bounds: Bounds::from_points([DVec3::ZERO]),
+                extent: 1.0,
+            };
         }
         let extent = bounds.size().max_element();
         // A scene that is a single point still needs room to round in.
@@ -134,7 +138,7 @@ mod tests {
 
     /// A box of this side about a point of the x axis.
     fn cube(x: f64, side: f64) -> Bounds {
-        Bounds::of([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
+        Bounds::from_points([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
     }
 
     #[test]

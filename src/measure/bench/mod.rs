@@ -116,7 +116,7 @@ pub fn run(
     let mode = options.reference()?;
     scene.check()?;
     render::check_camera(scene, options.camera)?;
-    let scene = &scene.at(0.0)?;
+    let scene = &scene.at_time(0.0)?;
     render::in_pool(options.threads, || {
         // Progress counts samples per pixel.
         let round: f64 = options.samples.iter().map(|samples| f64::from(samples.max_spp())).sum();

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::intersect::{Backend, BuildQuality, Intersector, IntersectorBuilder, Precision};
-use crate::scene::{Adaptive, FilmSettings, Scene};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
 
 /// The setup of an intersector, which is built once for pictures of any number of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct Mode {
 pub enum Samples {
     /// The same number for every pixel.
     Regular(u32),
-    /// Adaptive sampling with the default threshold; see [`Adaptive`].
+    /// AdaptiveSampling sampling with the default threshold; see [`AdaptiveSampling`].
     Adaptive {
         /// The fewest samples of a pixel.
         min: u32,
@@ -100,7 +100,7 @@ impl Samples {
         let (spp, adaptive) = match self {
             Samples::Regular(spp) => (spp, None),
             Samples::Adaptive { min, max } => {
-                (min, Some(Adaptive { max, threshold: Adaptive::THRESHOLD }))
+                (min, Some(AdaptiveSampling { max, threshold: AdaptiveSampling::THRESHOLD }))
             }
         };
         FilmSettings { spp, adaptive, ..film.clone() }

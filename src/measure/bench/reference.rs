@@ -90,7 +90,7 @@ fn radiance(film: &Film) -> Picture {
 
 /// Returns a film's PNG as FLIP compares it, and its bytes.
 fn perceived(film: &Film, scene: &Scene) -> (PerceivedImage, Vec<u8>) {
-    let bytes = png_bytes(film, &Settings::of(&scene.film));
+    let bytes = png_bytes(film, &Settings::from_film(&scene.film));
     let values = bytes.iter().map(|&b| f32::from(b) / 255.0).collect();
     let png = Picture { values, ..radiance(film) };
     let perceived = PerceivedImage::from_picture(&png, Transfer::Srgb);

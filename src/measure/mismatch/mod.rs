@@ -156,7 +156,7 @@ impl MismatchClassifier<'_> {
             return Occlusion::Clear;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
         let margin = self.primitive_margin(ray, id);
         let near_edge =
             self.passes_near_edge(ray, id) && crosses_within(&edges, corners, ray, margin);
@@ -180,7 +180,7 @@ impl MismatchClassifier<'_> {
             return false;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
         let margin = self.primitive_margin(ray, id);
         edge_distances(&edges, corners, ray).into_iter().any(|d| d <= margin)
     }
@@ -189,7 +189,7 @@ impl MismatchClassifier<'_> {
     fn cosine(&self, ray: &Ray, hit: &Hit) -> f64 {
         let index = hit.id.primitive as usize;
         let normal = match hit.id.geometry {
-            Geometry::Spheres => ray.at(hit.t) - self.scene.spheres[index].center,
+            Geometry::Spheres => ray.position(hit.t) - self.scene.spheres[index].center,
             Geometry::Planes => self.scene.planes[index].normal,
             Geometry::Mesh(_) => triangle::area_normal(self.scene.triangle_vertices(hit.id)),
         };
@@ -239,19 +239,24 @@ fn occlusion_between_ends(ray: &Ray, t: f64, slack: f64) -> Occlusion {
 
 /// True if the line crosses the triangle enlarged by the margin: it passes each edge on the inner
 /// side, or outside by no more than the margin.
-fn crosses_within(edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray, margin: f64) -> bool {
-    let sign = (edges.functions[0] + edges.functions[1] + edges.functions[2]).signum();
+fn crosses_within(
+    edges: &triangle::EdgeFunctions,
+    corners: [DVec3; 3],
+    ray: &Ray,
+    margin: f64,
+) -> bool {
+    let sign = (edges.values[0] + edges.values[1] + edges.values[2]).signum();
     let distances = edge_distances(edges, corners, ray);
-    edges.functions.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
+    edges.values.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
 }
 
 /// Returns the distance of the ray's line from the line of each edge, the edge opposite the first
 /// vertex first. For edges p, q relative to the origin this is |d·(p×q)| / |d×(q−p)|.
-fn edge_distances(edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
+fn edge_distances(edges: &triangle::EdgeFunctions, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
     let [a, b, c] = corners;
     let sides = [c - b, a - c, b - a];
     std::array::from_fn(|i| {
         let across = ray.direction.cross(sides[i]).length();
-        if across == 0.0 { f64::INFINITY } else { edges.functions[i].abs() / across }
+        if across == 0.0 { f64::INFINITY } else { edges.values[i].abs() / across }
     })
 }

@@ -183,7 +183,14 @@ fn scene(side: u32) -> Scene {
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
     for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
-        scene.cameras.push(Camera { name: String::new(), position, forward, right, up, lens });
+        scene.cameras.push(Camera {
+            name: String::new(),
+            position,
+            forward,
+            right,
+            up,
+            projection: lens,
+        });
     }
     scene
 }
@@ -224,7 +231,7 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
     }
     for camera in &mut scene.cameras {
         camera.position *= by;
-        if let Projection::OrthoHeight(height) = &mut camera.lens {
+        if let Projection::OrthoHeight(height) = &mut camera.projection {
             *height *= by;
         }
     }

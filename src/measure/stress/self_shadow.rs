@@ -48,7 +48,7 @@ pub fn cases() -> Vec<Case> {
 
 /// Returns the light of a source at a finite distance, given as a vector toward it.
 fn incident_light(toward: DVec3) -> IncidentLight {
-    IncidentLight { toward, bounded: true, intensity: Vec3::ONE }
+    IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE }
 }
 
 /// Checks hits of a sphere from both sides, and shadow rays from there to lights on both sides.
@@ -84,7 +84,7 @@ fn check_sphere(
                 let exact = oracle::sphere(center, radius, ray, false);
                 let error = exact.map_or(f64::NAN, |exact| {
                     // The rounding of this point is a thousandth of the error that passes.
-                    surface.position.distance(ray.at(exact.to_f64()))
+                    surface.position.distance(ray.position(exact.to_f64()))
                 });
                 stats.count_relative(error / (radius + center.length()));
                 let toward = *light - surface.position;

@@ -149,7 +149,7 @@ impl Shape for Face {
 
     #[inline(always)]
     fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
-        triangle::certified::Edges::new(self.corners, origin, direction).may_cross()
+        triangle::certified::EdgeBounds::new(self.corners, origin, direction).may_cross()
     }
 
     #[inline(always)]

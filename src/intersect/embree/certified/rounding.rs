@@ -69,7 +69,7 @@ impl<const W: usize> QueryContext<'_, W> {
             let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
             let r = sphere::certified::round(center, radius[i], origin, direction, false);
             to.t[i] = r.t;
-            to.certain[i] = r.certain & here[i];
+            to.certain[i] = r.is_certain & here[i];
         }
     }
 
@@ -96,7 +96,7 @@ impl<const W: usize> QueryContext<'_, W> {
             found.t[i] = r.t;
             found.u[i] = r.u;
             found.v[i] = r.v;
-            found.certain[i] &= r.certain;
+            found.certain[i] &= r.is_certain;
         }
         for i in (0..W).filter(|&i| here[i]) {
             to.t[i] = found.t[i];

@@ -50,6 +50,6 @@ impl UserPrimitives for Triangles {
             Some(instance) => corners.map(|p| instance.to_world(p)),
             None => corners.map(|p| DVec3::from(p.map(f64::from))),
         };
-        (Bounds::of(corners), &self.frame)
+        (Bounds::from_points(corners), &self.frame)
     }
 }

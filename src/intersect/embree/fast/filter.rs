@@ -198,7 +198,8 @@ fn stands_in_the_way<const W: usize, const SHADOW: bool>(
 fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
     let (origin, direction) = context.exact.line(lane);
     let (u, v) =
-        triangle::Edges::new(context.scene.triangle_vertices(id), origin, direction).weights();
+        triangle::EdgeFunctions::new(context.scene.triangle_vertices(id), origin, direction)
+            .weights();
     context.scene.is_cut_out(id, u, v)
 }
 

@@ -36,21 +36,23 @@ pub fn refine<const W: usize>(
         instances[i] = instance_of[attached as usize];
         geometry[i] = PrimitiveId16::MESHES + scene.instances[instances[i] as usize].mesh.0;
     }
-    let Some(faces) = Triangles::of(scene, &geometry, primitives, &instances) else { return true };
+    let Some(faces) = Triangles::from_ids(scene, &geometry, primitives, &instances) else {
+        return true;
+    };
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
     let mut flat = [false; W];
     for i in 0..W {
         let (origin, direction) = exact.line(i);
-        let edges = triangle::Edges::new(faces.corners(i), origin, direction);
+        let edges = triangle::EdgeFunctions::new(faces.vertices(i), origin, direction);
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
-        flat[i] = edges.flat;
+        flat[i] = edges.is_flat;
     }
     for i in (0..W).filter(|&i| flat[i] && geometry[i] != PrimitiveId16::NONE) {
         let (origin, direction) = exact.line(i);
-        ts[i] = triangle::certified::round(faces.corners(i), origin, direction).t;
+        ts[i] = triangle::certified::round(faces.vertices(i), origin, direction).t;
     }
     let mut odd = [false; W];
     let (mut any_odd, mut all_within) = (false, true);

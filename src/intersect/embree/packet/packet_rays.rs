@@ -287,7 +287,7 @@ mod tests {
             let t = (offset + to - ray.origin).dot(direction) / direction.length_squared();
             let along = (t - exact.clip.start[0]) * exact.clip.unit[0];
             let p = DVec3::from(org.map(f64::from)) + DVec3::from(dir.map(f64::from)) * along;
-            let error = (p - (ray.at(t) - frame.center)).abs().max_element();
+            let error = (p - (ray.position(t) - frame.center)).abs().max_element();
             prop_assert!(error <= 0.5 * PAD, "{error:e}");
         }
     }

@@ -40,7 +40,7 @@ impl Primitives<'_> {
                     open[i] &= !(packet.is_fresh() | (height > slack));
                     ts[i] = if open[i] { f64::NAN } else { ts[i] };
                 }
-                found.merge_plane(index, &ts, at);
+                found.merge_plane_hits(index, &ts, at);
             } else if packet.is_fresh() {
                 self.merge_certain(index, exact, &mut open, found, at);
             }
@@ -75,7 +75,7 @@ impl Primitives<'_> {
             ts[i] = if told & (t > 0.0) & (t < exact.tmax[i]) { t } else { f64::NAN };
             open[i] &= !told;
         }
-        found.merge_plane(index, &ts, at);
+        found.merge_plane_hits(index, &ts, at);
     }
 
     /// Marks the rays that a plane keeps from their end.

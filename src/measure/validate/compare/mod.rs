@@ -44,7 +44,7 @@ impl Comparer<'_> {
     /// Compares all camera, shadow and secondary rays, and the pictures.
     pub fn run(&self) -> Validation {
         let size = self.scene.film.size;
-        let rays = self.scene.cameras[self.camera].rays(size);
+        let rays = self.scene.cameras[self.camera].ray_generator(size);
         let mut heatmap = Film::new(size, View::Beauty);
         let width = size[0] as usize;
         let rows: Vec<Differences> = heatmap
@@ -181,7 +181,7 @@ impl Comparer<'_> {
 
     /// Renders and compares the pictures of both intersectors, and their secondary rays.
     fn compare_pictures(&self, heatmap: &mut Film) -> (PictureDifference, Differences) {
-        let settings = Settings::of(&self.scene.film);
+        let settings = Settings::from_film(&self.scene.film);
         let renderer = Renderer::new(self.scene).camera(self.camera);
         let film = |intersector: &dyn Intersector| renderer.render_with(intersector).film;
         let secondary_rays = SecondaryRayComparer::new(self);

@@ -88,7 +88,7 @@ fn compared(precision: Precision, fault: fn(&Ray, &mut Option<Hit>)) -> Validati
 
 /// True if the ray is the one through the centre of pixel (8, 9), which hits the sphere.
 fn is_chosen(ray: &Ray) -> bool {
-    *ray == scene().cameras[0].rays([16, 16]).ray(8.5, 9.5)
+    *ray == scene().cameras[0].ray_generator([16, 16]).ray(8.5, 9.5)
 }
 
 #[test]
