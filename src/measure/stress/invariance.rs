@@ -14,7 +14,7 @@ use crate::intersect::{Backend, Precision};
 use crate::render::{RenderOptions, Renderer};
 use crate::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
-    Shadow, Sphere,
+    Sphere,
 };
 use crate::write::png_bytes;
 
@@ -169,28 +169,16 @@ fn scene(side: u32) -> Scene {
             15.0,
         ),
     ] {
-        let intensity = Vec3::splat(intensity);
-        scene.lights.push(Light {
-            name: String::new(),
-            kind,
-            intensity,
-            shadow: Shadow::default(),
-        });
+        scene.lights.push(Light::new(kind).with_intensity(Vec3::splat(intensity)));
     }
     // A perspective and a parallel camera.
     let position = DVec3::new(1.0, 2.5, 6.0);
     let forward = -position.normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
-    for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
-        scene.cameras.push(Camera {
-            name: String::new(),
-            position,
-            forward,
-            right,
-            up,
-            projection: lens,
-        });
+    for projection in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
+        let name = String::new();
+        scene.cameras.push(Camera { name, position, forward, right, up, projection });
     }
     scene
 }
