@@ -1,11 +1,13 @@
 //! The counters of rays and of work.
 
+use serde::Serialize;
+
 use crate::geometry::RayBatch;
 use crate::integrator::sample_pattern::MAX_STEPS;
 use crate::intersect::ExtraTests;
 
 /// The numbers of rays traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RayCounts {
     /// Rays from the camera.
     pub primary: u64,
@@ -76,7 +78,7 @@ pub struct Counts {
 
 /// The numbers of samples whose radiance was not finite, by its cause: each counts once, for the
 /// first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NotFinite {
     /// The light that reaches the surface: a light that weakens with the square of the distance
     /// stands very near it.

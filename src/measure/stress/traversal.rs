@@ -1,21 +1,23 @@
-//! G3: the trees find what trying every primitive finds, to the bit.
+//! G3: the traversal of a BVH finds the same hits as brute force, to the bit.
 
 use glam::{DAffine3, DVec3};
 
-use super::cell::Cell;
+use super::case::Case;
+use super::meshes::{INTERSECTORS, icosphere, intersectors, torus};
 use super::random::Random;
-use super::shapes::{INTERSECTORS, closest, icosphere, intersectors, occluded, torus};
 use crate::geometry::Ray;
-use crate::intersect::{BruteForce, Precision};
+use crate::intersect::{BruteForce, Coherence::Incoherent, Precision};
+use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::scene::{Instance, Material, Plane, Scene, Sphere};
 
+/// The distances of the scene from the world's origin.
 const OFFSETS: [f64; 4] = [0.0, 1e3, 1e5, 1e7];
-/// Half the side of the cube in which the scene stands.
+/// Half the side of the cube that contains the scene.
 const SIZE: f64 = 4.0;
 
-/// The cells.
-pub fn cells() -> Vec<Cell> {
-    let mut cells = Vec::new();
+/// Returns the cases.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
     for (precision, meshes, what) in [
         (Precision::Certified, false, "spheres"),
         (Precision::Certified, true, "spheres, planes, instances"),
@@ -25,47 +27,51 @@ pub fn cells() -> Vec<Cell> {
             let rays = if tangent { "axis-tangent" } else { "random" };
             let name = format!("{what}, {rays} rays, offset {offset:.0e}");
             let method = format!("{}, {INTERSECTORS}", precision.name());
-            cells.push(Cell::new(name, method, move |draw| {
-                let scene = scene(offset, meshes, &mut draw.shared());
+            cases.push(Case::new(name, method, move |sampler| {
+                let scene = scene(offset, meshes, &mut sampler.shared_random());
                 let brute = BruteForce::new(&scene, precision);
-                let trees = intersectors(&scene, precision)?;
-                let ray = |_, random: &mut Random| ray(&scene, offset, tangent, random);
-                Ok(draw.batch(ray, |rays, tally| {
-                    let (truth, shadow) = (closest(&brute, rays), occluded(&brute, rays));
-                    for tree in &trees {
-                        let found = closest(&**tree, rays);
-                        for (found, truth) in found.iter().zip(&truth) {
-                            match (found, truth) {
+                let intersectors = intersectors(&scene, precision)?;
+                let ray = |random: &mut Random| sample_ray(&scene, offset, tangent, random);
+                Ok(sampler.for_each_batch(ray, |rays, stats| {
+                    let expected = closest(&brute, rays, Incoherent);
+                    let expected_occlusion = occluded(&brute, rays, Incoherent);
+                    for intersector in &intersectors {
+                        let found = closest(&**intersector, rays, Incoherent);
+                        for (found, expected) in found.iter().zip(&expected) {
+                            match (found, expected) {
                                 (Some(a), Some(b)) if a.id == b.id => {
-                                    tally.ulp(a.t.to_bits().abs_diff(b.t.to_bits()) as f64);
+                                    stats.count_ulp(ulps_between(a.t, b.t) as f64);
                                 }
-                                (a, b) => tally.wrong_if(a.is_some() || b.is_some()),
+                                (a, b) => stats.count_wrong(a.is_some() || b.is_some()),
                             }
                         }
-                        for (found, truth) in occluded(&**tree, rays).iter().zip(&shadow) {
-                            tally.wrong_if(found != truth);
+                        let found = occluded(&**intersector, rays, Incoherent);
+                        for (found, expected) in found.iter().zip(&expected_occlusion) {
+                            stats.count_wrong(found != expected);
                         }
                     }
                 }))
             }));
         }
     }
-    cells
+    cases
 }
 
-fn away(offset: f64) -> DVec3 {
+/// Returns the centre of the scene.
+fn scene_center(offset: f64) -> DVec3 {
     DVec3::new(offset, -0.7 * offset, 0.3 * offset)
 }
 
-fn scene(offset: f64, meshes: bool, random: &mut Random) -> Scene {
+/// Returns a scene of spheres and, if asked for, planes and meshes.
+fn scene(offset: f64, has_meshes: bool, random: &mut Random) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let center = away(offset);
+    let center = scene_center(offset);
     for _ in 0..60 {
         let radius = random.power_of_ten(-3.0, 0.0);
         scene.spheres.push(Sphere::new(center + random.in_ball() * SIZE, radius, material));
     }
-    if meshes {
+    if has_meshes {
         for _ in 0..2 {
             let point = center + random.in_ball() * SIZE;
             scene.planes.push(Plane::new(point, random.direction(), material));
@@ -76,15 +82,16 @@ fn scene(offset: f64, meshes: bool, random: &mut Random) -> Scene {
             let stretch = DVec3::from_array(std::array::from_fn(|_| random.range(0.3, 1.5)));
             let place = center + random.in_ball() * SIZE;
             let transform =
-                DAffine3::from_scale_rotation_translation(stretch, random.turn(), place);
+                DAffine3::from_scale_rotation_translation(stretch, random.rotation(), place);
             scene.instances.push(Instance::new(mesh, transform, material));
         }
     }
     scene
 }
 
-fn ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) -> Ray {
-    let center = away(offset);
+/// Returns a random ray through the scene, or one parallel to an axis that is a tangent of a sphere.
+fn sample_ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) -> Ray {
+    let center = scene_center(offset);
     let length = random.power_of_ten(-3.0, 3.0);
     let ray = if tangent {
         let sphere = random.pick(&scene.spheres);
@@ -100,7 +107,7 @@ fn ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) -> Ray {
         let target = center + random.in_ball() * SIZE;
         Ray::new(origin, (target - origin) * length)
     };
-    // Some rays end, within the scene or before it.
+    // Some rays end within the scene or before it.
     if random.below(4) == 0 {
         Ray { tmax: SIZE * random.range(0.0, 4.0) / ray.direction.length(), ..ray }
     } else {

@@ -1,4 +1,4 @@
-//! The shapes of the command's JSON.
+//! The JSON of `render --stats`.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,59 +6,61 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::cli::load_report::LoadSummary;
-use crate::integrator::{self, Counts, RayCounts, sample_steps};
+use crate::cli::render::RenderTotals;
+use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
 use crate::intersect::{BuildQuality, BuildStats};
 use crate::load::LoadReport;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
 
-/// `render --stats`.
+/// The statistics of a rendering: `render --stats`.
 #[derive(Serialize)]
-pub struct Stats {
+pub struct RenderStats {
     pub backend: Backend,
     pub precision: &'static str,
     pub threads: usize,
     pub size: [u32; 2],
     pub spp: u32,
-    /// What of the pixels got more samples; null where all have as many.
+    /// The refinement by adaptive sampling; null without it.
     pub adaptive: Option<Adaptive>,
-    /// How many frames were rendered; what is counted and timed is that of all of them.
+    /// The number of rendered frames; all counts and times are sums over them.
     pub frames: usize,
     pub geometry: Geometry,
     pub build: Build,
-    pub rays: Rays,
-    /// Of each kind of work that is counted, how much was done.
+    pub rays: RayCounts,
+    /// The amount of work of each counted kind.
     pub work: BTreeMap<&'static str, u64>,
-    /// Why each kind of work that was left out could be.
+    /// The reason why each skipped kind of work was not needed.
     pub skipped: BTreeMap<&'static str, String>,
-    /// Samples that were left out, by what made them not finite.
+    /// The numbers of samples that were left out because they are not finite, by cause.
     pub not_finite: NotFinite,
     pub seconds: Seconds,
-    /// All rays over the seconds of rendering.
+    /// The number of all rays over the time to render.
     pub mrays_per_second: f64,
-    /// The most memory the process had at any time; null where the system does not tell.
+    /// The peak memory of the process; null where the system does not tell.
     pub peak_memory_bytes: Option<u64>,
-    /// What of it Embree had, at its own peak; null without Embree.
+    /// The peak memory of Embree; null without Embree.
     pub embree_peak_memory_bytes: Option<u64>,
-    /// What became of the scene's files.
+    /// The load report.
     pub report: LoadSummary,
     pub warnings: Vec<String>,
 }
 
+/// The refinement by adaptive sampling.
 #[derive(Serialize)]
 pub struct Adaptive {
     /// The most samples of a pixel.
     pub max: u32,
-    /// From which difference on colours disagree.
+    /// The colour difference from which a pixel is refined.
     pub threshold: f32,
-    /// Samples after each step, the first of which every pixel has.
+    /// The numbers of samples after each step; every pixel has those of the first.
     pub steps: Vec<usize>,
-    /// Pixels that went on to each step after the first, of all frames.
+    /// The numbers of pixels that were refined in each step after the first, in all frames.
     pub refined: Vec<u64>,
 }
 
 impl Adaptive {
-    fn of(film: &FilmSettings, counts: &Counts) -> Option<Self> {
+    fn new(film: &FilmSettings, counts: &Counts) -> Option<Self> {
         let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
         let steps = sample_steps(film);
         let refined = counts.refined[..steps.len() - 1].to_vec();
@@ -66,23 +68,25 @@ impl Adaptive {
     }
 }
 
+/// The ray tracing backend.
 #[derive(Serialize)]
 pub struct Backend {
     pub name: &'static str,
     pub version: String,
 }
 
+/// The numbers of primitives.
 #[derive(Serialize)]
 pub struct Geometry {
     pub spheres: usize,
-    /// Counting each instance of a mesh.
+    /// The triangles of all instances of meshes.
     pub triangles: u64,
     pub planes: usize,
     pub instances: usize,
 }
 
 impl Geometry {
-    pub fn of(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene) -> Self {
         Self {
             spheres: scene.spheres.len(),
             triangles: scene.triangle_count(),
@@ -92,24 +96,24 @@ impl Geometry {
     }
 }
 
-/// What all frames took to build, and what they kept of a frame before.
+/// The work of building the intersectors of all frames.
 #[derive(Serialize)]
 pub struct Build {
-    /// Meshes that were built.
+    /// The meshes whose BLAS was built.
     pub meshes: u64,
-    /// Meshes that were there from a frame before.
+    /// The meshes whose BLAS was kept from an earlier frame.
     pub reused: u64,
-    /// How good Embree's trees are: `low` or `medium`; null without Embree.
+    /// The build quality of Embree's BVH, `low` or `medium`; null without Embree.
     pub bvh: Option<&'static str>,
-    /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
+    /// The number of times that a TLAS was built.
     pub top_levels_built: u64,
-    /// Frames for which it was there, and only what moved was placed again.
+    /// The number of frames for which the TLAS of the frame before was updated.
     pub top_levels_kept: u64,
-    /// Instances of meshes that were placed in a level that was built.
+    /// The instances that were added to a TLAS that was built.
     pub instances_placed: u64,
-    /// Instances that moved in one that was kept.
+    /// The instances that moved in a TLAS that was updated.
     pub instances_moved: u64,
-    /// Spheres that moved in one that was kept.
+    /// The spheres that moved in a TLAS that was updated.
     pub spheres_moved: u64,
 }
 
@@ -130,35 +134,7 @@ impl From<&Statistics> for Build {
     }
 }
 
-#[derive(Serialize)]
-pub struct Rays {
-    pub primary: u64,
-    pub shadow: u64,
-    pub reflection: u64,
-    pub refraction: u64,
-}
-
-impl From<RayCounts> for Rays {
-    fn from(counts: RayCounts) -> Self {
-        let RayCounts { primary, shadow, reflection, refraction } = counts;
-        Self { primary, shadow, reflection, refraction }
-    }
-}
-
-#[derive(Serialize)]
-pub struct NotFinite {
-    pub light: u64,
-    pub surface: u64,
-    pub sum: u64,
-}
-
-impl From<integrator::NotFinite> for NotFinite {
-    fn from(counts: integrator::NotFinite) -> Self {
-        let integrator::NotFinite { light, surface, sum } = counts;
-        Self { light, surface, sum }
-    }
-}
-
+/// The times in seconds.
 #[derive(Serialize)]
 pub struct Seconds {
     pub load: f64,
@@ -168,36 +144,41 @@ pub struct Seconds {
     pub total: f64,
 }
 
-impl Stats {
+impl RenderStats {
+    /// Collects the statistics of a rendering; `scene` is that of the first frame.
     pub fn new(
         scene: &Scene,
-        frames: usize,
         report: &LoadReport,
-        statistics: &Statistics,
-        layers: u64,
-        [load, write, total]: [f64; 3],
+        totals: &RenderTotals,
         warnings: Vec<String>,
     ) -> Self {
-        let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
-        let (name, version) = (statistics.backend, statistics.backend_version.clone());
+        let RenderTotals { statistics, frames, images, load, write, total, .. } = totals;
         let Counts { rays, not_finite, .. } = statistics.counts;
-        let work = work(scene, statistics, layers);
+        let seconds = Seconds {
+            load: load.as_secs_f64(),
+            build: statistics.build.as_secs_f64(),
+            render: statistics.render.as_secs_f64(),
+            write: write.as_secs_f64(),
+            total: total.as_secs_f64(),
+        };
+        let (name, version) = (statistics.backend, statistics.backend_version.clone());
+        let work = work(scene, statistics, *images);
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,
-            adaptive: Adaptive::of(&scene.film, &statistics.counts),
-            frames,
-            geometry: Geometry::of(scene),
+            adaptive: Adaptive::new(&scene.film, &statistics.counts),
+            frames: *frames,
+            geometry: Geometry::new(scene),
             build: statistics.into(),
-            rays: rays.into(),
+            rays,
             skipped: skipped(&SceneFeatures::from_scene(scene), &work),
             work,
-            not_finite: not_finite.into(),
-            seconds: Seconds { load, build, render, write, total },
-            mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
+            not_finite,
+            mrays_per_second: rays.total() as f64 / seconds.render.max(1e-9) * 1e-6,
+            seconds,
             peak_memory_bytes: peak_memory(),
             embree_peak_memory_bytes: embree_peak_memory(statistics),
             report: report.into(),
@@ -206,19 +187,19 @@ impl Stats {
     }
 }
 
-/// How much was done of each kind of work that is counted.
-fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'static str, u64> {
+/// Returns the amount of work of each counted kind; `images` is the number of encoded images.
+fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'static str, u64> {
     let Statistics { built, counts, .. } = statistics;
     let (rays, done) = (&counts.rays, &counts.work);
-    let mut read: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
-    read.retain(|image| image.is_read());
-    read.sort_by_key(|image| Arc::as_ptr(image));
-    read.dedup_by_key(|image| Arc::as_ptr(image));
+    let mut textures: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
+    textures.retain(|image| image.is_read());
+    textures.sort_by_key(|image| Arc::as_ptr(image));
+    textures.dedup_by_key(|image| Arc::as_ptr(image));
     [
         (Feature::Spheres.name(), built.sphere_sets),
         (Feature::Instances.name(), built.instanced),
         (Feature::Planes.name(), done.planes),
-        (Feature::Pictures.name(), read.len() as u64),
+        (Feature::Pictures.name(), textures.len() as u64),
         (Feature::Uv.name(), done.uv),
         (Feature::Mipmaps.name(), done.mipmaps),
         (Feature::NormalMaps.name(), done.normal_maps),
@@ -232,20 +213,21 @@ fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'stati
         (Feature::Refraction.name(), rays.refraction),
         ("glass-in-shadows", done.glass),
         ("filters", done.filters),
-        ("layers", layers),
+        ("layers", images),
     ]
     .into()
 }
 
-/// Why each kind of work could be left out, of which none was done.
+/// Returns the reason why each kind of work that was not done is not needed.
 fn skipped(
-    needs: &SceneFeatures,
+    features: &SceneFeatures,
     work: &BTreeMap<&'static str, u64>,
 ) -> BTreeMap<&'static str, String> {
-    let skipped = needs.skipped().map(|(work, why)| (work.name(), why));
+    let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
     skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
 }
 
+/// Returns the peak memory of Embree; none without Embree.
 fn embree_peak_memory(statistics: &Statistics) -> Option<u64> {
     #[cfg(feature = "embree")]
     return statistics.quality.map(|_| crate::intersect::embree_peak_memory());
@@ -253,7 +235,7 @@ fn embree_peak_memory(statistics: &Statistics) -> Option<u64> {
     statistics.quality.and(None)
 }
 
-/// The process's peak memory, as Linux tells it.
+/// Returns the process's peak memory in bytes, on Linux.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,4 +1,4 @@
-//! A distance without error: the root of a quadratic equation with integer coefficients.
+//! Exact distances: roots of linear and quadratic equations with integer coefficients.
 
 use std::cmp::Ordering;
 
@@ -7,23 +7,26 @@ use dashu_int::{IBig, Sign, UBig};
 
 use super::integers::decode;
 
-/// Bits to which a quotient is worked out before it is compared exactly.
+/// The least number of bits of an approximation.
 const BITS: usize = 130;
 
-/// The number (p ± √q) / a · 2^k, above 0, held as its integers.
+/// A positive number (p ± √q) / a · 2^k, stored as its integers.
 #[derive(Clone, Debug)]
 pub struct ExactNumber {
+    /// p.
     rational: IBig,
-    /// Which root: ∓√q. Without meaning when q is 0.
+    /// The sign of the root; without meaning when q is 0.
     root: Sign,
+    /// q.
     radicand: UBig,
-    /// Above 0.
+    /// a, above 0.
     denominator: IBig,
+    /// k.
     exponent: i64,
 }
 
 impl ExactNumber {
-    /// numerator / denominator · 2^exponent.
+    /// Returns numerator / denominator · 2^exponent.
     pub(super) fn quotient(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
         let (numerator, denominator) = match denominator.sign() {
             Sign::Negative => (-numerator, -denominator),
@@ -32,7 +35,7 @@ impl ExactNumber {
         Self::root(numerator, Sign::Positive, UBig::ZERO, denominator, exponent)
     }
 
-    /// (rational ± √radicand) / denominator · 2^exponent, with a denominator above 0.
+    /// Returns (rational ± √radicand) / denominator · 2^exponent, with a denominator above 0.
     pub(super) fn root(
         rational: IBig,
         root: Sign,
@@ -43,10 +46,10 @@ impl ExactNumber {
         Self { rational, root, radicand, denominator, exponent }
     }
 
-    /// How the number compares with `x`, exactly; infinities are beyond everything.
+    /// Compares the number with `x`, exactly; infinities lie beyond every number.
     ///
     /// # Panics
-    /// When `x` is not a number.
+    /// When `x` is NaN.
     pub fn compare(&self, x: f64) -> Ordering {
         if x.is_infinite() {
             return if x > 0.0 { Ordering::Less } else { Ordering::Greater };
@@ -55,9 +58,9 @@ impl ExactNumber {
         self.compare_dyadic(&IBig::from(mantissa), exponent)
     }
 
-    /// How it compares with mantissa · 2^exponent.
+    /// Compares the number with mantissa · 2^exponent, exactly.
     fn compare_dyadic(&self, mantissa: &IBig, exponent: i64) -> Ordering {
-        // The sign of (p − x·a) ± √q, in whichever of the two scales keeps integers.
+        // The result is the sign of (p − x·a) ± √q, in the scale that keeps all terms integers.
         let shift = self.exponent - exponent;
         let scaled = &self.denominator * mantissa;
         let (rest, radicand) = if shift >= 0 && !mantissa.is_zero() {
@@ -76,36 +79,37 @@ impl ExactNumber {
             Sign::Negative if rest <= zero => return Ordering::Less,
             root => root == Sign::Positive,
         };
-        // Opposite signs: the larger square decides.
+        // The two terms have opposite signs: the larger square decides.
         let square = (&rest * &rest).unsigned_abs();
         if below { radicand.cmp(&square) } else { square.cmp(&radicand) }
     }
 
-    /// The number within 2 of mantissa · 2^exponent, the mantissa having at least 130 bits.
+    /// Returns a mantissa of at least [`BITS`] bits and an exponent, so that the mantissa is within 2
+    /// of the number divided by 2^exponent.
     fn approximate(&self) -> (UBig, i64) {
         let p = self.rational.clone().unsigned_abs();
         let a = self.denominator.clone().unsigned_abs();
-        // |p| + √q, with enough bits of the root behind the point.
+        // |p| + √q, with enough fractional bits of the root.
         let bits = p.bit_len().max(self.radicand.bit_len() / 2);
-        let behind = (BITS + 10).saturating_sub(bits);
-        let sum = (&p << behind) + (&self.radicand << (2 * behind)).sqrt();
-        let same = self.radicand.is_zero() || self.rational.sign() == self.root || p.is_zero();
-        let (numerator, denominator) = if same {
-            (sum, a << behind)
+        let fraction_bits = (BITS + 10).saturating_sub(bits);
+        let sum = (&p << fraction_bits) + (&self.radicand << (2 * fraction_bits)).sqrt();
+        let adds_up = self.radicand.is_zero() || self.rational.sign() == self.root || p.is_zero();
+        let (numerator, denominator) = if adds_up {
+            (sum, a << fraction_bits)
         } else {
             // p ± √q = (p² − q) / (p ∓ √q), which cancels nothing.
             let product = (&self.rational * &self.rational) - IBig::from(self.radicand.clone());
-            (product.unsigned_abs() << behind, a * sum)
+            (product.unsigned_abs() << fraction_bits, a * sum)
         };
         let shift = (BITS + 1 + denominator.bit_len()).saturating_sub(numerator.bit_len());
         ((numerator << shift) / denominator, self.exponent - shift as i64)
     }
 
-    /// The number correctly rounded: to nearest, ties to even. What would round to 0 becomes the
-    /// least positive float, what would overflow the greatest one.
+    /// Returns the number correctly rounded: to nearest, ties to even. Underflow gives the least
+    /// positive float, overflow the greatest one.
     pub fn to_f64(&self) -> f64 {
         let (mantissa, exponent) = self.approximate();
-        // The approximation only says where to look; comparisons without error decide.
+        // The approximation gives a first guess; exact comparisons decide.
         let mut below = truncate(&mantissa, exponent).min(f64::MAX);
         while self.compare(below) == Ordering::Less {
             below = below.next_down();
@@ -116,7 +120,7 @@ impl ExactNumber {
         if below == f64::MAX {
             return below;
         }
-        let (mantissa, exponent) = raw(below);
+        let (mantissa, exponent) = significand(below);
         let middle = IBig::from(2 * mantissa + 1);
         let up = match self.compare_dyadic(&middle, exponent - 1) {
             Ordering::Less => false,
@@ -127,8 +131,8 @@ impl ExactNumber {
         rounded.clamp(f64::from_bits(1), f64::MAX)
     }
 
-    /// The distance from `x`, in units in the last place of this number (the spacing of floats
-    /// where it lies), to about 15 digits.
+    /// Returns the distance from `x`, in units in the last place of this number (the spacing of
+    /// floats around it), to about 15 digits.
     ///
     /// # Panics
     /// When `x` is not finite.
@@ -144,30 +148,30 @@ impl ExactNumber {
     }
 }
 
-/// The significand, hidden bit included, and the exponent of a float ≥ 0.
-fn raw(x: f64) -> (u64, i64) {
+/// Returns the significand, hidden bit included, and the exponent of a float ≥ 0.
+fn significand(x: f64) -> (u64, i64) {
     let (stored, fraction) = (x.to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
     if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored as i64 - 1075) }
 }
 
-/// mantissa · 2^exponent, cut off after 53 bits; at most `f64::MAX`.
+/// Returns mantissa · 2^exponent, truncated to 53 bits; at most `f64::MAX`.
 pub(super) fn truncate(mantissa: &UBig, exponent: i64) -> f64 {
     let bits = mantissa.bit_len() as i64;
     if bits == 0 {
         return 0.0;
     }
-    // The exponent of the last bit that is kept.
+    // The exponent of the last of these bits.
     let last = (exponent + bits - 53).max(-1074);
     if last > 971 {
         return f64::MAX;
     }
-    let drop = last - exponent;
-    let kept = if drop >= 0 { mantissa >> drop as usize } else { mantissa << -drop as usize };
-    let kept = u64::try_from(kept).unwrap_or(u64::MAX);
-    if kept < 1 << 52 {
-        return f64::from_bits(kept); // Subnormal: last is -1074.
+    let shift = last - exponent;
+    let bits = if shift >= 0 { mantissa >> shift as usize } else { mantissa << -shift as usize };
+    let bits = u64::try_from(bits).unwrap_or(u64::MAX);
+    if bits < 1 << 52 {
+        return f64::from_bits(bits); // Subnormal: last is -1074.
     }
-    f64::from_bits(((last + 1075) as u64) << 52 | (kept & ((1 << 52) - 1)))
+    f64::from_bits(((last + 1075) as u64) << 52 | (bits & ((1 << 52) - 1)))
 }
 
 #[cfg(test)]

@@ -1,27 +1,30 @@
-//! G7: what must not change a picture does not: the scale of the scene by a power of two, the
-//! number of threads, the tiles.
+//! G7: a picture does not change with the scale of the scene (by a power of two), the number of
+//! threads, or the tiling.
+
+use std::ops::RangeInclusive;
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::cell::{Cell, Draw};
-use super::report::Tally;
-use super::shapes::{icosphere, torus};
+use super::case::{Case, RaySampler};
+use super::meshes::{icosphere, torus};
+use super::report::CaseStats;
 use crate::error::Result;
 use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
 use crate::render::{RenderOptions, Renderer};
 use crate::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
-    Shadow, Sphere,
+    Sphere,
 };
 use crate::write::png_bytes;
 
-/// Powers of two by which the scene is scaled.
-const SCALES: [std::ops::RangeInclusive<i32>; 4] = [-20..=-11, -10..=-1, 1..=10, 11..=20];
-/// Pictures of a cell: a perspective and a parallel one for each power.
+/// The exponents of the powers of two by which the scene is scaled.
+const SCALE_EXPONENTS: [RangeInclusive<i32>; 4] = [-20..=-11, -10..=-1, 1..=10, 11..=20];
+/// The number of pictures of a case: a perspective and a parallel one for each exponent.
 const PICTURES: u64 = 20;
+/// The numbers of threads.
 const THREADS: [usize; 3] = [1, 2, 5];
-/// Tilings: rays one by one, odd shapes, the whole picture at once.
+/// The tilings: single rays, odd shapes, and the whole picture at once.
 const TILINGS: [Tiling; 4] = [
     Tiling { rows: 1, columns: 1, block: 1 },
     Tiling { rows: 5, columns: 7, block: 3 },
@@ -29,60 +32,62 @@ const TILINGS: [Tiling; 4] = [
     Tiling { rows: 1 << 20, columns: 1 << 20, block: 16 },
 ];
 
-/// The cells.
-pub fn cells() -> Vec<Cell> {
-    let mut cells = Vec::new();
+/// Returns the cases.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
     for backend in backends() {
         let method = format!("certified, {}", name(backend));
-        let like = move |threads, tiling| {
+        let options = move |threads, tiling| {
             let precision = Precision::Certified;
             RenderOptions { backend, precision, threads, tiling, ..RenderOptions::default() }
         };
-        for scales in SCALES {
-            let cell = format!("scaled by 2^{} … 2^{}", scales.start(), scales.end());
-            cells.push(Cell::new(cell, &*method, move |draw| {
-                let options = like(0, Tiling::default());
-                same(draw, &options, |scene| {
-                    scales.clone().map(|k| (scaled(scene, k), options.clone())).collect()
+        let default = move || options(0, Tiling::default());
+        for exponents in SCALE_EXPONENTS {
+            let name = format!("scaled by 2^{} … 2^{}", exponents.start(), exponents.end());
+            cases.push(Case::new(name, &*method, move |sampler| {
+                compare_variants(sampler, &default(), |scene| {
+                    exponents.clone().map(|k| (scaled(scene, k), default())).collect()
                 })
             }));
         }
-        cells.push(Cell::new("on 1, 2 and 5 threads", &*method, move |draw| {
-            same(draw, &like(0, Tiling::default()), |scene| {
-                THREADS.map(|n| (scene.clone(), like(n, Tiling::default()))).into()
+        cases.push(Case::new("on 1, 2 and 5 threads", &*method, move |sampler| {
+            compare_variants(sampler, &default(), |scene| {
+                THREADS.map(|n| (scene.clone(), options(n, Tiling::default()))).into()
             })
         }));
-        cells.push(Cell::new("in any tiles", &*method, move |draw| {
-            same(draw, &like(0, Tiling::default()), |scene| {
-                TILINGS.map(|tiling| (scene.clone(), like(0, tiling))).into()
+        cases.push(Case::new("in any tiles", &*method, move |sampler| {
+            compare_variants(sampler, &default(), |scene| {
+                TILINGS.map(|tiling| (scene.clone(), options(0, tiling))).into()
             })
         }));
     }
-    cells
+    cases
 }
 
-/// Compares the picture of each camera with what the variants of scene and options make of it.
-fn same(
-    draw: &Draw,
+/// Compares the picture of each camera with those of variants of the scene and options, which should
+/// be the same.
+fn compare_variants(
+    sampler: &RaySampler,
     options: &RenderOptions,
     variants: impl Fn(&Scene) -> Vec<(Scene, RenderOptions)>,
-) -> Result<Tally> {
-    let scene = scene(side(draw));
+) -> Result<CaseStats> {
+    let scene = scene(side(sampler));
     let variants = variants(&scene);
-    let mut tally = Tally::default();
+    let mut stats = CaseStats::default();
     for camera in 0..scene.cameras.len() {
         let (expected, _) = picture(&scene, options, camera)?;
         for (scene, options) in &variants {
             let (found, rays) = picture(scene, options, camera)?;
-            tally.rays += rays;
+            stats.rays += rays;
             let pixels = expected.chunks(3).zip(found.chunks(3));
-            tally.misclassified += pixels.filter(|(a, b)| a != b).count() as u64;
-            tally.wrong_if(expected.len() != found.len());
+            stats.misclassified += pixels.filter(|(a, b)| a != b).count() as u64;
+            stats.count_wrong(expected.len() != found.len());
         }
     }
-    Ok(tally)
+    Ok(stats)
 }
 
+/// Returns the backends of this build.
 fn backends() -> Vec<Backend> {
     vec![
         #[cfg(feature = "embree")]
@@ -91,6 +96,7 @@ fn backends() -> Vec<Backend> {
     ]
 }
 
+/// Returns the name of a backend in the report.
 fn name(backend: Backend) -> &'static str {
     match backend {
         #[cfg(feature = "embree")]
@@ -99,18 +105,19 @@ fn name(backend: Backend) -> &'static str {
     }
 }
 
-/// The side of the square pictures of a cell.
-fn side(draw: &Draw) -> u32 {
-    (draw.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32
+/// Returns the side in pixels of the square pictures of a case.
+fn side(sampler: &RaySampler) -> u32 {
+    (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32
 }
 
-/// The PNG's bytes of a picture, and how many rays it took.
+/// Renders a picture; returns the bytes of its PNG, and the number of rays.
 fn picture(scene: &Scene, options: &RenderOptions, camera: usize) -> Result<(Vec<u8>, u64)> {
     let rendering = Renderer::new(scene).options(options.clone()).camera(camera).render()?;
     Ok((png_bytes(&rendering.film, &rendering.settings), rendering.statistics.counts.rays.total()))
 }
 
-/// Spheres of paint, glass and mirrors, a checkered plane, meshes, and a light of every kind.
+/// Returns a scene of glossy, glass and mirror spheres, a checkered plane, meshes, and lights of every
+/// kind.
 fn scene(side: u32) -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [side, side];
@@ -122,6 +129,7 @@ fn scene(side: u32) -> Scene {
     let absorption = Vec3::new(1.0, 0.25, 0.0);
     let glass = Material { transmit: Vec3::ONE, absorption, ..<_>::default() };
     let [mirror, glass] = [mirror, glass].map(|material| scene.add_material(material));
+    // Spheres and a plane.
     for i in 0..12 {
         let angle = f64::from(i) * 0.7;
         let center = DVec3::new(2.0 * angle.cos(), 0.3 + 0.1 * f64::from(i), 2.0 * angle.sin());
@@ -131,13 +139,16 @@ fn scene(side: u32) -> Scene {
     let mut ground = Plane::new(DVec3::Y * -0.2, DVec3::new(0.05, 1.0, 0.02), matt);
     ground.checker = Some(Checker { colors: [Vec3::splat(0.2), Vec3::ONE], size: 0.7 });
     scene.planes.push(ground);
-    let (ball, ring) = (scene.add_mesh(icosphere(1)), scene.add_mesh(torus(24, 12)));
-    for (mesh, at) in [(ball, DVec3::new(0.3, 1.1, -0.2)), (ring, DVec3::Y), (ring, DVec3::Z * 2.0)]
+    // Meshes.
+    let (sphere, ring) = (scene.add_mesh(icosphere(1)), scene.add_mesh(torus(24, 12)));
+    for (mesh, at) in
+        [(sphere, DVec3::new(0.3, 1.1, -0.2)), (ring, DVec3::Y), (ring, DVec3::Z * 2.0)]
     {
         let turned = DAffine3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), at.z + 0.4);
         let transform = DAffine3::from_translation(at) * turned;
         scene.instances.push(Instance::new(mesh, transform, matt));
     }
+    // Lights.
     let falloff = Falloff::InverseSquare;
     let position = DVec3::new(3.0, 5.0, 4.0);
     let aside = DVec3::new(-4.0, 6.0, 1.0);
@@ -158,33 +169,22 @@ fn scene(side: u32) -> Scene {
             15.0,
         ),
     ] {
-        let intensity = Vec3::splat(intensity);
-        scene.lights.push(Light {
-            name: String::new(),
-            kind,
-            intensity,
-            shadow: Shadow::default(),
-        });
+        scene.lights.push(Light::new(kind).with_intensity(Vec3::splat(intensity)));
     }
+    // A perspective and a parallel camera.
     let position = DVec3::new(1.0, 2.5, 6.0);
     let forward = -position.normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
-    for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
-        scene.cameras.push(Camera {
-            name: String::new(),
-            position,
-            forward,
-            right,
-            up,
-            projection: lens,
-        });
+    for projection in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
+        let name = String::new();
+        scene.cameras.push(Camera { name, position, forward, right, up, projection });
     }
     scene
 }
 
-/// The scene with every length multiplied by 2ᵏ, and the lights as much stronger as that makes
-/// them weaker.
+/// Returns the scene with every length multiplied by 2ᵏ, and the intensities of the lights increased
+/// to compensate for the distance.
 fn scaled(scene: &Scene, k: i32) -> Scene {
     let by = f64::powi(2.0, k);
     let mut scene = scene.clone();

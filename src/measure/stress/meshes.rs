@@ -1,15 +1,14 @@
-//! Meshes without a hole, and who is asked what rays meet.
+//! Closed meshes, and the intersectors that are tested.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
 use crate::error::Result;
-use crate::geometry::{Hit, Ray};
-use crate::intersect::{Bvh, Coherence, Intersector, Precision};
+use crate::intersect::{Bvh, Intersector, Precision};
 use crate::scene::{Mesh, Scene};
 
-/// The intersectors of this build, and what to call them together.
+/// Builds the intersectors of this build for a scene.
 pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn Intersector + '_>>> {
     let rust: Box<dyn Intersector> = Box::new(Bvh::build(scene, precision));
     #[cfg(feature = "embree")]
@@ -22,29 +21,16 @@ pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn I
     ])
 }
 
-/// What the intersectors of this build are called together.
+/// The names of the intersectors of this build.
 pub const INTERSECTORS: &str = if cfg!(feature = "embree") { "embree and bvh" } else { "bvh" };
 
-/// The closest hits of some rays.
-pub fn closest(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Option<Hit>> {
-    let mut hits = vec![None; rays.len()];
-    intersector.closest(rays, Coherence::Incoherent, &mut hits);
-    hits
-}
-
-/// Whether some rays are blocked.
-pub fn occluded(intersector: &dyn Intersector, rays: &[Ray]) -> Vec<bool> {
-    let mut blocked = vec![false; rays.len()];
-    intersector.occluded(rays, Coherence::Incoherent, &mut blocked);
-    blocked
-}
-
+/// Returns a mesh of vertices rounded to f32.
 fn mesh(name: &str, positions: &[DVec3], triangles: Vec<[u32; 3]>) -> Mesh {
     let positions = positions.iter().map(|p| p.as_vec3().to_array()).collect();
     Mesh { name: name.into(), positions, triangles, ..Mesh::default() }
 }
 
-/// A ball of radius 1: an icosahedron whose triangles are divided in four, `level` times.
+/// Returns a sphere of radius 1: an icosahedron whose triangles are divided in four, `level` times.
 pub fn icosphere(level: u32) -> Mesh {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut positions: Vec<DVec3> = [0, 1, 2]
@@ -56,7 +42,7 @@ pub fn icosphere(level: u32) -> Mesh {
             DVec3::from(p).normalize()
         })
         .collect();
-    // The faces are the triples of vertices that are neighbours of each other.
+    // The faces are the triples of vertices that are neighbours.
     let near = |a: usize, b: usize| positions[a].dot(positions[b]) > 0.4;
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for a in 0..12 {
@@ -90,8 +76,8 @@ pub fn icosphere(level: u32) -> Mesh {
     mesh("icosphere", &positions, triangles)
 }
 
-/// The cube from −1 to 1, each face divided into 2 n² triangles; the vertices are whole multiples
-/// of 1/n, which floats hold exactly when n is a power of two times 1.
+/// Returns the cube from −1 to 1, each face divided into 2 n² triangles. The coordinates are
+/// multiples of 1/n, which f32 represents exactly if n is a power of two.
 pub fn cube(n: u32) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let mut indices = HashMap::new();
@@ -118,7 +104,7 @@ pub fn cube(n: u32) -> Mesh {
     mesh("cube", &positions, triangles)
 }
 
-/// A torus about the y axis, of radii 0.75 and 0.25, of 2 · `around` · `across` triangles.
+/// Returns a torus about the y axis, with radii 0.75 and 0.25 and 2 · `around` · `across` triangles.
 pub fn torus(around: u32, across: u32) -> Mesh {
     let angle = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
@@ -128,8 +114,8 @@ pub fn torus(around: u32, across: u32) -> Mesh {
             let (up, out) = angle(j, across).sin_cos();
             let r = 0.75 + 0.25 * out;
             positions.push(DVec3::new(r * cos, 0.25 * up, r * sin));
-            let at = |i: u32, j: u32| i % around * across + j % across;
-            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            let index = |i: u32, j: u32| i % around * across + j % across;
+            let [a, b, c, d] = [index(i, j), index(i, j + 1), index(i + 1, j + 1), index(i + 1, j)];
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }

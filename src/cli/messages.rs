@@ -1,19 +1,25 @@
-//! Messages to a person, on stderr.
+//! The messages on stderr: errors, warnings and progress.
 
 use std::io::{IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Error, Place, Remedy};
+use crate::load::LoadReport;
 use crate::scene::{Scene, precision_warnings};
 
-/// Prints an error: file, place and message; the line in question; the way out.
+/// Prints an error: file, place and message, the line of the file, and the help.
 pub fn error(error: &Error) {
-    to_stderr(&printable(&format(error)));
+    to_stderr(&escape_controls(&format(error)));
 }
 
-/// The warnings about lost precision, with the flag that avoids them.
-pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
+/// Returns the warnings of a load, and those about lost precision.
+pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec<String> {
+    report.warnings.iter().cloned().chain(precision_warnings(scene, f32_rays)).collect()
+}
+
+/// Returns the warnings about lost precision, with the flag that avoids them.
+fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
     precision_warnings::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
         let certified = "; --precision certified has no such limit";
         warning.message + if warning.is_of_fast_only { certified } else { "" }
@@ -22,28 +28,28 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item =
 
 /// Prints a warning.
 pub fn warning(text: &str) {
-    to_stderr(&printable(&format!("warning: {text}\n")));
+    to_stderr(&escape_controls(&format!("warning: {text}\n")));
 }
 
-/// A text as a terminal may have it. Names in a stranger's file can hold codes that move the cursor,
-/// hide text or turn it around; these are spelt out.
-pub fn printable(text: &str) -> String {
+/// Returns a text with control codes escaped. Names in an untrusted file can contain codes that move
+/// the cursor, hide text or reverse its direction.
+pub fn escape_controls(text: &str) -> String {
     let is_safe = |c: char| match c {
         '\n' | '\t' => true,
-        // What turns the direction of writing.
+        // Codes that change the direction of writing.
         '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
         c => !c.is_control(),
     };
-    let spelt = |c: char| if is_safe(c) { c.to_string() } else { c.escape_unicode().to_string() };
-    text.chars().map(spelt).collect()
+    let escape = |c: char| if is_safe(c) { c.to_string() } else { c.escape_unicode().to_string() };
+    text.chars().map(escape).collect()
 }
 
-/// Prints to stderr; that nobody reads it is no reason to stop.
+/// Prints to stderr; errors of writing are ignored.
 pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// A bar of 1000 steps; none where nobody asked for it or would see it.
+/// Creates a progress bar of 1000 steps; a hidden one if `quiet`, or if stderr is not a terminal.
 pub fn progress_bar(quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
@@ -55,6 +61,12 @@ pub fn progress_bar(quiet: bool) -> ProgressBar {
     bar
 }
 
+/// Shows the share done, in \[0, 1\].
+pub fn set_progress(bar: &ProgressBar, share: f32) {
+    bar.set_position((share * 1000.0) as u64);
+}
+
+/// Returns the text of an error.
 fn format(error: &Error) -> String {
     let mut text = String::from("error: ");
     if let Some(path) = error.path() {
@@ -71,11 +83,11 @@ fn format(error: &Error) -> String {
     if let Some(Place::Text { line, column, length, quote }) = error.place_in_file() {
         let number = line.to_string();
         let margin = " ".repeat(number.len());
-        // Tabs stay tabs, so that the mark stands under what it means.
-        let lead: String =
+        // Tabs stay tabs, so that the mark is aligned with the text above it.
+        let indent: String =
             quote.chars().take(column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
         let mark = "^".repeat(*length);
-        text += &format!("{margin} |\n{number} | {quote}\n{margin} | {lead}{mark}\n");
+        text += &format!("{margin} |\n{number} | {quote}\n{margin} | {indent}{mark}\n");
     }
     let flag = error.remedy().map(flag);
     let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
@@ -85,7 +97,7 @@ fn format(error: &Error) -> String {
     text
 }
 
-/// The flag of the command that is a way out of an error.
+/// Returns the flag that remedies an error.
 fn flag(remedy: Remedy) -> String {
     match remedy {
         Remedy::AllowOutside => "`--allow-outside`".to_owned(),
@@ -118,8 +130,11 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn codes_for_the_terminal_are_spelt_out() {
-        assert_eq!(printable("a\u{1b}[2J\tb\u{7}\u{202e}é\n"), "a\\u{1b}[2J\tb\\u{7}\\u{202e}é\n");
+    fn control_codes_are_escaped() {
+        assert_eq!(
+            escape_controls("a\u{1b}[2J\tb\u{7}\u{202e}é\n"),
+            "a\\u{1b}[2J\tb\\u{7}\\u{202e}é\n"
+        );
     }
 
     #[test]

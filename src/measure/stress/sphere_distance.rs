@@ -1,34 +1,35 @@
-//! G1: the distance to a sphere is the exact one, correctly rounded; none is missed or made up.
+//! G1: the distance to a sphere is exact, correctly rounded, and hit and miss are never confused.
 
 use glam::DVec3;
 
-use super::cell::Cell;
-use super::naive;
+use super::case::Case;
 use super::random::Random;
-use super::report::{Beside, Tally};
+use super::report::CaseStats;
+use super::textbook;
 use crate::geometry::{Ray, sphere};
 use crate::measure::oracle;
 
-/// Distances in radii: of the eye from the sphere, or of the sphere from the world's origin.
-pub const DISTANCES: [f64; 10] = [2.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
+/// The distances in radii: of the ray's origin from the sphere, or of the sphere from the world's
+/// origin.
+const DISTANCES: [f64; 10] = [2.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10];
 const RADII: [f64; 5] = [1e-6, 1e-3, 1.0, 1e3, 1e6];
 
-/// A way to find the first distance to a sphere.
+/// A method that computes the distance of a ray's first hit of a sphere.
 pub type Method = fn(DVec3, f64, &Ray) -> Option<f64>;
 
-/// The method that is tested.
+/// Computes the distance as in precision `certified`: the method that is tested.
 pub fn certified(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
     sphere::certified::first_root(center, radius, ray.origin, ray.direction, ray.tmax, false)
 }
 
-/// The formula of precision `fast`.
+/// Computes the distance as in precision `fast`.
 pub fn fast(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
     let inverse = sphere::inverse_length_squared(ray.direction);
     let roots = sphere::roots(center, radius, ray.origin, ray.direction, inverse)?;
     sphere::first_root(roots, ray.tmax, false)
 }
 
-/// Where the rays of a cell start and go.
+/// The origins and directions of the rays of a case.
 #[derive(Clone, Copy)]
 enum Kind {
     Outside,
@@ -38,8 +39,8 @@ enum Kind {
     Away,
 }
 
-/// The cells, for the certified distance or one that is to fail.
-pub fn cells(method: Method) -> Vec<Cell> {
+/// Returns the cases, for the certified method or one that should fail.
+pub fn cases(method: Method) -> Vec<Case> {
     let kinds = [
         (Kind::Outside, "outside"),
         (Kind::AnyLength, "outside, |d| 1e±150"),
@@ -47,27 +48,28 @@ pub fn cells(method: Method) -> Vec<Cell> {
         (Kind::OnSurface, "on the surface, |d| 1e±150"),
         (Kind::Away, "pointing away, |d| 1e±150"),
     ];
-    let mut cells = Vec::new();
+    let mut cases = Vec::new();
     for (kind, name) in kinds {
         for distance in DISTANCES {
             let name = format!("{name}, D/R {distance:.0e}");
-            cells.push(Cell {
+            cases.push(Case {
                 kinds: RADII.len() as u64,
                 max_ulp: 0.5,
-                ..Cell::new(name, "certified", move |draw| {
-                    Ok(draw.each(|index, random, tally| {
+                ..Case::new(name, "certified", move |sampler| {
+                    Ok(sampler.for_each_ray(|index, random, stats| {
                         let radius = RADII[index as usize % RADII.len()];
-                        let (center, ray) = aim(kind, radius, distance * radius, random);
-                        judge(method, center, radius, &ray, tally);
+                        let (center, ray) = sample_ray(kind, radius, distance * radius, random);
+                        check(method, center, radius, &ray, stats);
                     }))
                 })
             });
         }
     }
-    cells
+    cases
 }
 
-fn aim(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (DVec3, Ray) {
+/// Returns the centre of a random sphere, and a ray.
+fn sample_ray(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (DVec3, Ray) {
     let center = random.direction() * distance;
     let length = match kind {
         Kind::Outside => 1.0,
@@ -77,8 +79,8 @@ fn aim(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (DVec3, R
         Kind::Outside | Kind::AnyLength | Kind::Away => {
             let toward = random.direction();
             let origin = center - toward * distance;
-            let beside = random.across(toward) * (1.1 * radius * random.unit().sqrt());
-            let direction = center + beside - origin;
+            let offset = random.perpendicular(toward) * (1.1 * radius * random.unit().sqrt());
+            let direction = center + offset - origin;
             (origin, if matches!(kind, Kind::Away) { -direction } else { direction })
         }
         Kind::Inside => (center + random.in_ball() * (0.999 * radius), random.direction()),
@@ -87,8 +89,8 @@ fn aim(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (DVec3, R
     (center, Ray::new(origin, direction.normalize_or(DVec3::X) * length))
 }
 
-/// Holds the method, the estimate before it, and the lesser formulas against the oracle.
-pub fn judge(method: Method, center: DVec3, radius: f64, ray: &Ray, tally: &mut Tally) {
+/// Checks the method, the error bound of its estimate, and the baselines against the oracle.
+pub fn check(method: Method, center: DVec3, radius: f64, ray: &Ray, stats: &mut CaseStats) {
     let exact = oracle::sphere(center, radius, ray, false);
     let error = |found: Option<f64>| match (&exact, found) {
         (Some(exact), Some(t)) => Some(exact.ulps_from(t)),
@@ -96,23 +98,24 @@ pub fn judge(method: Method, center: DVec3, radius: f64, ray: &Ray, tally: &mut 
         _ => None,
     };
     match error(method(center, radius, ray)) {
-        Some(error) => tally.ulp(error),
-        None => tally.misclassified += 1,
+        Some(error) => stats.count_ulp(error),
+        None => stats.misclassified += 1,
     }
     if let Some(exact) = &exact {
         let t = exact.to_f64();
-        // The ends are strict: a ray that ends at the hit, to the last bit, or just beyond it.
+        // The end of a ray is exclusive: test rays that end at the hit, to the last bit, or just
+        // beyond it.
         for tmax in [t, t.next_up()] {
             let ray = Ray { tmax, ..*ray };
             let hit = oracle::sphere(center, radius, &ray, false).is_some();
-            tally.wrong_if(method(center, radius, &ray).is_some() != hit);
+            stats.count_wrong(method(center, radius, &ray).is_some() != hit);
         }
         let inverse = sphere::inverse_length_squared(ray.direction);
         let estimate =
             sphere::certified::estimate(center, radius, ray.origin, ray.direction, inverse);
-        tally.wrong_if(estimate.is_outside(t.next_up()));
+        stats.count_wrong(estimate.is_outside(t.next_up()));
     }
-    tally.fast.get_or_insert_with(Beside::default).count(error(fast(center, radius, ray)));
-    let naive = naive::sphere(center, radius, ray);
-    tally.naive.get_or_insert_with(Beside::default).count(error(naive));
+    stats.count_fast(error(fast(center, radius, ray)));
+    let textbook = error(textbook::sphere(center, radius, ray));
+    stats.textbook.get_or_insert_default().count(textbook);
 }
