@@ -164,7 +164,7 @@ pub fn render_frames(
                 let made = Made::new(start, &builder, builder.stats() - before);
                 picture(posed, options, &*intersector, made, &share)
             } else if let Some(intersector) = &still {
-                let made = Made::new(start, &builder, BuildStats::kept(before.meshes));
+                let made = Made::new(start, &builder, BuildStats::reused(before.meshes_built));
                 picture(posed, options, &**intersector, made, &share)
             } else {
                 let intersector = still.insert(builder.build(scene)?);

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::load_report::Loaded;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
-use crate::intersect::{BuildQuality, BuildStats};
+use crate::intersect::BuildQuality;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
 
@@ -114,17 +114,16 @@ pub struct Build {
 
 impl From<&Statistics> for Build {
     fn from(statistics: &Statistics) -> Self {
-        let BuildStats { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
-            statistics.built;
+        let stats = statistics.built;
         Self {
-            meshes,
-            reused,
+            meshes: stats.meshes_built,
+            reused: stats.meshes_reused,
             bvh: statistics.quality.map(BuildQuality::name),
-            top_levels_built: tops,
-            top_levels_kept: tops_kept,
-            instances_placed: placed,
-            instances_moved: moved,
-            spheres_moved,
+            top_levels_built: stats.tlas_built,
+            top_levels_kept: stats.tlas_kept,
+            instances_placed: stats.instances_built,
+            instances_moved: stats.instances_moved,
+            spheres_moved: stats.spheres_moved,
         }
     }
 }
@@ -213,14 +212,14 @@ fn work(scene: &Scene, statistics: &Statistics, layers: u64) -> BTreeMap<&'stati
     read.sort_by_key(|image| Arc::as_ptr(image));
     read.dedup_by_key(|image| Arc::as_ptr(image));
     [
-        (Feature::Spheres.name(), built.sphere_sets),
-        (Feature::Instances.name(), built.instanced),
+        (Feature::Spheres.name(), built.sphere_geometries),
+        (Feature::Instances.name(), built.object_space_instances),
         (Feature::Planes.name(), done.planes),
         (Feature::Pictures.name(), read.len() as u64),
         (Feature::Uv.name(), done.uv),
         (Feature::Mipmaps.name(), done.mipmaps),
         (Feature::NormalMaps.name(), done.normal_maps),
-        (Feature::AlphaTests.name(), built.masked),
+        (Feature::AlphaTests.name(), built.masked_instances),
         (Feature::Checkers.name(), done.checkers),
         (Feature::VertexColors.name(), done.vertex_colors),
         (Feature::SmoothNormals.name(), done.smooth_normals),

@@ -82,21 +82,28 @@ impl Hit16 {
         self.id.get(i).map(|id| Hit { t: self.t[i], u: self.u[i], v: self.v[i], id })
     }
 
-    /// Keeps plane `index` from lane `at` on where it counts rather than what is there; `ts` are its
-    /// distances, no number where it is not met.
+    /// Merges hits on spheres or on planes into `W` lanes from lane `at` on: `geometry` is the code of
+    /// either, and `ts` are the distances, NaN where there is no hit. No lane may hold a hit on another
+    /// primitive of this geometry at the same distance.
     #[inline(always)]
-    pub fn merge_plane<const W: usize>(&mut self, index: u32, ts: &[f64; W], at: usize) {
+    pub fn merge_closer<const W: usize>(
+        &mut self,
+        geometry: u32,
+        primitive: &[u32; W],
+        ts: &[f64; W],
+        at: usize,
+    ) {
         for i in 0..W {
             let (t, best) = (ts[i], self.t[at + i]);
-            // Of two at the same distance a sphere counts before a plane, and that before a mesh.
+            // At the same distance a sphere counts before a plane, and that before a mesh.
             let first =
                 (t < best) | ((t == best) & (self.id.geometry[at + i] >= PrimitiveId16::MESHES));
             self.t[at + i] = if first { t } else { best };
             self.u[at + i] = if first { 0.0 } else { self.u[at + i] };
             self.v[at + i] = if first { 0.0 } else { self.v[at + i] };
             let id = &mut self.id;
-            id.geometry[at + i] = if first { PrimitiveId16::PLANES } else { id.geometry[at + i] };
-            id.primitive[at + i] = if first { index } else { id.primitive[at + i] };
+            id.geometry[at + i] = if first { geometry } else { id.geometry[at + i] };
+            id.primitive[at + i] = if first { primitive[i] } else { id.primitive[at + i] };
             id.instance[at + i] = if first { 0 } else { id.instance[at + i] };
         }
     }

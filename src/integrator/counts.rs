@@ -2,7 +2,8 @@
 
 use super::adaptive::STEPS;
 use crate::geometry::RayBatch;
-use crate::intersect::ExtraTests;
+use crate::intersect::{Intersector, Query};
+use crate::scene::Scene;
 
 /// How many rays were traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,11 +52,17 @@ pub struct FeatureCounts {
 }
 
 impl FeatureCounts {
-    /// Counts what an intersector did with rays besides walking its trees.
-    pub(super) fn extras(&mut self, what: ExtraTests, rays: &RayBatch) {
-        let sixteens = rays.blocks().len() as u64;
-        self.planes += sixteens * u64::from(what.planes);
-        self.filters += sixteens * u64::from(what.filters);
+    /// Counts the tests of rays against planes, and those by filters.
+    pub(super) fn count_tests(
+        &mut self,
+        scene: &Scene,
+        intersector: &dyn Intersector,
+        query: Query,
+        rays: &RayBatch,
+    ) {
+        let blocks = rays.blocks().len() as u64;
+        self.planes += blocks * u64::from(!scene.planes.is_empty());
+        self.filters += blocks * u64::from(intersector.uses_filter(query, rays));
     }
 }
 

@@ -27,7 +27,7 @@ use glam::Vec3;
 
 use crate::film::{Pixel, View};
 use crate::geometry::{Geometry, Hit, HitBatch, LANES, Ray, RayBatch};
-use crate::intersect::{Coherence, Intersector};
+use crate::intersect::{Coherence, Intersector, Query};
 use crate::scene::{Camera, Feature, FilmSettings, Material, RayGenerator, Scene, SceneFeatures};
 use crate::surface::Surface;
 use adaptive::{Note, PixelRecords};
@@ -271,13 +271,13 @@ impl<'a> Integrator<'a> {
         counts: &mut Counts,
     ) {
         self.intersector.closest_batch(rays, coherence, hits);
-        counts.work.extras(self.intersector.closest_extras(rays), rays);
+        counts.work.count_tests(self.scene, self.intersector, Query::Closest, rays);
     }
 
     /// Finds which shadow rays are kept from their ends.
     fn occluded(&self, rays: &RayBatch, blocked: &mut Vec<bool>, counts: &mut Counts) {
         self.intersector.occluded_batch(rays, Coherence::Coherent, blocked);
-        counts.work.extras(self.intersector.occluded_extras(), rays);
+        counts.work.count_tests(self.scene, self.intersector, Query::Occluded, rays);
     }
 
     /// The value of a debug view.

@@ -49,13 +49,13 @@ pub fn cells() -> Vec<Cell> {
                         for (ray, inside) in rays {
                             let mut first = None;
                             let mut crossings = 0;
-                            for hit in brute.all(ray) {
+                            for hit in brute.all_hits(ray) {
                                 Hit::keep_closest(&mut first, hit);
                                 crossings += 1;
                             }
                             // An origin inside is left an odd number of times.
                             tally.wrong_if((crossings % 2 == 1) != *inside);
-                            let even = (fast.all(ray).count() % 2 == 1) == *inside;
+                            let even = (fast.all_hits(ray).count() % 2 == 1) == *inside;
                             let beside = tally.fast.get_or_insert_with(Beside::default);
                             beside.count(even.then_some(0.0));
                             truth.push(first);

@@ -1,0 +1,254 @@
+//! Spheres and triangles as user geometry of precision `certified`: each that Embree offers is tested in
+//! f64 with an error bound, and exactly where that cannot tell.
+//!
+//! Of Embree's own ray the tests only lower `tfar`, with slack, so that what lies behind is skipped.
+
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
+use crate::intersect::embree::f32_space::F32Space;
+use crate::intersect::embree::fast::spheres::SphereTable;
+use crate::intersect::embree::ffi::callbacks::{CallbackPacket, PrimitiveTests};
+use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
+use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::primitive::{SphereDeparture, sphere_departure, starts_on_triangle};
+use crate::scene::{Instance, Mesh, Scene};
+
+/// A primitive as the callbacks of precision `certified` test it.
+pub trait CertifiedPrimitive: Sized {
+    /// The user data of its geometry.
+    type Table;
+
+    /// Looks up primitive `index` of a geometry.
+    fn new<const W: usize>(table: &Self::Table, index: u32, context: &QueryContext<'_, W>) -> Self;
+
+    fn id(&self) -> PrimitiveId;
+
+    fn blocks_light(&self) -> bool;
+
+    /// True if a mask may cut holes into it, so that only the exact weights of a hit tell.
+    fn is_masked(&self) -> bool;
+
+    /// False if a line certainly misses it.
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
+
+    /// The estimate of the first t > 0, for a ray that left no surface.
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
+
+    /// True if a ray left this very primitive, and so does not hit it again.
+    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool;
+
+    /// True if a ray that left a surface, and that by its estimate hits this primitive, starts on it
+    /// and so may not hit it.
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool;
+}
+
+/// The tests of a kind of primitive.
+pub struct CertifiedTests<P>(PhantomData<P>);
+
+impl<P: CertifiedPrimitive> PrimitiveTests for CertifiedTests<P> {
+    type Table = P::Table;
+
+    #[inline(always)]
+    fn intersect<const W: usize>(table: &P::Table, index: u32, packet: &mut CallbackPacket<'_, W>) {
+        let (context, active, tfar) = packet.parts();
+        let primitive = P::new(table, index, context);
+        context.keep_closest(&primitive, active, tfar);
+    }
+
+    #[inline(always)]
+    fn intersect_lane<const W: usize>(
+        table: &P::Table,
+        index: u32,
+        context: &mut QueryContext<'_, W>,
+        lane: usize,
+    ) {
+        let primitive = P::new(table, index, context);
+        context.resolve_exactly(lane, primitive.id());
+    }
+
+    #[inline(always)]
+    fn occluded<const W: usize>(table: &P::Table, index: u32, packet: &mut CallbackPacket<'_, W>) {
+        let (context, active, tfar) = packet.parts();
+        let primitive = P::new(table, index, context);
+        if primitive.blocks_light() {
+            context.mark_occluded(&primitive, active, tfar);
+        }
+    }
+
+    #[inline(always)]
+    fn occluded_lane<const W: usize>(
+        table: &P::Table,
+        index: u32,
+        context: &mut QueryContext<'_, W>,
+        lane: usize,
+    ) -> bool {
+        let primitive = P::new(table, index, context);
+        primitive.blocks_light() && context.exact_hit(lane, primitive.id()).is_some()
+    }
+}
+
+/// A sphere, tested with a bound.
+pub struct CertifiedSphere {
+    index: u32,
+    center: DVec3,
+    radius: f64,
+    blocks_light: bool,
+}
+
+impl CertifiedPrimitive for CertifiedSphere {
+    type Table = SphereTable;
+
+    #[inline(always)]
+    fn new<const W: usize>(table: &SphereTable, index: u32, _: &QueryContext<'_, W>) -> Self {
+        let s = &table.spheres[index as usize];
+        Self { index, center: s.center, radius: s.radius, blocks_light: s.blocks_light }
+    }
+
+    #[inline(always)]
+    fn id(&self) -> PrimitiveId {
+        PrimitiveId::sphere(self.index)
+    }
+
+    #[inline(always)]
+    fn blocks_light(&self) -> bool {
+        self.blocks_light
+    }
+
+    #[inline(always)]
+    fn is_masked(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
+        sphere::certified::QuadraticBound::new(self.center, self.radius, origin, direction, inverse)
+            .may_cross()
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse: f64) -> Estimate {
+        sphere::certified::estimate(self.center, self.radius, origin, direction, inverse)
+    }
+
+    #[inline(always)]
+    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        context.departures.outward[lane] == self.index
+    }
+
+    #[inline(always)]
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        let f = context.rays.origin_and_direction(lane).0 - self.center;
+        let power = f.length_squared() - self.radius * self.radius;
+        context.departures.may_start_on_sphere(lane, self.index, self.radius, power)
+            && sphere_departure(context.scene.scene, self.index, &context.packet.ray(lane))
+                != SphereDeparture::No
+    }
+}
+
+/// The triangles of a mesh as user data. The vertices themselves are baked from the scene when a
+/// triangle is tested.
+pub struct TriangleTable {
+    mesh: Arc<Mesh>,
+    mesh_index: u32,
+    /// The instance that lies in world space and its index, or none for a mesh in object space, whose
+    /// instance is in the query context.
+    instance: Option<(u32, Instance)>,
+    space: F32Space,
+}
+
+impl TriangleTable {
+    /// Makes the table of an instance, in world space; on the heap since Embree keeps its address.
+    pub fn in_world_space(scene: &Scene, index: u32, space: F32Space) -> Box<Self> {
+        let instance = scene.instances[index as usize].clone();
+        let table = Self::in_object_space(scene, instance.mesh.0, space);
+        Box::new(Self { instance: Some((index, instance)), ..*table })
+    }
+
+    /// Makes the table of a mesh, in object space; on the heap since Embree keeps its address.
+    pub fn in_object_space(scene: &Scene, mesh_index: u32, space: F32Space) -> Box<Self> {
+        let mesh = scene.meshes[mesh_index as usize].clone();
+        Box::new(Self { mesh, mesh_index, instance: None, space })
+    }
+}
+
+impl PrimitiveTable for TriangleTable {
+    fn len(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    fn bounds(&self, index: u32) -> (Bounds, &F32Space) {
+        let vertices = self.mesh.triangle_vertices(index);
+        let vertices = match &self.instance {
+            Some((_, instance)) => vertices.map(|p| instance.to_world(p)),
+            None => vertices.map(|p| DVec3::from(p.map(f64::from))),
+        };
+        (Bounds::of(vertices), &self.space)
+    }
+}
+
+/// A triangle, tested with a bound.
+pub struct CertifiedTriangle {
+    id: PrimitiveId,
+    vertices: [DVec3; 3],
+    blocks_light: bool,
+    is_masked: bool,
+}
+
+impl CertifiedPrimitive for CertifiedTriangle {
+    type Table = TriangleTable;
+
+    #[inline(always)]
+    fn new<const W: usize>(
+        table: &TriangleTable,
+        index: u32,
+        context: &QueryContext<'_, W>,
+    ) -> Self {
+        let instance = table.instance.as_ref().map_or(context.instance, |(index, _)| *index);
+        let id = PrimitiveId::triangle(table.mesh_index, index, instance);
+        let scene = context.scene.scene;
+        Self {
+            id,
+            vertices: scene.triangle_vertices(id),
+            blocks_light: scene.blocks_light(id),
+            is_masked: context.scene.is_masked(instance),
+        }
+    }
+
+    #[inline(always)]
+    fn id(&self) -> PrimitiveId {
+        self.id
+    }
+
+    #[inline(always)]
+    fn blocks_light(&self) -> bool {
+        self.blocks_light
+    }
+
+    #[inline(always)]
+    fn is_masked(&self) -> bool {
+        self.is_masked
+    }
+
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
+        triangle::certified::Edges::new(self.vertices, origin, direction).may_cross()
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, _: f64) -> Estimate {
+        triangle::certified::estimate(self.vertices, origin, direction)
+    }
+
+    #[inline(always)]
+    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        context.packet.departure(lane).is_some_and(|departure| departure.id == self.id)
+    }
+
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        starts_on_triangle(context.scene.scene, self.vertices, &context.packet.ray(lane))
+    }
+}
