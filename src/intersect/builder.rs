@@ -32,14 +32,12 @@ struct FrameCache {
 
 impl FrameCache {
     /// The numbers of meshes and TLASes that were built.
-    fn stats(&self) -> BuildStats {
-        #[cfg_attr(not(feature = "embree"), expect(unused_mut))]
-        let mut stats = self.bvh.stats();
-        #[cfg(feature = "embree")]
-        {
-            stats += self.embree.stats();
+    fn stats(&self, backend: Backend) -> BuildStats {
+        match backend {
+            #[cfg(feature = "embree")]
+            Backend::Embree => self.embree.stats(),
+            Backend::Rust => self.bvh.stats(),
         }
-        stats
     }
 }
 
@@ -92,7 +90,7 @@ impl IntersectorBuilder {
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
     pub fn build<'s>(&mut self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
-        let before = self.cache.as_ref().map_or(BuildStats::default(), FrameCache::stats);
+        let before = self.cache.as_ref().map(|cache| cache.stats(self.backend)).unwrap_or_default();
         // See what moved since the frame before, if it was of the same things.
         let diff = self.cache.as_mut().and_then(|cache| cache.previous.advance(scene));
         // Build, or update, the intersector.
@@ -117,7 +115,7 @@ impl IntersectorBuilder {
             None => {
                 BuildStats { meshes_built: used_meshes(scene), tlas_built: 1, ..Default::default() }
             }
-            Some(cache) => cache.stats() - before,
+            Some(cache) => cache.stats(self.backend) - before,
         };
         self.count(scene, built, contents, &diff.unwrap_or_default());
         Ok(intersector)

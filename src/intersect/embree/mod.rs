@@ -179,16 +179,16 @@ impl Intersector for Embree<'_> {
 
     fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
         hits.resize(rays.len());
-        let scene = &self.query_scene();
+        let query = &self.query_scene();
         let width = self.tlas.scene.device.width;
-        width.run(ClosestQuery { scene, rays, coherence, hits });
+        width.run(ClosestQuery { query, rays, coherence, hits });
     }
 
     fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, occluded: &mut Vec<bool>) {
         occluded.clear();
         occluded.resize(rays.len(), false);
-        let scene = &self.query_scene();
+        let query = &self.query_scene();
         let width = self.tlas.scene.device.width;
-        width.run(OcclusionQuery { scene, rays, coherence, occluded });
+        width.run(OcclusionQuery { query, rays, coherence, occluded });
     }
 }

@@ -1,14 +1,12 @@
 //! The settings and the unfinished Embree scene that the geometries of a TLAS are built with.
 
-use embree4_rs::SceneOptions;
-use embree4_rs::geometry::Geometry;
 use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
 
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::PrimitiveTests;
-use crate::intersect::embree::ffi::handles::{DeviceHandle, OpenScene, TopScene};
+use crate::intersect::embree::ffi::callbacks::UserPrimitives;
+use crate::intersect::embree::ffi::handles::{DeviceHandle, OpenScene};
 use crate::intersect::embree::ffi::packet_width::PacketWidth;
 use crate::intersect::embree::ffi::user_geometry::{PrimitiveTable, new_geometry};
 use crate::intersect::{BuildQuality, Precision};
@@ -41,7 +39,7 @@ pub struct SceneBuilder<'a> {
     pub space: F32Space,
     /// True if every mesh gets a BLAS, also one with a single instance: for frames that share meshes.
     pub all_instanced: bool,
-    top: OpenScene,
+    pub top: OpenScene,
 }
 
 impl<'a> SceneBuilder<'a> {
@@ -61,36 +59,19 @@ impl<'a> SceneBuilder<'a> {
             BuildQuality::Low => RTCBuildQuality::LOW,
             BuildQuality::Medium => RTCBuildQuality::MEDIUM,
         };
-        let options = SceneOptions { build_quality: quality, flags: SCENE_FLAGS };
-        let top = OpenScene::new(device, options)?;
+        let top = OpenScene::new(device, quality, SCENE_FLAGS)?;
         Ok(Self { scene, mesh_bounds, device, quality, space, all_instanced, top })
-    }
-
-    /// Attaches a geometry, and returns its id.
-    ///
-    /// # Errors
-    /// When Embree runs out of memory.
-    pub fn attach(&self, geometry: &dyn Geometry) -> Result<u32> {
-        self.top.attach(geometry)
     }
 
     /// Attaches the user geometry over `table`, which must outlive the scene, and returns its id.
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn attach_user_geometry<T>(&self, table: &T::Table) -> Result<u32>
+    pub fn attach_user_geometry<P>(&self, table: &P::Table) -> Result<u32>
     where
-        T: PrimitiveTests<Table: PrimitiveTable>,
+        P: UserPrimitives<Table: PrimitiveTable>,
     {
-        self.attach(&new_geometry::<T>(self.device, self.quality, table)?)
-    }
-
-    /// Commits the scene.
-    ///
-    /// # Errors
-    /// When Embree runs out of memory.
-    pub fn commit(self) -> Result<TopScene> {
-        self.top.commit(self.device)
+        self.top.attach(&new_geometry::<P>(self.device, self.quality, table)?)
     }
 
     /// The number of instances of each mesh.
@@ -98,11 +79,6 @@ impl<'a> SceneBuilder<'a> {
         let mut counts = vec![0; self.scene.meshes.len()];
         self.scene.instances.iter().for_each(|i| counts[i.mesh.0 as usize] += 1);
         counts
-    }
-
-    /// True if a mesh cannot be traced in object space.
-    pub fn is_outsized(&self, mesh: usize) -> bool {
-        is_outsized(&self.mesh_bounds[mesh])
     }
 }
 

@@ -12,11 +12,11 @@ use crate::geometry::Bounds;
 use crate::intersect::Precision;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::build_stats::BuildStats;
-use crate::intersect::embree::certified::primitives::{CertifiedSphere, CertifiedTests};
+use crate::intersect::embree::certified::primitives::CertifiedSphere;
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::fast::spheres::{FastSpheres, SphereTable};
 use crate::intersect::embree::ffi::abi_check;
-use crate::intersect::embree::ffi::handles::{DeviceHandle, TopScene};
+use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle};
 use crate::intersect::embree::ffi::user_geometry::update_geometry;
 use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder, is_outsized};
 use crate::intersect::embree::{certified, fast};
@@ -27,7 +27,7 @@ use crate::scene::{Mesh, Scene};
 pub struct Tlas {
     pub precision: Precision,
     pub space: F32Space,
-    pub scene: TopScene,
+    pub scene: CommittedScene,
     /// The geometry of the spheres, and the table that its callbacks read; dropped after the scene that
     /// calls them.
     spheres: Option<(u32, Box<SphereTable>)>,
@@ -62,7 +62,7 @@ impl Tlas {
         precision: Precision,
         cache: Option<&mut FrameCache>,
     ) -> Result<Self> {
-        let SceneBuilder { scene, space, .. } = builder;
+        let SceneBuilder { scene, space, device, .. } = builder;
         let meshes = match precision {
             Precision::Fast => {
                 let cache = cache.map(|cache| &mut cache.fast);
@@ -78,14 +78,12 @@ impl Tlas {
             let table = SphereTable::new(scene, space);
             let id = match precision {
                 Precision::Fast => builder.attach_user_geometry::<FastSpheres>(&table)?,
-                Precision::Certified => {
-                    builder.attach_user_geometry::<CertifiedTests<CertifiedSphere>>(&table)?
-                }
+                Precision::Certified => builder.attach_user_geometry::<CertifiedSphere>(&table)?,
             };
             spheres = Some((id, table));
         }
         let _meshes = scene.meshes.clone();
-        Ok(Self { precision, space, scene: builder.commit()?, spheres, meshes, _meshes })
+        Ok(Self { precision, space, scene: builder.top.commit(device)?, spheres, meshes, _meshes })
     }
 
     /// The instance of each geometry of Embree's own; empty in precision `certified`.

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use crate::geometry::{Bounds, PrimitiveId};
 use crate::intersect::embree::certified::meshes::Blas;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, PrimitiveTests};
+use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
 use crate::intersect::embree::ffi::records::{LaneMask, RayHitRecord};
 use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
 use crate::intersect::embree::packet::context::QueryContext;
@@ -25,7 +25,7 @@ pub struct InstanceTable {
 }
 
 /// An instance whose mesh is in object space.
-struct InstanceEntry {
+pub struct InstanceEntry {
     instance: u32,
     blas: Arc<Blas>,
     object_space: ObjectSpace,
@@ -126,24 +126,42 @@ impl InstanceEntry {
         }
         traced
     }
+
+    /// True if the triangles of the instance block light.
+    fn blocks_light<const W: usize>(&self, context: &QueryContext<'_, W>) -> bool {
+        let scene = context.scene;
+        let mesh = scene.instances[self.instance as usize].mesh.0;
+        scene.blocks_light(PrimitiveId::triangle(mesh, 0, self.instance))
+    }
 }
 
-impl PrimitiveTests for InstanceTable {
+impl UserPrimitives for InstanceTable {
     type Table = Self;
+    type Primitive<'t> = &'t InstanceEntry;
 
     #[inline(always)]
-    fn intersect<const W: usize>(table: &Self, index: u32, packet: &mut CallbackPacket<'_, W>) {
-        let entry = &table.entries[index as usize];
+    fn get<'t, const W: usize>(
+        table: &'t Self,
+        index: u32,
+        _: &QueryContext<'_, W>,
+    ) -> &'t InstanceEntry {
+        &table.entries[index as usize]
+    }
+}
+
+impl UserPrimitive for &InstanceEntry {
+    #[inline(always)]
+    fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let context = packet.parts().0;
         let mut limits = [0.0; W];
         for i in 0..W {
             limits[i] = context.hits.upper(i);
         }
-        let traced = entry.trace(packet, limits);
+        let traced = self.trace(packet, limits);
         let (context, _, tfar) = packet.parts();
         for i in 0..W {
             if traced.brute_force[i] {
-                context.resolve_instance(i, entry.instance);
+                context.resolve_instance(i, self.instance);
             }
         }
         for i in 0..W {
@@ -152,28 +170,22 @@ impl PrimitiveTests for InstanceTable {
     }
 
     #[inline(always)]
-    fn intersect_lane<const W: usize>(
-        table: &Self,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) {
-        context.resolve_instance(lane, table.entries[index as usize].instance);
+    fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize) {
+        context.resolve_instance(lane, self.instance);
     }
 
     #[inline(always)]
-    fn occluded<const W: usize>(table: &Self, index: u32, packet: &mut CallbackPacket<'_, W>) {
-        let entry = &table.entries[index as usize];
+    fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let context = packet.parts().0;
-        if !blocks_light(context, entry.instance) {
+        if !self.blocks_light(context) {
             return;
         }
         let limits = context.rays.tmax;
-        let traced = entry.trace(packet, limits);
+        let traced = self.trace(packet, limits);
         let (context, _, tfar) = packet.parts();
         for i in 0..W {
             let occluded = if traced.brute_force[i] {
-                context.hits_instance(i, entry.instance)
+                context.hits_instance(i, self.instance)
             } else {
                 traced.active.0[i] != 0 && tfar[i] == f32::NEG_INFINITY
             };
@@ -182,20 +194,7 @@ impl PrimitiveTests for InstanceTable {
     }
 
     #[inline(always)]
-    fn occluded_lane<const W: usize>(
-        table: &Self,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) -> bool {
-        let instance = table.entries[index as usize].instance;
-        blocks_light(context, instance) && context.hits_instance(lane, instance)
+    fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        self.blocks_light(context) && context.hits_instance(lane, self.instance)
     }
-}
-
-/// True if the triangles of an instance block light.
-fn blocks_light<const W: usize>(context: &QueryContext<'_, W>, instance: u32) -> bool {
-    let scene = context.scene.scene;
-    let mesh = scene.instances[instance as usize].mesh.0;
-    scene.blocks_light(PrimitiveId::triangle(mesh, 0, instance))
 }

@@ -6,13 +6,11 @@ use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::embree::certified::instances::InstanceTable;
-use crate::intersect::embree::certified::primitives::{
-    CertifiedTests, CertifiedTriangle, TriangleTable,
-};
+use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::{InnerScene, TopScene};
+use crate::intersect::embree::ffi::handles::CommittedScene;
 use crate::intersect::embree::ffi::user_geometry::{PrimitiveTable, new_geometry, update_geometry};
-use crate::intersect::embree::scene_builder::SceneBuilder;
+use crate::intersect::embree::scene_builder::{SceneBuilder, is_outsized};
 use crate::intersect::object_space::world_bounds;
 use crate::scene::{Mesh, Scene};
 
@@ -27,7 +25,7 @@ pub struct Meshes {
 
 /// The BLAS of a mesh.
 pub struct Blas {
-    pub scene: InnerScene,
+    pub scene: CommittedScene,
     /// The space of its f32 vertices.
     pub space: F32Space,
     /// The table that the callbacks read; dropped after the scene that calls them.
@@ -39,8 +37,8 @@ impl Blas {
         let SceneBuilder { device, quality, .. } = builder;
         let space = F32Space::from_bounds(builder.mesh_bounds[mesh]);
         let table = TriangleTable::in_object_space(builder.scene, mesh as u32, space);
-        let geometry = new_geometry::<CertifiedTests<CertifiedTriangle>>(device, *quality, &table)?;
-        let scene = InnerScene::new(device, *quality, RTCSceneFlags::NONE, &geometry)?;
+        let geometry = new_geometry::<CertifiedTriangle>(device, *quality, &table)?;
+        let scene = CommittedScene::new(device, *quality, RTCSceneFlags::NONE, &geometry)?;
         Ok(Self { scene, space, _table: table })
     }
 }
@@ -76,7 +74,7 @@ impl Meshes {
                 && instance_counts[index] == 1
                 && !is_small(mesh, bounds, &space);
             has_blas[index] =
-                !(mesh.triangles.is_empty() || in_world_space || builder.is_outsized(index));
+                !(mesh.triangles.is_empty() || in_world_space || is_outsized(&mesh_bounds[index]));
         }
         // Build those, and attach the meshes that have none.
         let build = |mesh| Blas::new(builder, mesh);
@@ -89,7 +87,7 @@ impl Meshes {
                 instances.push(index, instance, bounds, blas.clone());
             } else if !scene.meshes[mesh].triangles.is_empty() {
                 let table = TriangleTable::in_world_space(scene, index, space);
-                builder.attach_user_geometry::<CertifiedTests<CertifiedTriangle>>(&table)?;
+                builder.attach_user_geometry::<CertifiedTriangle>(&table)?;
                 meshes.triangles.push(table);
                 cache.iter_mut().for_each(|cache| cache.count_uncached());
             }
@@ -110,7 +108,7 @@ impl Meshes {
     /// Moves the instances with the indices `moved`, of which none is outsized.
     pub fn update(
         &mut self,
-        top: &mut TopScene,
+        top: &mut CommittedScene,
         scene: &Scene,
         mesh_bounds: &[Bounds],
         moved: &[u32],

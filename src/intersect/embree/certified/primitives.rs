@@ -3,91 +3,64 @@
 //!
 //! Of Embree's own ray the tests only lower `tfar`, with slack, so that what lies behind is skipped.
 
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 use glam::DVec3;
 
 use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::fast::spheres::SphereTable;
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, PrimitiveTests};
+use crate::intersect::embree::fast::spheres::{SphereEntry, SphereTable};
+use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
 use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
 use crate::intersect::embree::packet::context::QueryContext;
 use crate::intersect::primitive::{SphereDeparture, sphere_departure, starts_on_triangle};
 use crate::scene::{Instance, Mesh, Scene};
 
 /// A primitive as the callbacks of precision `certified` test it.
-pub trait CertifiedPrimitive: Sized {
-    /// The user data of its geometry.
-    type Table;
-
-    /// Looks up primitive `index` of a geometry.
-    fn new<const W: usize>(table: &Self::Table, index: u32, context: &QueryContext<'_, W>) -> Self;
-
-    fn id(&self) -> PrimitiveId;
-
-    fn blocks_light(&self) -> bool;
-
+pub struct CertifiedPrimitive<S> {
+    pub id: PrimitiveId,
+    pub shape: S,
+    blocks_light: bool,
     /// True if a mask may cut holes into it, so that only the exact weights of a hit tell.
-    fn is_masked(&self) -> bool;
+    pub is_masked: bool,
+}
 
+/// The shape of a primitive. All functions are to be inlined always.
+pub trait Shape {
     /// False if a line certainly misses it.
     fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
 
     /// The estimate of the first t > 0, for a ray that left no surface.
     fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
 
-    /// True if a ray left this very primitive, and so does not hit it again.
-    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool;
-
-    /// True if a ray that left a surface, and that by its estimate hits this primitive, starts on it
-    /// and so may not hit it.
+    /// True if a ray that left a surface, and that by its estimate hits it,
+    /// starts on it and so may not hit it.
     fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool;
 }
 
-/// The tests of a kind of primitive.
-pub struct CertifiedTests<P>(PhantomData<P>);
-
-impl<P: CertifiedPrimitive> PrimitiveTests for CertifiedTests<P> {
-    type Table = P::Table;
-
+impl<S: Shape> UserPrimitive for CertifiedPrimitive<S> {
     #[inline(always)]
-    fn intersect<const W: usize>(table: &P::Table, index: u32, packet: &mut CallbackPacket<'_, W>) {
+    fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let (context, active, tfar) = packet.parts();
-        let primitive = P::new(table, index, context);
-        context.keep_closest(&primitive, active, tfar);
+        context.keep_closest(self, active, tfar);
     }
 
     #[inline(always)]
-    fn intersect_lane<const W: usize>(
-        table: &P::Table,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) {
-        let primitive = P::new(table, index, context);
-        context.resolve_exactly(lane, primitive.id());
+    fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize) {
+        context.resolve_exactly(lane, self.id);
     }
 
     #[inline(always)]
-    fn occluded<const W: usize>(table: &P::Table, index: u32, packet: &mut CallbackPacket<'_, W>) {
+    fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let (context, active, tfar) = packet.parts();
-        let primitive = P::new(table, index, context);
-        if primitive.blocks_light() {
-            context.mark_occluded(&primitive, active, tfar);
+        if self.blocks_light {
+            context.mark_occluded(self, active, tfar);
         }
     }
 
     #[inline(always)]
-    fn occluded_lane<const W: usize>(
-        table: &P::Table,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) -> bool {
-        let primitive = P::new(table, index, context);
-        primitive.blocks_light() && context.exact_hit(lane, primitive.id()).is_some()
+    fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        self.blocks_light && context.exact_hit(lane, self.id).is_some()
     }
 }
 
@@ -96,33 +69,26 @@ pub struct CertifiedSphere {
     index: u32,
     center: DVec3,
     radius: f64,
-    blocks_light: bool,
 }
 
-impl CertifiedPrimitive for CertifiedSphere {
+impl UserPrimitives for CertifiedSphere {
     type Table = SphereTable;
+    type Primitive<'t> = CertifiedPrimitive<Self>;
 
     #[inline(always)]
-    fn new<const W: usize>(table: &SphereTable, index: u32, _: &QueryContext<'_, W>) -> Self {
-        let s = &table.spheres[index as usize];
-        Self { index, center: s.center, radius: s.radius, blocks_light: s.blocks_light }
+    fn get<const W: usize>(
+        table: &SphereTable,
+        index: u32,
+        _: &QueryContext<'_, W>,
+    ) -> CertifiedPrimitive<Self> {
+        let SphereEntry { center, radius, blocks_light } = table.spheres[index as usize];
+        let shape = Self { index, center, radius };
+        let id = PrimitiveId::sphere(index);
+        CertifiedPrimitive { id, shape, blocks_light, is_masked: false }
     }
+}
 
-    #[inline(always)]
-    fn id(&self) -> PrimitiveId {
-        PrimitiveId::sphere(self.index)
-    }
-
-    #[inline(always)]
-    fn blocks_light(&self) -> bool {
-        self.blocks_light
-    }
-
-    #[inline(always)]
-    fn is_masked(&self) -> bool {
-        false
-    }
-
+impl Shape for CertifiedSphere {
     #[inline(always)]
     fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
         sphere::certified::QuadraticBound::new(self.center, self.radius, origin, direction, inverse)
@@ -135,16 +101,11 @@ impl CertifiedPrimitive for CertifiedSphere {
     }
 
     #[inline(always)]
-    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        context.departures.outward[lane] == self.index
-    }
-
-    #[inline(always)]
     fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
         let f = context.rays.origin_and_direction(lane).0 - self.center;
         let power = f.length_squared() - self.radius * self.radius;
         context.departures.may_start_on_sphere(lane, self.index, self.radius, power)
-            && sphere_departure(context.scene.scene, self.index, &context.packet.ray(lane))
+            && sphere_departure(context.scene, self.index, &context.packet.ray(lane))
                 != SphereDeparture::No
     }
 }
@@ -192,47 +153,32 @@ impl PrimitiveTable for TriangleTable {
 
 /// A triangle, tested with a bound.
 pub struct CertifiedTriangle {
-    id: PrimitiveId,
     vertices: [DVec3; 3],
-    blocks_light: bool,
-    is_masked: bool,
 }
 
-impl CertifiedPrimitive for CertifiedTriangle {
+impl UserPrimitives for CertifiedTriangle {
     type Table = TriangleTable;
+    type Primitive<'t> = CertifiedPrimitive<Self>;
 
     #[inline(always)]
-    fn new<const W: usize>(
+    fn get<const W: usize>(
         table: &TriangleTable,
         index: u32,
         context: &QueryContext<'_, W>,
-    ) -> Self {
+    ) -> CertifiedPrimitive<Self> {
         let instance = table.instance.as_ref().map_or(context.instance, |(index, _)| *index);
         let id = PrimitiveId::triangle(table.mesh_index, index, instance);
-        let scene = context.scene.scene;
-        Self {
+        let scene = context.scene;
+        CertifiedPrimitive {
             id,
-            vertices: scene.triangle_vertices(id),
+            shape: Self { vertices: scene.triangle_vertices(id) },
             blocks_light: scene.blocks_light(id),
-            is_masked: context.scene.is_masked(instance),
+            is_masked: context.query.is_masked(instance),
         }
     }
+}
 
-    #[inline(always)]
-    fn id(&self) -> PrimitiveId {
-        self.id
-    }
-
-    #[inline(always)]
-    fn blocks_light(&self) -> bool {
-        self.blocks_light
-    }
-
-    #[inline(always)]
-    fn is_masked(&self) -> bool {
-        self.is_masked
-    }
-
+impl Shape for CertifiedTriangle {
     #[inline(always)]
     fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
         triangle::certified::Edges::new(self.vertices, origin, direction).may_cross()
@@ -243,12 +189,7 @@ impl CertifiedPrimitive for CertifiedTriangle {
         triangle::certified::estimate(self.vertices, origin, direction)
     }
 
-    #[inline(always)]
-    fn is_departed<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        context.packet.departure(lane).is_some_and(|departure| departure.id == self.id)
-    }
-
     fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        starts_on_triangle(context.scene.scene, self.vertices, &context.packet.ray(lane))
+        starts_on_triangle(context.scene, self.vertices, &context.packet.ray(lane))
     }
 }

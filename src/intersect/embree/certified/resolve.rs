@@ -1,8 +1,8 @@
 //! The resolution of hits in precision `certified`: which candidates count, by their bounds, and
 //! exactly where these overlap.
 
-use crate::geometry::{Estimate, Hit, PrimitiveId};
-use crate::intersect::embree::certified::primitives::CertifiedPrimitive;
+use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
+use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
 use crate::intersect::embree::packet::context::QueryContext;
 
 impl<const W: usize> QueryContext<'_, W> {
@@ -10,7 +10,7 @@ impl<const W: usize> QueryContext<'_, W> {
     #[inline(always)]
     pub fn keep_closest(
         &mut self,
-        primitive: &impl CertifiedPrimitive,
+        primitive: &CertifiedPrimitive<impl Shape>,
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
@@ -19,26 +19,26 @@ impl<const W: usize> QueryContext<'_, W> {
             let e = estimates[i];
             // The next hit of a continuation ray is not always the first root.
             if self.departures.any_continuation && active[i] != 0 {
-                self.resolve_exactly(i, primitive.id());
+                self.resolve_exactly(i, primitive.id);
                 tfar[i] = self.closest_tfar(i).min(tfar[i]);
                 continue;
             }
             if active[i] == 0 || e.is_outside(self.hits.upper(i)) {
                 continue;
             }
-            if self.departures.any && primitive.is_departed(self, i) {
+            if self.departures.any && self.is_departure(i, primitive.id) {
                 continue;
             }
             // Keep what is certainly ahead and closer; decide exactly about the rest.
             let closer = e.upper() < self.hits.t[i] - self.hits.error[i];
             let certain = e.lower() > 0.0 && closer;
             if !certain
-                || primitive.is_masked()
-                || (self.departures.any && primitive.may_start_on(self, i))
+                || primitive.is_masked
+                || (self.departures.any && primitive.shape.may_start_on(self, i))
             {
-                self.resolve_exactly(i, primitive.id());
+                self.resolve_exactly(i, primitive.id);
             } else {
-                self.hits.set(i, e, primitive.id());
+                self.hits.set(i, e, primitive.id);
             }
             tfar[i] = self.closest_tfar(i).min(tfar[i]);
         }
@@ -48,7 +48,7 @@ impl<const W: usize> QueryContext<'_, W> {
     #[inline(always)]
     pub fn mark_occluded(
         &mut self,
-        primitive: &impl CertifiedPrimitive,
+        primitive: &CertifiedPrimitive<impl Shape>,
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
@@ -58,32 +58,42 @@ impl<const W: usize> QueryContext<'_, W> {
             if active[i] == 0 || e.is_outside(self.rays.tmax[i]) {
                 continue;
             }
-            if self.departures.any && primitive.is_departed(self, i) {
+            if self.departures.any && self.is_departure(i, primitive.id) {
                 continue;
             }
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
             let certain = within
                 && !self.departures.any_continuation
-                && !primitive.is_masked()
-                && !(self.departures.any && primitive.may_start_on(self, i));
-            if certain || self.exact_hit(i, primitive.id()).is_some() {
+                && !primitive.is_masked
+                && !(self.departures.any && primitive.shape.may_start_on(self, i));
+            if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
         }
+    }
+
+    /// True if the ray in `lane` left this very primitive, and so does not hit it again, except a sphere
+    /// that it went into.
+    #[inline(always)]
+    fn is_departure(&self, lane: usize, id: PrimitiveId) -> bool {
+        if id.geometry == Geometry::Spheres {
+            return self.departures.outward[lane] == id.primitive;
+        }
+        self.packet.departure(lane).is_some_and(|departure| departure.id == id)
     }
 
     /// The estimates for the rays of a packet; `None` if all active ones certainly miss.
     #[inline(always)]
     fn estimates(
         &self,
-        primitive: &impl CertifiedPrimitive,
+        primitive: &CertifiedPrimitive<impl Shape>,
         active: &[i32; W],
     ) -> Option<[Estimate; W]> {
         let mut any = false;
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            any |= (active[i] != 0) & primitive.may_cross(origin, direction, inverse);
+            any |= (active[i] != 0) & primitive.shape.may_cross(origin, direction, inverse);
         }
         if !any {
             return None;
@@ -92,14 +102,14 @@ impl<const W: usize> QueryContext<'_, W> {
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            estimates[i] = primitive.estimate(origin, direction, inverse);
+            estimates[i] = primitive.shape.estimate(origin, direction, inverse);
         }
         Some(estimates)
     }
 
     /// The exact hit of the ray in `lane` on a primitive.
     pub fn exact_hit(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
-        self.scene.primitives().test(id, &self.packet.get(lane)?)
+        self.query.primitives().test(id, &self.packet.get(lane)?)
     }
 
     /// Decides exactly whether `id` is the closest hit of the ray in `lane`.
@@ -108,7 +118,7 @@ impl<const W: usize> QueryContext<'_, W> {
     pub fn resolve_exactly(&mut self, lane: usize, id: PrimitiveId) {
         let Some(hit) = self.exact_hit(lane, id) else { return };
         // Make the distance of the hit so far exact, too.
-        let best = self.hits.id(self.scene.scene, lane);
+        let best = self.hits.id(self.scene, lane);
         if let Some(best) = best
             && self.hits.error[lane] != 0.0
             && let Some(exact) = self.exact_hit(lane, best)
@@ -136,7 +146,7 @@ impl<const W: usize> QueryContext<'_, W> {
     }
 
     fn instance_triangles(&self, instance: u32) -> impl Iterator<Item = PrimitiveId> + use<W> {
-        let scene = self.scene.scene;
+        let scene = self.scene;
         let mesh = scene.instances[instance as usize].mesh.0;
         let count = scene.meshes[mesh as usize].triangles.len() as u32;
         (0..count).map(move |triangle| PrimitiveId::triangle(mesh, triangle, instance))

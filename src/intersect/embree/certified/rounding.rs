@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, Hit, Hit16, PrimitiveId, sphere, triangle};
+use crate::geometry::{Geometry, Hit, Hit16, PrimitiveId, PrimitiveId16, sphere, triangle};
 use crate::intersect::embree::packet::context::QueryContext;
+use crate::scene::Triangles;
 
 /// Distances and weights side by side, and which of them are proven.
 struct Rounded<const W: usize> {
@@ -21,20 +22,14 @@ struct Rounded<const W: usize> {
 pub fn round_hits<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hit16) {
     let QueryContext { scene, packet, .. } = context;
     let mut ids = [None; W];
-    let (mut any_sphere, mut any_triangle) = (false, false);
     for i in 0..packet.count {
-        ids[i] = context.hits.id(scene.scene, i);
-        let is_sphere = ids[i].is_some_and(|id| id.geometry == Geometry::Spheres);
-        any_sphere |= is_sphere;
-        any_triangle |= ids[i].is_some() & !is_sphere;
+        ids[i] = context.hits.id(scene, i);
     }
     let mut rounded = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: [false; W] };
-    if any_sphere {
+    if ids.iter().flatten().any(|id| id.geometry == Geometry::Spheres) {
         round_spheres(context, &ids, &mut rounded);
     }
-    if any_triangle {
-        round_triangles(context, &ids, &mut rounded);
-    }
+    round_triangles(context, &ids, &mut rounded);
     for i in 0..packet.count {
         let hit = ids[i].and_then(|id| {
             if rounded.certain[i] {
@@ -59,7 +54,7 @@ fn round_spheres<const W: usize>(
     let mut is_first_root = [false; W];
     for i in 0..W {
         let Some(id) = ids[i].filter(|id| id.geometry == Geometry::Spheres) else { continue };
-        let s = &context.scene.scene.spheres[id.primitive as usize];
+        let s = &context.scene.spheres[id.primitive as usize];
         for axis in 0..3 {
             center[axis][i] = s.center[axis];
         }
@@ -85,31 +80,22 @@ fn round_triangles<const W: usize>(
     ids: &[Option<PrimitiveId>; W],
     to: &mut Rounded<W>,
 ) {
-    let mut vertices = [[[0.0; W]; 3]; 3];
-    let mut is_triangle = [false; W];
+    let mut geometry = [PrimitiveId16::NONE; W];
     for i in 0..W {
-        let Some(id) = ids[i].filter(|id| id.geometry != Geometry::Spheres) else { continue };
-        for (to, vertex) in vertices.iter_mut().zip(context.scene.scene.triangle_vertices(id)) {
-            for axis in 0..3 {
-                to[axis][i] = vertex[axis];
-            }
+        if let Some(PrimitiveId { geometry: Geometry::Mesh(mesh), .. }) = ids[i] {
+            geometry[i] = PrimitiveId16::MESHES + mesh;
         }
-        is_triangle[i] = true;
     }
-    let mut rounded = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: is_triangle };
+    let QueryContext { scene, hits, .. } = context;
+    let triangles = Triangles::of(scene, &geometry, &hits.primitive, &hits.instance);
+    let Some(triangles) = triangles else { return };
     for i in 0..W {
         let (origin, direction) = context.rays.origin_and_direction(i);
-        let vertex = |c: usize| DVec3::new(vertices[c][0][i], vertices[c][1][i], vertices[c][2][i]);
-        let r = triangle::certified::round([vertex(0), vertex(1), vertex(2)], origin, direction);
-        rounded.t[i] = r.t;
-        rounded.u[i] = r.u;
-        rounded.v[i] = r.v;
-        rounded.certain[i] &= r.certain;
-    }
-    for i in (0..W).filter(|&i| is_triangle[i]) {
-        to.t[i] = rounded.t[i];
-        to.u[i] = rounded.u[i];
-        to.v[i] = rounded.v[i];
-        to.certain[i] = rounded.certain[i];
+        let r = triangle::certified::round(triangles.corners(i), origin, direction);
+        let is_triangle = geometry[i] != PrimitiveId16::NONE;
+        to.t[i] = if is_triangle { r.t } else { to.t[i] };
+        to.u[i] = if is_triangle { r.u } else { 0.0 };
+        to.v[i] = if is_triangle { r.v } else { 0.0 };
+        to.certain[i] = if is_triangle { r.certain } else { to.certain[i] };
     }
 }

@@ -4,58 +4,42 @@
 //! Primary rays need no filter, unless something has a mask.
 
 use crate::geometry::{PrimitiveId, triangle};
-use crate::intersect::embree::ffi::callbacks::{Candidate, CandidatePacket, HitFilter};
-use crate::intersect::embree::ffi::records::INVALID;
+use crate::intersect::embree::ffi::records::{Candidate, INVALID};
 use crate::intersect::embree::packet::context::QueryContext;
 
-/// The filter of closest-hit queries, or that of occlusion queries.
-pub struct TriangleFilter<const OCCLUSION: bool>;
-
-impl<const OCCLUSION: bool> HitFilter for TriangleFilter<OCCLUSION> {
-    #[inline(always)]
-    fn filter<const W: usize>(
-        context: &QueryContext<'_, W>,
-        candidates: &CandidatePacket<'_, W>,
-        active: &mut [i32; W],
-    ) {
-        let mut certain = [false; W];
-        for i in 0..W {
-            certain[i] = is_certain(context, i, &candidates.get(i));
-        }
-        // Nearly always all candidates certainly count.
-        let mut uncertain = 0;
-        for i in 0..W {
-            uncertain |= if certain[i] { 0 } else { active[i] };
-        }
-        if uncertain == 0 && certain_hits_count::<W, OCCLUSION>(context) {
-            return;
-        }
-        for i in 0..W {
-            if active[i] != 0 && !counts::<W, OCCLUSION>(context, i, certain[i], &candidates.get(i))
-            {
-                active[i] = 0;
-            }
-        }
+/// Clears the active mask of a packet where its candidates do not count.
+#[inline(always)]
+pub fn filter_packet<const OCCLUSION: bool, const W: usize>(
+    context: &QueryContext<'_, W>,
+    active: &mut [i32; W],
+    candidate: impl Fn(usize) -> Candidate,
+) {
+    let mut certain = [false; W];
+    for i in 0..W {
+        certain[i] = is_certain(context, i, &candidate(i));
     }
-
-    #[inline(always)]
-    fn accepts<const W: usize>(
-        context: &QueryContext<'_, W>,
-        lane: usize,
-        candidate: &Candidate,
-    ) -> bool {
-        let certain = is_certain(context, lane, candidate);
-        counts::<W, OCCLUSION>(context, lane, certain, candidate)
+    // Nearly always all candidates certainly count.
+    let mut uncertain = 0;
+    for i in 0..W {
+        uncertain |= if certain[i] { 0 } else { active[i] };
+    }
+    if uncertain == 0 && certain_hits_count::<OCCLUSION, W>(context) {
+        return;
+    }
+    for i in 0..W {
+        if active[i] != 0 && !counts::<OCCLUSION, W>(context, i, certain[i], &candidate(i)) {
+            active[i] = 0;
+        }
     }
 }
 
 /// True if every triangle that a ray certainly crosses counts: none is masked, and for occlusion all
 /// block light.
 #[inline(always)]
-fn certain_hits_count<const W: usize, const OCCLUSION: bool>(
+fn certain_hits_count<const OCCLUSION: bool, const W: usize>(
     context: &QueryContext<'_, W>,
 ) -> bool {
-    (!OCCLUSION | context.scene.all_block_light) & context.scene.masked.is_empty()
+    (!OCCLUSION | context.query.all_block_light) & context.query.masked.is_empty()
 }
 
 /// True if the ray in `lane` certainly crosses the plane of the candidate within its segment.
@@ -67,7 +51,7 @@ fn certain_hits_count<const W: usize, const OCCLUSION: bool>(
 ///
 /// [`F32Space::t_uncertainty`]: crate::intersect::embree::f32_space::F32Space::t_uncertainty
 #[inline(always)]
-fn is_certain<const W: usize>(
+pub fn is_certain<const W: usize>(
     context: &QueryContext<'_, W>,
     lane: usize,
     candidate: &Candidate,
@@ -89,37 +73,37 @@ fn is_certain<const W: usize>(
 
 /// True if a candidate counts for the ray in `lane`.
 #[inline(always)]
-fn counts<const W: usize, const OCCLUSION: bool>(
+pub fn counts<const OCCLUSION: bool, const W: usize>(
     context: &QueryContext<'_, W>,
     lane: usize,
     certain: bool,
     candidate: &Candidate,
 ) -> bool {
-    if certain && certain_hits_count::<W, OCCLUSION>(context) {
+    if certain && certain_hits_count::<OCCLUSION, W>(context) {
         return true;
     }
     // Look up the triangle.
-    let scene = context.scene;
+    let QueryContext { query, scene, .. } = context;
     let in_world = candidate.instance == INVALID;
     let geometry = if in_world { candidate.geometry } else { candidate.instance };
-    let Some(&index) = scene.instance_of.get(geometry as usize) else { return true };
-    let mesh = scene.scene.instances[index as usize].mesh.0;
+    let Some(&index) = query.instance_of.get(geometry as usize) else { return true };
+    let mesh = scene.instances[index as usize].mesh.0;
     let id = PrimitiveId::triangle(mesh, candidate.primitive, index);
     // Test it: by its material, by the ray in f64, and by its mask.
-    if OCCLUSION && !scene.scene.blocks_light(id) {
+    if OCCLUSION && !scene.blocks_light(id) {
         return false;
     }
     if !certain && !is_hit(context, lane, id) {
         return false;
     }
-    !(scene.is_masked(index) && is_cut_out(context, lane, id))
+    !(query.is_masked(index) && is_cut_out(context, lane, id))
 }
 
 /// True if a mask cuts a hole where the ray in `lane` hits a triangle, by the weights in f64 that
 /// `refine` gives.
 #[inline(never)]
 fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
-    let scene = context.scene.scene;
+    let scene = context.scene;
     let (origin, direction) = context.rays.origin_and_direction(lane);
     let (u, v) = triangle::Edges::new(scene.triangle_vertices(id), origin, direction).weights();
     scene.is_cut_out(id, u, v)
@@ -129,7 +113,7 @@ fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: Pr
 #[cold]
 #[inline(never)]
 fn is_hit<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
-    let primitives = context.scene.primitives();
+    let primitives = context.query.primitives();
     let ray = context.packet.get(lane);
     ray.is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
 }

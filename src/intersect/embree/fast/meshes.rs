@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use embree4_rs::geometry::Geometry;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 
@@ -10,14 +9,14 @@ use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::{InnerScene, InstanceGeometry, TopScene};
-use crate::intersect::embree::ffi::mesh_geometry::MeshGeometry;
-use crate::intersect::embree::scene_builder::{SCENE_FLAGS, SceneBuilder};
+use crate::intersect::embree::ffi::handles::{CommittedScene, OwnedGeometry};
+use crate::intersect::embree::ffi::mesh_geometry::new_mesh_geometry;
+use crate::intersect::embree::scene_builder::{SCENE_FLAGS, SceneBuilder, is_outsized};
 use crate::scene::{Instance, Mesh, Scene};
 
 /// The BLAS of a mesh, in object space, recentred: a model may lie far from its own origin.
 pub struct Blas {
-    scene: InnerScene,
+    scene: CommittedScene,
     center: DVec3,
     /// The mesh whose indices Embree reads; dropped after the scene.
     _mesh: Arc<Mesh>,
@@ -29,8 +28,8 @@ impl Blas {
         let center = builder.mesh_bounds[mesh].center();
         let mesh = &builder.scene.meshes[mesh];
         let recentred = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3().to_array();
-        let geometry = MeshGeometry::new(device, mesh, *quality, recentred)?;
-        let scene = InnerScene::new(device, *quality, SCENE_FLAGS, &geometry)?;
+        let geometry = new_mesh_geometry(device, mesh, *quality, recentred)?;
+        let scene = CommittedScene::new(device, *quality, SCENE_FLAGS, &geometry)?;
         Ok(Self { scene, center, _mesh: mesh.clone() })
     }
 }
@@ -59,7 +58,7 @@ impl Meshes {
         let counts = builder.instance_counts();
         let is_visible = |mesh: usize| counts[mesh] > 0 && !scene.meshes[mesh].triangles.is_empty();
         let in_world_space = |mesh: usize| {
-            (counts[mesh] == 1 && !builder.all_instanced) || builder.is_outsized(mesh)
+            (counts[mesh] == 1 && !builder.all_instanced) || is_outsized(&builder.mesh_bounds[mesh])
         };
         let has_blas: Vec<bool> =
             (0..counts.len()).map(|mesh| is_visible(mesh) && !in_world_space(mesh)).collect();
@@ -70,21 +69,19 @@ impl Meshes {
             .zip(&scene.instances)
             .filter(|(_, instance)| is_visible(instance.mesh.0 as usize))
             .collect();
-        let geometry = |&(_, instance): &(u32, &Instance)| -> Result<Box<dyn Geometry + Send>> {
+        let geometry = |&(_, instance): &(u32, &Instance)| {
             let mesh = instance.mesh.0 as usize;
-            Ok(match &blas[mesh] {
-                Some(blas) => {
-                    let columns = object_to_f32_space(instance, blas.center, &space);
-                    Box::new(InstanceGeometry::new(device, &blas.scene, &columns)?)
-                }
-                None => Box::new(MeshGeometry::new(device, &scene.meshes[mesh], quality, |p| {
-                    space.point(instance.to_world(p))
-                })?),
-            })
+            if let Some(blas) = &blas[mesh] {
+                let columns = object_to_f32_space(instance, blas.center, &space);
+                OwnedGeometry::instance(device, &blas.scene, &columns)
+            } else {
+                let to_f32_space = |p| space.point(instance.to_world(p));
+                new_mesh_geometry(device, &scene.meshes[mesh], quality, to_f32_space)
+            }
         };
         let geometries: Vec<_> = instances.par_iter().map(geometry).collect::<Result<_>>()?;
         // Attach them in order.
-        geometries.iter().try_for_each(|geometry| builder.attach(&**geometry).map(|_| ()))?;
+        geometries.iter().try_for_each(|geometry| builder.top.attach(geometry).map(|_| ()))?;
         let in_object_space = instances.iter().filter(|(_, i)| blas[i.mesh.0 as usize].is_some());
         let instance_count = in_object_space.count() as u64;
         if let Some(cache) = cache {
@@ -97,7 +94,7 @@ impl Meshes {
     /// Moves the instances with the indices `moved`, of which none is outsized.
     pub fn update(
         &self,
-        top: &mut TopScene,
+        top: &mut CommittedScene,
         scene: &Scene,
         space: &F32Space,
         mesh_bounds: &[Bounds],

@@ -18,7 +18,7 @@ pub fn refine<const W: usize>(
     record: &RayHitRecord<W>,
     hits: &mut Hit16,
 ) -> bool {
-    let QueryContext { scene, packet, rays, .. } = context;
+    let QueryContext { query, scene, packet, rays, .. } = context;
     if record.geom == [INVALID; W] {
         return true;
     }
@@ -31,11 +31,11 @@ pub fn refine<const W: usize>(
         }
         let in_world = record.inst[i] == INVALID;
         let attached = if in_world { record.geom[i] } else { record.inst[i] };
-        instances[i] = scene.instance_of[attached as usize];
-        let mesh = scene.scene.instances[instances[i] as usize].mesh.0;
+        instances[i] = query.instance_of[attached as usize];
+        let mesh = scene.instances[instances[i] as usize].mesh.0;
         geometry[i] = PrimitiveId16::MESHES + mesh;
     }
-    let triangles = Triangles::of(scene.scene, &geometry, primitives, &instances);
+    let triangles = Triangles::of(scene, &geometry, primitives, &instances);
     let Some(triangles) = triangles else { return true };
     // Intersect them in f64.
     let mut ts = [0.0; W];

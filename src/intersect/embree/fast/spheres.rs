@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::geometry::{Bounds, PrimitiveId, Ray, sphere};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, PrimitiveTests};
+use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
 use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
 use crate::intersect::embree::packet::context::QueryContext;
 use crate::intersect::primitive::{SphereDeparture, sphere_departure};
@@ -59,25 +59,39 @@ impl PrimitiveTable for SphereTable {
     }
 }
 
-/// The tests of precision `fast`.
+/// The spheres as precision `fast` tests them.
 pub struct FastSpheres;
 
-impl PrimitiveTests for FastSpheres {
+/// A sphere as precision `fast` tests it.
+pub struct FastSphere<'t> {
+    index: u32,
+    sphere: &'t SphereEntry,
+}
+
+impl UserPrimitives for FastSpheres {
     type Table = SphereTable;
+    type Primitive<'t> = FastSphere<'t>;
 
     #[inline(always)]
-    fn intersect<const W: usize>(
-        table: &SphereTable,
+    fn get<'t, const W: usize>(
+        table: &'t SphereTable,
         index: u32,
-        packet: &mut CallbackPacket<'_, W>,
-    ) {
+        _: &QueryContext<'_, W>,
+    ) -> FastSphere<'t> {
+        FastSphere { index, sphere: &table.spheres[index as usize] }
+    }
+}
+
+impl UserPrimitive for FastSphere<'_> {
+    #[inline(always)]
+    fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let (context, active, tfar) = packet.parts();
-        let Some(ts) = distances(context, table, index, active) else { return };
+        let Some(ts) = self.distances(context, active) else { return };
         for i in 0..W {
-            let closer = is_closer(context, index, i, ts[i]);
+            let closer = self.is_closer(context, i, ts[i]);
             if closer {
                 context.hits.t[i] = ts[i];
-                context.hits.primitive[i] = index;
+                context.hits.primitive[i] = self.index;
             }
             let end = context.rays.interval.to_f32_t(i, ts[i]);
             if closer && end < tfar[i] {
@@ -87,30 +101,21 @@ impl PrimitiveTests for FastSpheres {
     }
 
     #[inline(always)]
-    fn intersect_lane<const W: usize>(
-        table: &SphereTable,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) {
-        let t = distance(context, table, index, lane);
-        if is_closer(context, index, lane, t) {
+    fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize) {
+        let t = self.distance(context, lane);
+        if self.is_closer(context, lane, t) {
             context.hits.t[lane] = t;
-            context.hits.primitive[lane] = index;
+            context.hits.primitive[lane] = self.index;
         }
     }
 
     #[inline(always)]
-    fn occluded<const W: usize>(
-        table: &SphereTable,
-        index: u32,
-        packet: &mut CallbackPacket<'_, W>,
-    ) {
-        let (context, active, tfar) = packet.parts();
-        if !table.spheres[index as usize].blocks_light {
+    fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
+        if !self.sphere.blocks_light {
             return;
         }
-        let Some(ts) = distances(context, table, index, active) else { return };
+        let (context, active, tfar) = packet.parts();
+        let Some(ts) = self.distances(context, active) else { return };
         for i in 0..W {
             if ts[i] < context.rays.tmax[i] {
                 tfar[i] = f32::NEG_INFINITY;
@@ -119,111 +124,101 @@ impl PrimitiveTests for FastSpheres {
     }
 
     #[inline(always)]
-    fn occluded_lane<const W: usize>(
-        table: &SphereTable,
-        index: u32,
-        context: &mut QueryContext<'_, W>,
-        lane: usize,
-    ) -> bool {
-        table.spheres[index as usize].blocks_light
-            && distance(context, table, index, lane) < context.rays.tmax[lane]
+    fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        self.sphere.blocks_light && self.distance(context, lane) < context.rays.tmax[lane]
     }
 }
 
-/// True if sphere `index` at distance `t` is closer than the hit of ray `i` so far; at the same
-/// distance the lesser index counts.
-#[inline(always)]
-fn is_closer<const W: usize>(context: &QueryContext<'_, W>, index: u32, i: usize, t: f64) -> bool {
-    let hits = &context.hits;
-    (t < hits.t[i] || (t == hits.t[i] && index < hits.primitive[i])) && t < context.rays.tmax[i]
-}
+impl FastSphere<'_> {
+    /// True if the sphere at distance `t` is closer than the hit of ray `i` so far; at the same distance
+    /// the lesser index counts.
+    #[inline(always)]
+    fn is_closer<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize, t: f64) -> bool {
+        let QueryContext { hits, rays, .. } = context;
+        let is_first = t < hits.t[i] || (t == hits.t[i] && self.index < hits.primitive[i]);
+        is_first && t < rays.tmax[i]
+    }
 
-/// The first t > 0 at which each active ray hits sphere `index`, or infinity; `None` if no ray does.
-#[inline(always)]
-fn distances<const W: usize>(
-    context: &QueryContext<'_, W>,
-    table: &SphereTable,
-    index: u32,
-    active: &[i32; W],
-) -> Option<[f64; W]> {
-    let sphere = &table.spheres[index as usize];
-    // The next hit of a continuation ray is not always the first root: test one by one.
-    if context.departures.any_continuation {
+    /// The first t > 0 at which each active ray hits the sphere, or infinity; `None` if no ray does.
+    #[inline(always)]
+    fn distances<const W: usize>(
+        &self,
+        context: &QueryContext<'_, W>,
+        active: &[i32; W],
+    ) -> Option<[f64; W]> {
+        // The next hit of a continuation ray is not always the first root: test one by one.
         let mut ts = [f64::INFINITY; W];
-        for i in (0..W).filter(|&i| active[i] != 0) {
-            ts[i] = distance(context, table, index, i);
+        if context.departures.any_continuation {
+            for i in (0..W).filter(|&i| active[i] != 0) {
+                ts[i] = self.distance(context, i);
+            }
+            return Some(ts);
         }
-        return Some(ts);
-    }
-    // See whether any line crosses the sphere: most do not.
-    let mut crosses = [false; W];
-    let mut any = false;
-    for i in 0..W {
-        crosses[i] = quadratic(context, sphere, i).crosses() & (active[i] != 0);
-        any |= crosses[i];
-    }
-    if !any {
-        return None;
-    }
-    // Solve for the first root ahead.
-    let mut ts = [f64::INFINITY; W];
-    let mut on_surface = [false; W];
-    let mut any_on_surface = false;
-    for i in 0..W {
-        let quadratic = quadratic(context, sphere, i);
-        let (near, far) = quadratic.roots();
-        let t = if near > 0.0 { near } else { far };
-        let hits = crosses[i] & (t > 0.0) & (context.departures.outward[i] != index);
-        ts[i] = if hits { t } else { f64::INFINITY };
-        let power = quadratic.power();
-        on_surface[i] =
-            hits & context.departures.may_start_on_sphere(i, index, sphere.radius, power);
-        any_on_surface |= on_surface[i];
-    }
-    // Rays that start on the sphere are few: test them one by one.
-    if context.departures.any & any_on_surface {
-        for i in (0..W).filter(|&i| on_surface[i]) {
-            ts[i] = distance(context, table, index, i);
+        // See whether any line crosses the sphere: most do not.
+        let mut crosses = [false; W];
+        let mut any = false;
+        for i in 0..W {
+            crosses[i] = self.quadratic(context, i).crosses() & (active[i] != 0);
+            any |= crosses[i];
         }
+        if !any {
+            return None;
+        }
+        // Solve for the first root ahead.
+        let departures = &context.departures;
+        let mut on_surface = [false; W];
+        let mut any_on_surface = false;
+        for i in 0..W {
+            let quadratic = self.quadratic(context, i);
+            let (near, far) = quadratic.roots();
+            let t = if near > 0.0 { near } else { far };
+            let hits = crosses[i] & (t > 0.0) & (departures.outward[i] != self.index);
+            ts[i] = if hits { t } else { f64::INFINITY };
+            let (radius, power) = (self.sphere.radius, quadratic.power());
+            on_surface[i] = hits & departures.may_start_on_sphere(i, self.index, radius, power);
+            any_on_surface |= on_surface[i];
+        }
+        // Rays that start on the sphere are few: test them one by one.
+        if departures.any & any_on_surface {
+            for i in (0..W).filter(|&i| on_surface[i]) {
+                ts[i] = self.distance(context, i);
+            }
+        }
+        Some(ts)
     }
-    Some(ts)
-}
 
-/// The first t > 0 at which ray `i` hits sphere `index`, or infinity.
-#[inline(always)]
-fn distance<const W: usize>(
-    context: &QueryContext<'_, W>,
-    table: &SphereTable,
-    index: u32,
-    i: usize,
-) -> f64 {
-    let quadratic = quadratic(context, &table.spheres[index as usize], i);
-    if !quadratic.crosses() {
-        return f64::INFINITY;
+    /// The first t > 0 at which ray `i` hits the sphere, or infinity.
+    #[inline(always)]
+    fn distance<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize) -> f64 {
+        let quadratic = self.quadratic(context, i);
+        if !quadratic.crosses() {
+            return f64::INFINITY;
+        }
+        let ray = context.packet.get(i);
+        if let Some(ray) = ray.filter(|ray| ray.continuation.is_some()).as_ref() {
+            let inverse = context.rays.inverse_length_squared[i];
+            let hit = context.query.primitives().sphere(self.index, ray, inverse, f64::INFINITY);
+            return hit.map_or(f64::INFINITY, |hit| hit.t);
+        }
+        let root = |inward| sphere::first_root(quadratic.roots(), f64::INFINITY, inward);
+        let departure = |ray: Ray| sphere_departure(context.scene, self.index, &ray);
+        let t = match (root(false), ray.map_or(SphereDeparture::No, departure)) {
+            (None, _) | (_, SphereDeparture::Outward) => None,
+            (t, SphereDeparture::No) => t,
+            (_, SphereDeparture::Inward) => root(true),
+        };
+        t.unwrap_or(f64::INFINITY)
     }
-    if let Some(ray) = context.packet.get(i).filter(|ray| ray.continuation.is_some()).as_ref() {
+
+    /// The quadratic equation of the sphere and ray `i`.
+    #[inline(always)]
+    fn quadratic<const W: usize>(
+        &self,
+        context: &QueryContext<'_, W>,
+        i: usize,
+    ) -> sphere::Quadratic {
+        let (origin, direction) = context.rays.origin_and_direction(i);
         let inverse = context.rays.inverse_length_squared[i];
-        let hit = context.scene.primitives().sphere(index, ray, inverse, f64::INFINITY);
-        return hit.map_or(f64::INFINITY, |hit| hit.t);
+        sphere::Quadratic::new(self.sphere.center, self.sphere.radius, origin, direction, inverse)
     }
-    let root = |inward| sphere::first_root(quadratic.roots(), f64::INFINITY, inward);
-    let departure = |ray: Ray| sphere_departure(context.scene.scene, index, &ray);
-    let t = match (root(false), context.packet.get(i).map_or(SphereDeparture::No, departure)) {
-        (None, _) | (_, SphereDeparture::Outward) => None,
-        (t, SphereDeparture::No) => t,
-        (_, SphereDeparture::Inward) => root(true),
-    };
-    t.unwrap_or(f64::INFINITY)
-}
-
-/// The quadratic equation of ray `i` and a sphere.
-#[inline(always)]
-fn quadratic<const W: usize>(
-    context: &QueryContext<'_, W>,
-    sphere: &SphereEntry,
-    i: usize,
-) -> sphere::Quadratic {
-    let (origin, direction) = context.rays.origin_and_direction(i);
-    let inverse = context.rays.inverse_length_squared[i];
-    sphere::Quadratic::new(sphere.center, sphere.radius, origin, direction, inverse)
 }

@@ -2,12 +2,11 @@
 //! packet of each width against one triangle, before anything else.
 #![allow(unsafe_code)]
 
-use embree4_rs::SceneOptions;
 use embree4_rs::geometry::TriangleMeshGeometry;
 use embree4_sys as sys;
 
 use crate::error::{Error, Result};
-use crate::intersect::embree::ffi::handles::{DeviceHandle, OpenScene, TopScene, failed};
+use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle, failed};
 use crate::intersect::embree::ffi::queries::call_for_width;
 use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord, SENTINEL};
 
@@ -24,9 +23,8 @@ pub fn check() -> Result<()> {
     let corners = [(-1.0, -1.0, 5.0), (3.0, -1.0, 5.0), (-1.0, 3.0, 5.0)];
     let mesh = TriangleMeshGeometry::try_new(&device.to_device(), &corners, &[(0, 1, 2)])
         .map_err(failed)?;
-    let scene = OpenScene::new(&device, SceneOptions::default())?;
-    scene.attach(&mesh)?;
-    let scene = scene.commit(&device)?;
+    let (quality, flags) = (sys::RTCBuildQuality::MEDIUM, sys::RTCSceneFlags::NONE);
+    let scene = CommittedScene::new(&device, quality, flags, &mesh)?;
     let agrees = agrees::<1>(&scene) && agrees::<4>(&scene) && agrees::<8>(&scene);
     if agrees && self::agrees::<16>(&scene) {
         return Ok(());
@@ -37,7 +35,7 @@ pub fn check() -> Result<()> {
 
 /// True if a packet along +z comes back with the hit in the right fields and the spare room
 /// untouched.
-fn agrees<const W: usize>(scene: &TopScene) -> bool {
+fn agrees<const W: usize>(scene: &CommittedScene) -> bool {
     let mut record = RayHitRecord::<W>::new();
     record.dir[2] = [1.0; W];
     record.tfar = [f32::INFINITY; W];
@@ -49,9 +47,7 @@ fn agrees<const W: usize>(scene: &TopScene) -> bool {
         call_for_width!(
             active,
             [rtcIntersect1, rtcIntersect4, rtcIntersect8, rtcIntersect16],
-            scene.handle(),
-            ray_hit.cast(),
-            arguments
+            (scene.handle(), ray_hit.cast(), arguments)
         );
     }
     let hit = |i: usize| {

@@ -102,12 +102,6 @@ impl DeviceHandle {
         unsafe { sys::rtcGetDeviceProperty(self.handle, property) }
     }
 
-    /// Makes a geometry of the device, whose only reference is the caller's.
-    pub(super) fn new_geometry(&self, kind: sys::RTCGeometryType) -> sys::RTCGeometry {
-        // SAFETY: the device is live.
-        unsafe { sys::rtcNewGeometry(self.handle, kind) }
-    }
-
     /// Returns the first error since the last call, as one of ours.
     pub fn check(&self, doing: &str) -> Result<()> {
         // SAFETY: the device is live.
@@ -137,19 +131,16 @@ impl Drop for DeviceHandle {
 }
 
 // SAFETY: Embree lets any thread use and release a device, and trace and release a committed scene,
-// which is what a `TopScene` and an `InnerScene` are from the beginning; a `TopScene` is changed
-// through `&mut` only, when nobody traces it.
+// which is changed through `&mut` only, when nobody traces it.
 unsafe impl Send for DeviceHandle {}
 unsafe impl Sync for DeviceHandle {}
-unsafe impl Send for TopScene {}
-unsafe impl Sync for TopScene {}
-unsafe impl Send for InnerScene {}
-unsafe impl Sync for InnerScene {}
+unsafe impl Send for CommittedScene {}
+unsafe impl Sync for CommittedScene {}
 // SAFETY: Embree lets any thread attach and release a geometry.
 unsafe impl Sync for OpenScene {}
-unsafe impl Send for InstanceGeometry {}
+unsafe impl Send for OwnedGeometry {}
 
-/// A scene that geometries are attached to: that of a TLAS, before it is committed.
+/// A scene that geometries are attached to, before it is committed.
 pub struct OpenScene(embree4_rs::Scene);
 
 impl OpenScene {
@@ -157,7 +148,12 @@ impl OpenScene {
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn new(device: &DeviceHandle, options: embree4_rs::SceneOptions) -> Result<Self> {
+    pub fn new(
+        device: &DeviceHandle,
+        build_quality: sys::RTCBuildQuality,
+        flags: sys::RTCSceneFlags,
+    ) -> Result<Self> {
+        let options = embree4_rs::SceneOptions { build_quality, flags };
         embree4_rs::Scene::try_new(device.to_device(), options).map(Self).map_err(failed)
     }
 
@@ -173,19 +169,34 @@ impl OpenScene {
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn commit(self, device: &DeviceHandle) -> Result<TopScene> {
+    pub fn commit(self, device: &DeviceHandle) -> Result<CommittedScene> {
         let failed = |e| Error::failed(format!("Embree cannot build the scene: {e}"));
-        Ok(TopScene { scene: self.0.commit().map_err(failed)?, device: device.clone() })
+        Ok(CommittedScene { scene: self.0.commit().map_err(failed)?, device: device.clone() })
     }
 }
 
-/// A committed scene, whose geometries are attached through embree4-rs: that of a TLAS.
-pub struct TopScene {
+/// A committed scene: that of a BLAS or of a TLAS.
+pub struct CommittedScene {
     scene: embree4_rs::CommittedScene,
     pub device: DeviceHandle,
 }
 
-impl TopScene {
+impl CommittedScene {
+    /// Builds a scene of one geometry.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn new(
+        device: &DeviceHandle,
+        quality: sys::RTCBuildQuality,
+        flags: sys::RTCSceneFlags,
+        geometry: &dyn Geometry,
+    ) -> Result<Self> {
+        let scene = OpenScene::new(device, quality, flags)?;
+        scene.attach(geometry)?;
+        scene.commit(device)
+    }
+
     /// Commits the scene again, after geometries of it were changed and committed.
     ///
     /// # Errors
@@ -196,7 +207,7 @@ impl TopScene {
         self.device.check("placing what moved")
     }
 
-    /// Sets the transform of the instance with this geometry id; [`TopScene::recommit`] is to follow.
+    /// Sets the transform of the instance with this geometry id; [`CommittedScene::recommit`] is to follow.
     pub fn set_instance_transform(&mut self, id: u32, columns: &[[f32; 3]; 4]) {
         // SAFETY: `id` is one of the scene's instances, as the caller says.
         unsafe { set_transform(self.geometry(id), columns) }
@@ -227,55 +238,29 @@ impl TopScene {
     }
 }
 
-/// A committed scene of one geometry, to be instanced: that of a BLAS.
-pub struct InnerScene(pub(super) sys::RTCScene);
+/// A geometry of Embree's own kinds, to be attached to a scene.
+pub struct OwnedGeometry(pub(super) sys::RTCGeometry);
 
-impl InnerScene {
-    /// Builds the scene of a geometry.
-    ///
-    /// # Errors
-    /// When Embree runs out of memory.
-    pub fn new(
-        device: &DeviceHandle,
-        quality: sys::RTCBuildQuality,
-        flags: sys::RTCSceneFlags,
-        geometry: &dyn Geometry,
-    ) -> Result<Self> {
-        // SAFETY: the device is live, and so is the geometry, which the scene then references.
-        let scene = unsafe {
-            let handle = sys::rtcNewScene(device.handle);
-            sys::rtcSetSceneBuildQuality(handle, quality);
-            sys::rtcSetSceneFlags(handle, flags);
-            sys::rtcAttachGeometry(handle, *geometry.handle());
-            sys::rtcCommitScene(handle);
-            Self(handle)
-        };
-        device.check("building an instanced mesh")?;
-        Ok(scene)
+impl OwnedGeometry {
+    pub(super) fn new(device: &DeviceHandle, kind: sys::RTCGeometryType) -> Self {
+        // SAFETY: the device is live.
+        Self(unsafe { sys::rtcNewGeometry(device.handle, kind) })
     }
-}
 
-impl Drop for InnerScene {
-    fn drop(&mut self) {
-        // SAFETY: this is the reference that `rtcNewScene` gave.
-        unsafe { sys::rtcReleaseScene(self.0) }
-    }
-}
-
-/// An instance of a scene, to be attached to another one.
-pub struct InstanceGeometry(sys::RTCGeometry);
-
-impl InstanceGeometry {
-    /// Makes an instance with the matrix from the inner scene's space to the outer's, column by
+    /// Makes an instance of a scene, with the matrix from its space to the outer scene's, column by
     /// column.
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn new(device: &DeviceHandle, scene: &InnerScene, columns: &[[f32; 3]; 4]) -> Result<Self> {
-        let instance = Self(device.new_geometry(sys::RTCGeometryType::INSTANCE));
+    pub fn instance(
+        device: &DeviceHandle,
+        scene: &CommittedScene,
+        columns: &[[f32; 3]; 4],
+    ) -> Result<Self> {
+        let instance = Self::new(device, sys::RTCGeometryType::INSTANCE);
         // SAFETY: both are live; the instance takes a reference to the scene.
         unsafe {
-            sys::rtcSetGeometryInstancedScene(instance.0, scene.0);
+            sys::rtcSetGeometryInstancedScene(instance.0, scene.handle());
             set_transform(instance.0, columns);
         }
         device.check("placing an instance")?;
@@ -296,13 +281,13 @@ unsafe fn set_transform(instance: sys::RTCGeometry, columns: &[[f32; 3]; 4]) {
     }
 }
 
-impl Geometry for InstanceGeometry {
+impl Geometry for OwnedGeometry {
     fn handle(&self) -> &sys::RTCGeometry {
         &self.0
     }
 }
 
-impl Drop for InstanceGeometry {
+impl Drop for OwnedGeometry {
     fn drop(&mut self) {
         // SAFETY: this is the reference that `rtcNewGeometry` gave.
         unsafe { sys::rtcReleaseGeometry(self.0) }

@@ -1,21 +1,10 @@
 //! The packet widths, and the functions that are compiled once for each of them.
 //!
-//! The processor features that come with a width stand here once: the compiler and the detection
-//! at run time read the same list.
+//! All that depends on a width, and the processor features that come with it, is in the table at the end:
+//! the compiler and the detection at run time read the same list of features.
 #![allow(unsafe_code)]
 
 use embree4_sys::RTCDeviceProperty;
-
-/// The number of rays that Embree traces together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PacketWidth {
-    One = 1,
-    Four = 4,
-    #[cfg(target_arch = "x86_64")]
-    Eight = 8,
-    #[cfg(target_arch = "x86_64")]
-    Sixteen = 16,
-}
 
 /// A loop over packets.
 pub trait Kernel {
@@ -35,96 +24,85 @@ pub trait Callback {
     unsafe fn call<const W: usize>(arguments: *const Self::Arguments);
 }
 
-/// Defines the versions of kernels and callbacks for one width, and whether the processor has the
-/// features that they are compiled for.
-macro_rules! version {
-    ($name:ident, $width:literal, [$($feature:tt),*]) => {
-        mod $name {
-            use super::{Callback, Kernel};
+/// Defines the packet widths, with the device property and the processor features that each needs.
+macro_rules! packet_widths {
+    ($(
+        $(#[$cfg:meta])?
+        $variant:ident = $width:literal, $module:ident, $property:expr, [$($feature:tt),*];
+    )*) => {
+        /// The number of rays that Embree traces together.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum PacketWidth {
+            $($(#[$cfg])? $variant = $width,)*
+        }
 
-            $(#[target_feature(enable = $feature)])*
-            pub fn run(kernel: impl Kernel) {
-                kernel.run::<$width>();
+        $(
+            $(#[$cfg])?
+            mod $module {
+                use super::{Callback, Kernel};
+
+                $(#[target_feature(enable = $feature)])*
+                pub unsafe fn run(kernel: impl Kernel) {
+                    kernel.run::<$width>();
+                }
+
+                $(#[target_feature(enable = $feature)])*
+                pub unsafe extern "C" fn call<C: Callback>(arguments: *const C::Arguments) {
+                    // SAFETY: the caller's duty.
+                    unsafe { C::call::<$width>(arguments) }
+                }
+            }
+        )*
+
+        impl PacketWidth {
+            /// The widest packet that library and processor both have natively: a wider one is taken
+            /// apart by Embree and traced at the speed of single rays.
+            pub fn native(property: impl Fn(RTCDeviceProperty) -> isize) -> Self {
+                let is_native = |width: Self, supported: Option<RTCDeviceProperty>| {
+                    width.is_supported() && supported.is_none_or(|p| property(p) != 0)
+                };
+                let mut widest = PacketWidth::One;
+                $(
+                    $(#[$cfg])?
+                    if is_native(PacketWidth::$variant, $property) {
+                        widest = PacketWidth::$variant;
+                    }
+                )*
+                widest
             }
 
-            $(#[target_feature(enable = $feature)])*
-            pub unsafe extern "C" fn call<C: Callback>(arguments: *const C::Arguments) {
-                // SAFETY: the caller's duty.
-                unsafe { C::call::<$width>(arguments) }
+            /// True if the processor has the features that this width is compiled for.
+            pub fn is_supported(self) -> bool {
+                match self {
+                    $($(#[$cfg])?
+                    PacketWidth::$variant => true $(&& is_x86_feature_detected!($feature))*,)*
+                }
             }
 
-            pub fn is_supported() -> bool {
-                true $(&& is_x86_feature_detected!($feature))*
+            /// Runs the version of a kernel for this width, which the processor must support.
+            pub fn run(self, kernel: impl Kernel) {
+                match self {
+                    // SAFETY: the processor has the features, since `DeviceHandle::new` asked it.
+                    $($(#[$cfg])? PacketWidth::$variant => unsafe { $module::run(kernel) },)*
+                }
+            }
+
+            /// Returns the version of a callback for this width.
+            pub fn callback<C: Callback>(self) -> unsafe extern "C" fn(*const C::Arguments) {
+                match self {
+                    $($(#[$cfg])? PacketWidth::$variant => $module::call::<C>,)*
+                }
             }
         }
     };
 }
-version!(one, 1, []);
-version!(four, 4, []);
-#[cfg(target_arch = "x86_64")]
-version!(eight, 8, ["avx2", "fma"]);
-#[cfg(target_arch = "x86_64")]
-version!(sixteen, 16, ["avx512f", "avx512vl", "avx512dq", "avx512bw", "fma"]);
 
-impl PacketWidth {
-    /// The widest packet that library and processor both have natively: a wider one is taken
-    /// apart by Embree and traced at the speed of single rays.
-    pub fn native(property: impl Fn(RTCDeviceProperty) -> isize) -> Self {
-        let is_native = |width: &Self| {
-            let supported = match width {
-                PacketWidth::One => return true,
-                PacketWidth::Four => RTCDeviceProperty::NATIVE_RAY4_SUPPORTED,
-                #[cfg(target_arch = "x86_64")]
-                PacketWidth::Eight => RTCDeviceProperty::NATIVE_RAY8_SUPPORTED,
-                #[cfg(target_arch = "x86_64")]
-                PacketWidth::Sixteen => RTCDeviceProperty::NATIVE_RAY16_SUPPORTED,
-            };
-            width.is_supported() && property(supported) != 0
-        };
-        let widest_first = [
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Sixteen,
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Eight,
-            PacketWidth::Four,
-        ];
-        widest_first.into_iter().find(is_native).unwrap_or(PacketWidth::One)
-    }
-
-    /// True if the processor has the features that this width is compiled for.
-    pub fn is_supported(self) -> bool {
-        match self {
-            PacketWidth::One => one::is_supported(),
-            PacketWidth::Four => four::is_supported(),
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Eight => eight::is_supported(),
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Sixteen => sixteen::is_supported(),
-        }
-    }
-
-    /// Runs the version of a kernel for this width, which the processor must support.
-    pub fn run(self, kernel: impl Kernel) {
-        match self {
-            PacketWidth::One => one::run(kernel),
-            PacketWidth::Four => four::run(kernel),
-            // SAFETY: the processor has the features, since `DeviceHandle::new` asked it.
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Eight => unsafe { eight::run(kernel) },
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Sixteen => unsafe { sixteen::run(kernel) },
-        }
-    }
-
-    /// Returns the version of a callback for this width.
-    pub fn callback<C: Callback>(self) -> unsafe extern "C" fn(*const C::Arguments) {
-        match self {
-            PacketWidth::One => one::call::<C>,
-            PacketWidth::Four => four::call::<C>,
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Eight => eight::call::<C>,
-            #[cfg(target_arch = "x86_64")]
-            PacketWidth::Sixteen => sixteen::call::<C>,
-        }
-    }
+packet_widths! {
+    One = 1, one, None, [];
+    Four = 4, four, Some(RTCDeviceProperty::NATIVE_RAY4_SUPPORTED), [];
+    #[cfg(target_arch = "x86_64")]
+    Eight = 8, eight, Some(RTCDeviceProperty::NATIVE_RAY8_SUPPORTED), ["avx2", "fma"];
+    #[cfg(target_arch = "x86_64")]
+    Sixteen = 16, sixteen, Some(RTCDeviceProperty::NATIVE_RAY16_SUPPORTED),
+        ["avx512f", "avx512vl", "avx512dq", "avx512bw", "fma"];
 }

@@ -5,6 +5,8 @@
 //! the newer library expects and end in spare room; the older one leaves the last field alone.
 //! `abi_check` proves at start that the library agrees.
 
+use glam::Vec3;
+
 /// The id that Embree writes where there is no geometry or no instance.
 pub const INVALID: u32 = u32::MAX;
 
@@ -60,6 +62,19 @@ impl<const W: usize> RayHitRecord<W> {
 /// The active mask of a packet: −1 for each lane that is traced, and 0 for the others.
 #[repr(C, align(64))]
 pub struct LaneMask<const W: usize>(pub [i32; W]);
+
+/// A hit that Embree found in f32, for a filter to accept or reject.
+pub struct Candidate {
+    pub t: f32,
+    /// The direction of the f32 ray.
+    pub direction: Vec3,
+    /// The normal, of any length, in the object space of the triangle.
+    pub normal: Vec3,
+    pub primitive: u32,
+    pub geometry: u32,
+    /// The instance, or `INVALID` in world space.
+    pub instance: u32,
+}
 
 const _: () = {
     use std::mem::{offset_of, size_of};

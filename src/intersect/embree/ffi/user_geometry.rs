@@ -1,14 +1,13 @@
 //! User geometry: primitives that Embree knows by their boxes only, and asks our callbacks about.
 #![allow(unsafe_code)]
 
-use embree4_rs::geometry::{Geometry, UserGeometry, UserGeometryImpl};
 use embree4_sys as sys;
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::{Intersect, Occluded, PrimitiveTests};
-use crate::intersect::embree::ffi::handles::{DeviceHandle, TopScene};
+use crate::intersect::embree::ffi::callbacks::{Intersect, Occluded, UserPrimitives};
+use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle, OwnedGeometry};
 
 /// The user data of a geometry, which its callbacks read.
 pub trait PrimitiveTable {
@@ -19,34 +18,23 @@ pub trait PrimitiveTable {
     fn bounds(&self, index: u32) -> (Bounds, &F32Space);
 }
 
-/// A stand-in for the value in embree4-rs's own user geometry, whose callbacks are replaced.
-struct Unused;
-
-impl UserGeometryImpl for Unused {
-    fn bounds(&self) -> sys::RTCBounds {
-        sys::RTCBounds::default()
-    }
-
-    fn intersect(&self, _: u32, _: u32, _: &sys::RTCRayQueryContext, _: &mut sys::RTCRayHit) {}
-}
-
 /// Makes the user geometry over `table`, which must outlive the scene that it is attached to.
 ///
 /// # Errors
 /// When Embree runs out of memory, or there are too many primitives.
-pub fn new_geometry<T>(
+pub fn new_geometry<P>(
     device: &DeviceHandle,
     quality: sys::RTCBuildQuality,
-    table: &T::Table,
-) -> Result<impl Geometry + use<T>>
+    table: &P::Table,
+) -> Result<OwnedGeometry>
 where
-    T: PrimitiveTests<Table: PrimitiveTable>,
+    P: UserPrimitives<Table: PrimitiveTable>,
 {
-    let geometry = UserGeometry::try_new(&device.to_device(), &Unused)
-        .map_err(|e| Error::failed(format!("Embree failed while making a geometry: {e}")))?;
     let count = u32::try_from(table.len())
         .map_err(|_| Error::input("more than 4,294,967,295 primitives of one kind"))?;
-    let (handle, width) = (geometry.handle, device.width);
+    let geometry = OwnedGeometry::new(device, sys::RTCGeometryType::USER);
+    device.check("making a geometry")?;
+    let (handle, width) = (geometry.0, device.width);
     // SAFETY: the handle is live; by the caller's word the table stays where it is until the
     // scene is gone, and the callbacks read it as what it is.
     unsafe {
@@ -54,9 +42,9 @@ where
         sys::rtcSetGeometryBuildQuality(handle, quality);
         sys::rtcSetGeometryUserPrimitiveCount(handle, count);
         sys::rtcSetGeometryUserData(handle, std::ptr::from_ref(table).cast_mut().cast());
-        sys::rtcSetGeometryBoundsFunction(handle, Some(bounds::<T::Table>), std::ptr::null_mut());
-        sys::rtcSetGeometryIntersectFunction(handle, Some(width.callback::<Intersect<T>>()));
-        sys::rtcSetGeometryOccludedFunction(handle, Some(width.callback::<Occluded<T>>()));
+        sys::rtcSetGeometryBoundsFunction(handle, Some(bounds::<P::Table>), std::ptr::null_mut());
+        sys::rtcSetGeometryIntersectFunction(handle, Some(width.callback::<Intersect<P>>()));
+        sys::rtcSetGeometryOccludedFunction(handle, Some(width.callback::<Occluded<P>>()));
         sys::rtcCommitGeometry(handle);
     }
     device.check("making a geometry")?;
@@ -64,8 +52,8 @@ where
 }
 
 /// Tells Embree that primitives moved of the geometry with this id: they are as many as before, and
-/// `table` is where it was. [`TopScene::recommit`] is to follow.
-pub fn update_geometry(scene: &mut TopScene, id: u32, table: &impl PrimitiveTable) {
+/// `table` is where it was. [`CommittedScene::recommit`] is to follow.
+pub fn update_geometry(scene: &mut CommittedScene, id: u32, table: &impl PrimitiveTable) {
     let handle = scene.geometry(id);
     // SAFETY: `id` is one of the scene's geometries; the rest is as in `new_geometry`. The address is
     // set again since the one that Embree had does not outlast a change of the table.

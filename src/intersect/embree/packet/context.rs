@@ -2,7 +2,7 @@
 
 use crate::geometry::{Estimate, Geometry, Hit16, PrimitiveId, PrimitiveId16, RayBatch};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::TopScene;
+use crate::intersect::embree::ffi::handles::CommittedScene;
 use crate::intersect::embree::ffi::records::{INVALID, RayHitRecord};
 use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::packet::rays::{PacketRays, TracedLanes};
@@ -16,7 +16,7 @@ pub struct QueryScene<'a> {
     pub scene: &'a Scene,
     pub precision: Precision,
     /// The Embree scene that rays are traced in.
-    pub top: &'a TopScene,
+    pub top: &'a CommittedScene,
     /// The space of the f32 rays.
     pub space: &'a F32Space,
     /// The instance of each geometry of the Embree scene, in precision `fast`.
@@ -148,7 +148,8 @@ impl<const W: usize> PacketDepartures<W> {
 pub struct QueryContext<'a, const W: usize> {
     /// `RTCRayQueryContext`, larger than any version's; all ones means "in no instance".
     embree: [u32; 16],
-    pub scene: &'a QueryScene<'a>,
+    pub query: &'a QueryScene<'a>,
+    pub scene: &'a Scene,
     /// The rays as they were asked; fewer than `W` in the last packet.
     pub packet: Packet<'a>,
     /// The same in f64, and where on them the f32 rays lie that are being traced; within an instance
@@ -173,10 +174,11 @@ const _: () = {
 
 impl<'a, const W: usize> QueryContext<'a, W> {
     /// Makes the context for the packets of a batch, of which none is loaded yet.
-    pub fn new(scene: &'a QueryScene<'a>, batch: &'a RayBatch) -> Self {
+    pub fn new(query: &'a QueryScene<'a>, batch: &'a RayBatch) -> Self {
         Self {
             embree: [INVALID; 16],
-            scene,
+            query,
+            scene: query.scene,
             packet: Packet { rays: batch, first: 0, count: 0 },
             rays: PacketRays::new(),
             departures: PacketDepartures {
@@ -188,7 +190,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
             },
             hits: PacketHits::new([0.0; W]),
             f32_tmax: [0.0; W],
-            t_uncertainty: scene.space.t_uncertainty(),
+            t_uncertainty: query.space.t_uncertainty(),
             instance: INVALID,
         }
     }
@@ -202,11 +204,11 @@ impl<'a, const W: usize> QueryContext<'a, W> {
     ) -> TracedLanes<W> {
         self.packet = packet;
         self.rays.load(&packet);
-        let lanes = self.rays.set_up_f32_rays(self.scene.space, record);
+        let lanes = self.rays.set_up_f32_rays(self.query.space, record);
         self.f32_tmax = record.tfar;
         self.hits = PacketHits::new(self.rays.tmax);
         if self.departures.any {
-            let max_coordinate = self.rays.max_origin_coordinate().max(self.scene.max_coordinate);
+            let max_coordinate = self.rays.max_origin_coordinate().max(self.query.max_coordinate);
             self.departures.tolerance = max_tolerance(max_coordinate);
             (self.departures.outward, self.departures.inward) = packet.departed_spheres();
         }

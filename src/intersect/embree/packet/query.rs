@@ -2,9 +2,8 @@
 
 use crate::geometry::{Hit16, HitBatch, RayBatch};
 use crate::intersect::embree::certified::rounding::round_hits;
-use crate::intersect::embree::fast::filter::TriangleFilter;
 use crate::intersect::embree::fast::refine::refine;
-use crate::intersect::embree::ffi::callbacks::filter_function;
+use crate::intersect::embree::ffi::callbacks::Filter;
 use crate::intersect::embree::ffi::packet_width::Kernel;
 use crate::intersect::embree::ffi::queries;
 use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord};
@@ -14,7 +13,7 @@ use crate::intersect::{Coherence, Precision};
 
 /// The query for the closest hits of a batch.
 pub struct ClosestQuery<'a> {
-    pub scene: &'a QueryScene<'a>,
+    pub query: &'a QueryScene<'a>,
     pub rays: &'a RayBatch,
     pub coherence: Coherence,
     pub hits: &'a mut HitBatch,
@@ -23,10 +22,10 @@ pub struct ClosestQuery<'a> {
 impl Kernel for ClosestQuery<'_> {
     #[inline(always)]
     fn run<const W: usize>(self) {
-        let mut context = QueryContext::<W>::new(self.scene, self.rays);
+        let mut context = QueryContext::<W>::new(self.query, self.rays);
         let mut record = RayHitRecord::new();
-        let is_filtered = self.scene.precision == Precision::Fast
-            && (context.departures.any || !self.scene.masked.is_empty());
+        let is_filtered = self.query.precision == Precision::Fast
+            && (context.departures.any || !self.query.masked.is_empty());
         for packet in Packet::split::<W>(self.rays) {
             let hits = &mut self.hits.blocks_mut()[packet.block()];
             let (context, record) = (&mut context, &mut record);
@@ -50,19 +49,18 @@ fn closest_hits<'a, const W: usize>(
     is_filtered: bool,
     hits: &mut Hit16,
 ) -> bool {
-    let (scene, first) = (context.scene, packet.first_lane());
+    let (query, first) = (context.query, packet.first_lane());
     // Load the rays, and set up their f32 copies.
     hits.clear::<W>(first);
     let lanes = context.load_packet(packet, record);
     record.geom = [INVALID; W];
     record.inst = [INVALID; W];
     // Trace; the callbacks leave their hits in the context.
-    let filter =
-        is_filtered.then(|| filter_function::<TriangleFilter<false>>(scene.top.device.width));
+    let filter = is_filtered.then(|| query.top.device.width.callback::<Filter<false>>());
     let active = active_lanes(&packet, &lanes.traced);
-    queries::intersect(scene.top, &active, record, context, coherence, filter);
+    queries::intersect(query.top, &active, record, context, coherence, filter);
     // Convert what was found into hits in f64.
-    match scene.precision {
+    match query.precision {
         Precision::Fast => {
             let all_within = refine(context, record, hits);
             if !all_within && !is_filtered {
@@ -75,10 +73,10 @@ fn closest_hits<'a, const W: usize>(
     // Add what Embree does not find: the hits of extreme rays, and the planes.
     if lanes.any_brute_force {
         for i in (0..packet.count).filter(|&i| lanes.brute_force[i]) {
-            hits.set(first + i, scene.brute_force().closest_hit(&packet.ray(i)));
+            hits.set(first + i, query.brute_force().closest_hit(&packet.ray(i)));
         }
     }
-    if !scene.scene.planes.is_empty() {
+    if !context.scene.planes.is_empty() {
         planes::merge_planes(context, hits);
     }
     true
@@ -86,7 +84,7 @@ fn closest_hits<'a, const W: usize>(
 
 /// The query for which rays of a batch are occluded.
 pub struct OcclusionQuery<'a> {
-    pub scene: &'a QueryScene<'a>,
+    pub query: &'a QueryScene<'a>,
     pub rays: &'a RayBatch,
     pub coherence: Coherence,
     /// As many as rays; true for each that is occluded.
@@ -96,17 +94,17 @@ pub struct OcclusionQuery<'a> {
 impl Kernel for OcclusionQuery<'_> {
     #[inline(always)]
     fn run<const W: usize>(self) {
-        let scene = self.scene;
-        let mut context = QueryContext::<W>::new(scene, self.rays);
+        let query = self.query;
+        let mut context = QueryContext::<W>::new(query, self.rays);
         let mut record = RayHitRecord::new();
-        let filter = (scene.precision == Precision::Fast)
-            .then(|| filter_function::<TriangleFilter<true>>(scene.top.device.width));
+        let filter = (query.precision == Precision::Fast)
+            .then(|| query.top.device.width.callback::<Filter<true>>());
         for (packet, occluded) in Packet::split::<W>(self.rays).zip(self.occluded.chunks_mut(W)) {
             // Load the rays, and trace their f32 copies.
             let lanes = context.load_packet(packet, &mut record);
             let active = active_lanes(&packet, &lanes.traced);
             queries::occluded(
-                scene.top,
+                query.top,
                 &active,
                 &mut record,
                 &mut context,
@@ -119,10 +117,10 @@ impl Kernel for OcclusionQuery<'_> {
             // Add what Embree does not find: the hits of extreme rays, and the planes.
             if lanes.any_brute_force {
                 for i in (0..packet.count).filter(|&i| lanes.brute_force[i]) {
-                    occluded[i] = scene.brute_force().is_occluded(&packet.ray(i));
+                    occluded[i] = query.brute_force().is_occluded(&packet.ray(i));
                 }
             }
-            if !scene.scene.planes.is_empty() {
+            if !context.scene.planes.is_empty() {
                 planes::occlude(&context, occluded);
             }
         }
