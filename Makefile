@@ -14,7 +14,7 @@ GALLERY = $(sort $(wildcard assets/scenes/gallery/*.toml))
 # The other build that must always work: no Embree, no libclang.
 PURE_RUST = --no-default-features --features cli
 
-.PHONY: help setup demo gallery test check install uninstall clean
+.PHONY: help setup demo gallery test check soak deny install uninstall clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 18
@@ -50,8 +50,8 @@ gallery: setup ## build, and render the scenes of docs/gallery.md into out/galle
 
 # One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
-	$(CARGO) fmt --check
-	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --locked --workspace --all-targets -- -D warnings
 	$(CARGO) clippy --locked --all-targets $(PURE_RUST) -- -D warnings
 	$(CARGO) clippy --locked --lib --no-default-features -- -D warnings
 	$(CARGO) test --locked
@@ -60,9 +60,18 @@ test: setup ## everything that CI checks: format, lints, tests, documentation, w
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps $(PURE_RUST)
 
 check: ## the inner loop: format, lints and unit tests, default features, no set-up
-	$(CARGO) fmt --check
-	$(CARGO) clippy --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets -- -D warnings
 	$(CARGO) test --lib --bins
+
+soak: setup ## what takes longer: sweeps, random cases, fuzzing, a corpus (SOAK=0.1 is a tenth)
+	@scripts/soak
+
+# Advisories need a network: `cargo deny check advisories` fetches their database.
+deny: ## hold licences, duplicates and sources of the dependencies to deny.toml
+	@command -v cargo-deny >/dev/null || \
+	    { echo 'make deny: first `cargo install cargo-deny --locked`' >&2; exit 1; }
+	$(CARGO) deny --locked check licenses bans sources
 
 # Embree goes along only if set-up fetched it: a system's own is found where it stands.
 install: setup ## build and install under PREFIX (default: ~/.local), with Embree if it was fetched

@@ -2,11 +2,11 @@
 //!
 //! `cargo run --release --example model -- model.glb out.exr`
 
+use envers::Loaded;
 use std::path::PathBuf;
 
+use envers::Renderer;
 use envers::error::{Error, Result};
-use envers::load;
-use envers::render::{Options, render};
 use envers::write::{Settings, write};
 
 fn main() -> Result<()> {
@@ -14,10 +14,10 @@ fn main() -> Result<()> {
     let (Some(model), Some(output)) = (arguments.next(), arguments.next()) else {
         return Err(Error::input("two files are needed").help("model MODEL OUTPUT"));
     };
-    let scene = load::load(&model)?;
-    scene.warnings.iter().for_each(|warning| eprintln!("{warning}"));
-    let rendering = render(&scene, &Options::default(), &|_| {})?;
-    write(&rendering.film, &output, &Settings { half: true, ..Settings::of(&scene.film) })?;
+    let Loaded { scene, report, .. } = envers::load(&model)?;
+    report.warnings.iter().for_each(|warning| eprintln!("{warning}"));
+    let rendering = Renderer::new(&scene).render()?;
+    write(&rendering.film, &output, &Settings { half: true, ..Settings::from_film(&scene.film) })?;
     println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
     Ok(())
 }

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
+use envers::Renderer;
 use envers::error::Result;
-use envers::render::{Options, render};
 use envers::scene::{
     Camera, Checker, Falloff, Light, LightKind, Material, Plane, Projection, Scene, Shadow, Sphere,
 };
@@ -50,10 +50,10 @@ fn main() -> Result<()> {
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
     scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Projection::FovY(0.6))?);
 
-    let rendering = render(&scene, &Options::default(), &|_| {})?;
+    let rendering = Renderer::new(&scene).render()?;
     std::fs::create_dir_all("out").ok();
     for file in ["out/spheres.png", "out/spheres.exr"] {
-        write(&rendering.film, Path::new(file), &Settings::of(&scene.film))?;
+        write(&rendering.film, Path::new(file), &Settings::from_film(&scene.film))?;
         println!("{file}");
     }
     Ok(())

@@ -6,20 +6,18 @@
 //! is a [`film::Film`], written as PNG or EXR.
 //!
 //! ```
-//! use envers::render::{Options, render};
-//! use envers::scene::{Camera, Lens, Material, Scene, Sphere};
-//! use glam::{DVec3, Vec3};
+//! use envers::glam::{DVec3, Vec3};
+//! use envers::{Camera, Material, Projection, Renderer, Scene, Sphere};
 //!
 //! let mut scene = Scene::default();
-//! scene.film.size = [64, 32];
 //! let glow = Material { emission: Vec3::ONE, ..Material::default() };
 //! let glow = scene.add_material(glow);
 //! scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glow));
-//! let lens = Lens::FovY(45f64.to_radians());
-//! scene.cameras.push(Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, lens)?);
-//! let rendering = render(&scene, &Options::default(), &|_| {})?;
+//! let projection = Projection::FovY(45f64.to_radians());
+//! scene.cameras.push(Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, projection)?);
+//! let rendering = Renderer::new(&scene).size([64, 32]).render()?;
 //! assert_eq!(rendering.film.pixel(32, 16), [1.0; 3]);
-//! # Ok::<(), envers::error::Error>(())
+//! # Ok::<(), envers::Error>(())
 //! ```
 //!
 //! # Conventions
@@ -40,10 +38,12 @@
 //! # Modules
 //!
 //! Each uses only those above it: [`error`], [`geometry`], [`scene`], [`load`], [`intersect`],
-//! [`surface`], [`shading`], [`film`], [`integrator`], [`render`], [`mod@write`], `measure`,
+//! [`surface`], [`shading`], [`film`], [`mod@write`], [`integrator`], [`render`], `measure`,
 //! `cli`.
 //!
 //! [Intel Embree]: https://www.embree.org
+
+pub use glam;
 
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -60,6 +60,23 @@ pub mod scene;
 pub mod shading;
 pub mod surface;
 pub mod write;
+
+pub use error::{Error, ErrorKind, Result};
+pub use film::{Film, View};
+pub use geometry::{
+    Bounds, Continuation, Departure, Geometry, Hit, HitBatch, PrimitiveId, Ray, RayBatch, Side,
+};
+#[cfg(feature = "embree")]
+pub use intersect::Embree;
+pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
+pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, load};
+pub use render::{RenderOptions, Renderer, Rendering, Statistics};
+pub use scene::{
+    AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
+    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,
+    Texture, TextureId, Tone,
+};
+pub use surface::Surface;
 
 /// The README's program, compiled with the documentation's.
 #[cfg(doctest)]

@@ -5,14 +5,14 @@ use std::time::Duration;
 
 use clap::Args;
 
-use crate::cli::load::{Loading, Tracing};
+use crate::cli::load::{Input, Loading, Tracing};
 use crate::cli::values::{BackendName, PrecisionName, SampleRange, sample_range, size, wait};
 use crate::cli::{Outcome, Verdict, output, report};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::measure::bench::{self, Options, Samples, Setup};
+use crate::scene::Scene;
 use crate::scene::check::MAX_SPP;
-use crate::scene::{Scene, precision_warnings};
 use crate::write;
 
 /// The longer side of a quick picture, at most.
@@ -76,7 +76,7 @@ pub struct Bench {
 pub fn run(arguments: &Bench) -> Outcome {
     check_folder(&arguments.out)?;
     let tracing = tracing(arguments);
-    let (mut scene, camera) = tracing.load()?;
+    let Input { mut scene, report: loaded, camera } = tracing.load()?;
     if arguments.quick && arguments.size.is_none() {
         scene.film.size = quick_size(scene.film.size);
     }
@@ -86,7 +86,7 @@ pub fn run(arguments: &Bench) -> Outcome {
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::io("make", &arguments.out, &e))?;
     files.iter().try_for_each(|path| write::check_file(path))?;
     if !arguments.quiet {
-        warnings(&scene, &options).iter().for_each(|w| report::warning(w));
+        warnings(&scene, loaded.warnings, &options).iter().for_each(|w| report::warning(w));
     }
 
     let bar = report::progress_bar(arguments.quiet);
@@ -100,7 +100,7 @@ pub fn run(arguments: &Bench) -> Outcome {
     let [json, csv, plot, html] = &files;
     output::write_json(json, &found)?;
     for (path, text) in [(csv, found.csv()), (plot, svg), (html, page)] {
-        write::atomically(path, |out| out.write_all(text.as_bytes()))?;
+        write::write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     }
     output::print(&format!("{found}{}\n", html.display()))?;
     Ok(Verdict::Good)
@@ -172,13 +172,12 @@ fn quick_size(size: [u32; 2]) -> [u32; 2] {
     size.map(|side| (f64::from(side) * scale).round().max(1.0) as u32)
 }
 
-fn warnings(scene: &Scene, options: &Options) -> Vec<String> {
+fn warnings(scene: &Scene, mut warnings: Vec<String>, options: &Options) -> Vec<String> {
     let f32_rays = options
         .setups
         .iter()
         .any(|setup| setup.backend.name() != "rust" && setup.precision == Precision::Fast);
-    let mut warnings = scene.warnings.clone();
-    warnings.extend(precision_warnings::precision_warnings(scene, f32_rays));
+    warnings.extend(report::precision_warnings(scene, f32_rays));
     warnings
 }
 

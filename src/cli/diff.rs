@@ -31,8 +31,8 @@ pub fn run(arguments: &Diff) -> Outcome {
                 .help("choose another name"));
         }
     }
-    let format = Format::of(&arguments.a)?;
-    if format != Format::of(&arguments.b)? {
+    let format = Format::from_path(&arguments.a)?;
+    if format != Format::from_path(&arguments.b)? {
         return Err(Error::input("a PNG and an EXR cannot be compared")
             .at(&arguments.b)
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));

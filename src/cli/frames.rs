@@ -31,7 +31,7 @@ impl Plan {
     /// # Errors
     /// When that does not fit the scene, or files of several frames would have one name.
     pub fn new(arguments: &Render, scene: &Scene, outputs: Vec<PathBuf>) -> Result<Self> {
-        let is_movie = |path: &PathBuf| Format::of(path).is_ok_and(Format::is_animated);
+        let is_movie = |path: &PathBuf| Format::from_path(path).is_ok_and(Format::is_animated);
         let (movies, stills): (Vec<_>, Vec<_>) = outputs.into_iter().partition(is_movie);
         let mut plan =
             Self { frames: vec![(None, 0.0)], stills, movies, fps: 1.0, skipped: 0, keeps: false };

@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use crate::cli::args::Info;
 use crate::cli::json::Geometry;
-use crate::cli::load_report::{self, Loaded};
+use crate::cli::load_report::{self, LoadSummary};
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::intersect::Backend;
-use crate::load;
+use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
-use crate::scene::{LightKind, Projection, Scene, SceneFeatures, precision_warnings};
+use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
 
 /// `info --json`.
 #[derive(Serialize)]
@@ -38,7 +38,7 @@ struct Summary {
     /// Which it does not need, and why: these are not done.
     skipped: BTreeMap<&'static str, String>,
     /// What became of its files.
-    report: Loaded,
+    report: LoadSummary,
     /// The same, as it is printed.
     #[serde(skip)]
     faces: String,
@@ -64,14 +64,14 @@ impl Motion {
         let mut motion = Self {
             frames: animation.frames,
             fps: animation.fps,
-            seconds: animation.seconds(),
+            seconds: animation.duration(),
             spheres: 0,
             instances: 0,
             meshes: 0,
             lights: 0,
             cameras: 0,
         };
-        for mover in &animation.movers {
+        for mover in &animation.objects {
             *match mover {
                 Animated::Sphere { .. } => &mut motion.spheres,
                 Animated::Instance { .. } => &mut motion.instances,
@@ -107,10 +107,11 @@ impl fmt::Display for Motion {
 pub fn run(arguments: &Info) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     files::check_input(&arguments.scene)?;
-    let scene = load::load_with(&arguments.scene, &arguments.loading.options(None))?;
+    let Loaded { scene, report: loaded } =
+        arguments.loading.options(None).load(&arguments.scene)?;
     let motion = scene.animation.as_ref().map(Motion::of);
     // The rest is that of the first frame.
-    let summary = summarize(&scene.at(0.0)?, motion);
+    let summary = summarize(&scene.at_time(0.0)?, &loaded, motion);
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&report::printable(&summary.to_string()))?;
         summary.warnings.iter().for_each(|w| report::warning(w));
@@ -119,18 +120,17 @@ pub fn run(arguments: &Info) -> Outcome {
         output::write_json(path, &summary)?;
     }
     if arguments.strict {
-        load_report::check_strictly(&scene, &arguments.scene)?;
+        load_report::check_strictly(&loaded, &arguments.scene)?;
     }
     Ok(Verdict::Good)
 }
 
-fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
+fn summarize(scene: &Scene, report: &LoadReport, animation: Option<Motion>) -> Summary {
     let bounds = scene.bounds();
     // As the default of `render`: precision fast, on Embree where it is built in.
-    let mut warnings = scene.warnings.clone();
-    warnings
-        .extend(precision_warnings::precision_warnings(scene, Backend::default() != Backend::Rust));
-    let needs = SceneFeatures::of(scene);
+    let mut warnings = report.warnings.clone();
+    warnings.extend(report::precision_warnings(scene, Backend::default() != Backend::Rust));
+    let needs = SceneFeatures::from_scene(scene);
     Summary {
         size: scene.film.size,
         spp: scene.film.spp,
@@ -141,13 +141,13 @@ fn summarize(scene: &Scene, animation: Option<Motion>) -> Summary {
         materials: scene.materials.len(),
         textures: scene.textures.len(),
         lights: scene.lights.iter().map(|l| named(light_kind(&l.kind), &l.name)).collect(),
-        cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
+        cameras: scene.cameras.iter().map(|c| named(lens(&c.projection), &c.name)).collect(),
         animation,
         bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
-        needed: needs.done().map(|(work, why)| (work.name(), why)).collect(),
+        needed: needs.used().map(|(work, why)| (work.name(), why)).collect(),
         skipped: needs.skipped().map(|(work, why)| (work.name(), why)).collect(),
-        report: (&scene.report).into(),
-        faces: scene.report.to_string(),
+        report: report.into(),
+        faces: report.to_string(),
         warnings,
     }
 }

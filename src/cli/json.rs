@@ -5,9 +5,10 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use crate::cli::load_report::Loaded;
+use crate::cli::load_report::LoadSummary;
 use crate::integrator::{self, Counts, RayCounts, sample_steps};
 use crate::intersect::BuildQuality;
+use crate::load::LoadReport;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
 
@@ -40,7 +41,7 @@ pub struct Stats {
     /// What of it Embree had, at its own peak; null without Embree.
     pub embree_peak_memory_bytes: Option<u64>,
     /// What became of the scene's files.
-    pub report: Loaded,
+    pub report: LoadSummary,
     pub warnings: Vec<String>,
 }
 
@@ -58,7 +59,7 @@ pub struct Adaptive {
 
 impl Adaptive {
     fn of(film: &FilmSettings, counts: &Counts) -> Option<Self> {
-        let scene::Adaptive { max, threshold } = film.adaptive?;
+        let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
         let steps = sample_steps(film);
         let refined = counts.refined[..steps.len() - 1].to_vec();
         Some(Self { max, threshold, steps, refined })
@@ -114,16 +115,16 @@ pub struct Build {
 
 impl From<&Statistics> for Build {
     fn from(statistics: &Statistics) -> Self {
-        let stats = statistics.built;
+        let built = statistics.built;
         Self {
-            meshes: stats.meshes_built,
-            reused: stats.meshes_reused,
+            meshes: built.meshes_built,
+            reused: built.meshes_reused,
             bvh: statistics.quality.map(BuildQuality::name),
-            top_levels_built: stats.tlas_built,
-            top_levels_kept: stats.tlas_kept,
-            instances_placed: stats.instances_built,
-            instances_moved: stats.instances_moved,
-            spheres_moved: stats.spheres_moved,
+            top_levels_built: built.tlas_built,
+            top_levels_kept: built.tlas_kept,
+            instances_placed: built.instances_built,
+            instances_moved: built.instances_moved,
+            spheres_moved: built.spheres_moved,
         }
     }
 }
@@ -170,13 +171,14 @@ impl Stats {
     pub fn new(
         scene: &Scene,
         frames: usize,
+        report: &LoadReport,
         statistics: &Statistics,
         layers: u64,
         [load, write, total]: [f64; 3],
         warnings: Vec<String>,
     ) -> Self {
         let (build, render) = (statistics.build.as_secs_f64(), statistics.render.as_secs_f64());
-        let (name, version) = statistics.backend.clone();
+        let (name, version) = (statistics.backend, statistics.backend_version.clone());
         let Counts { rays, not_finite, .. } = statistics.counts;
         let work = work(scene, statistics, layers);
         Self {
@@ -190,14 +192,14 @@ impl Stats {
             geometry: Geometry::of(scene),
             build: statistics.into(),
             rays: rays.into(),
-            skipped: skipped(&SceneFeatures::of(scene), &work),
+            skipped: skipped(&SceneFeatures::from_scene(scene), &work),
             work,
             not_finite: not_finite.into(),
             seconds: Seconds { load, build, render, write, total },
             mrays_per_second: rays.total() as f64 / render.max(1e-9) * 1e-6,
             peak_memory_bytes: peak_memory(),
             embree_peak_memory_bytes: embree_peak_memory(statistics),
-            report: (&scene.report).into(),
+            report: report.into(),
             warnings,
         }
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::cli::values::{PrecisionName, seconds, size};
 use crate::cli::{files, load_report};
 use crate::error::{Error, Result};
-use crate::load::{Limits, NamedLimit, Options};
+use crate::load::{Limits, LoadOptions, LoadReport, Loaded, NamedLimit};
 use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 
@@ -29,11 +29,11 @@ pub struct Loading {
 
 impl Loading {
     /// The options of a load.
-    pub fn options(&self, size: Option<[u32; 2]>) -> Options {
-        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with(limit, most);
+    pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
+        let with = |limits: Limits, &NamedLimit(limit, most): &_| limits.with_limit(limit, most);
         let limits = self.limit.iter().fold(Limits::default(), with);
         let (variant, allow_outside) = (self.variant.clone(), self.allow_outside);
-        Options { size, variant, allow_outside, limits }
+        LoadOptions { size, variant, allow_outside, limits }
     }
 }
 
@@ -75,14 +75,23 @@ pub struct Tracing {
     pub quiet: bool,
 }
 
+/// A scene that was loaded for tracing, with the flags applied.
+pub struct Input {
+    pub scene: Scene,
+    /// The load report.
+    pub report: LoadReport,
+    /// The index of the camera.
+    pub camera: usize,
+}
+
 impl Tracing {
-    /// Loads the scene as it is at one moment, as [`Tracing::load_animated`].
+    /// Loads the scene as it is at one moment; see [`Tracing::load_animated`].
     ///
     /// # Errors
-    /// As there.
-    pub fn load(&self) -> Result<(Scene, usize)> {
-        let (scene, camera) = self.load_animated()?;
-        Ok((scene.at(0.0)?, camera))
+    /// As [`Tracing::load_animated`].
+    pub fn load(&self) -> Result<Input> {
+        let input = self.load_animated()?;
+        Ok(Input { scene: input.scene.at_time(0.0)?, ..input })
     }
 
     /// Loads the scene and applies the flags; says which camera is asked for. Where `--time` asks
@@ -90,13 +99,13 @@ impl Tracing {
     ///
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
-    pub fn load_animated(&self) -> Result<(Scene, usize)> {
+    pub fn load_animated(&self) -> Result<Input> {
         files::check_input(&self.scene)?;
         // Loading and writing keep to them, too. Fails only where the pool is there already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let mut scene = crate::load::load_with(&self.scene, &self.loading.options(self.size))?;
+        let Loaded { mut scene, report } = self.loading.options(self.size).load(&self.scene)?;
         if self.strict {
-            load_report::check_strictly(&scene, &self.scene)?;
+            load_report::check_strictly(&report, &self.scene)?;
         }
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);
@@ -113,9 +122,9 @@ impl Tracing {
                 let error = Error::input("the scene has no animation, and so no --time");
                 return Err(error.at(&self.scene).help("leave --time out"));
             }
-            scene = scene.at(time).map_err(|e| e.at(&self.scene))?;
+            scene = scene.at_time(time).map_err(|e| e.at(&self.scene))?;
         }
-        Ok((scene, camera))
+        Ok(Input { scene, report, camera })
     }
 
     /// The number of threads; 0 means all.

@@ -6,11 +6,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::scene::{LoadReport, Scene};
+use crate::load::LoadReport;
 
 /// `report` in `info --json` and `render --stats`.
 #[derive(Serialize)]
-pub struct Loaded {
+pub struct LoadSummary {
     faces: Faces,
     unsupported: Vec<String>,
     placeholders: Vec<String>,
@@ -25,23 +25,23 @@ struct Faces {
     dropped: BTreeMap<&'static str, u64>,
 }
 
-impl From<&LoadReport> for Loaded {
+impl From<&LoadReport> for LoadSummary {
     fn from(report: &LoadReport) -> Self {
-        let LoadReport { read, handed_over, dropped, unsupported, placeholders, variants } =
+        let LoadReport { read, handed_over, dropped, unsupported, placeholders, variants, .. } =
             report.clone();
         let dropped = dropped.into_iter().map(|(why, count)| (why.name(), count)).collect();
         Self { faces: Faces { read, handed_over, dropped }, unsupported, placeholders, variants }
     }
 }
 
-/// What `--strict` demands of a scene.
+/// Checks the demand of `--strict` on a load.
 ///
 /// # Errors
 /// When anything of its files was dropped, is not supported, or has a placeholder; the error lists
 /// all of it.
-pub fn check_strictly(scene: &Scene, path: &Path) -> Result<()> {
-    let LoadReport { dropped, unsupported, placeholders, .. } = &scene.report;
-    if scene.report.is_clean() {
+pub fn check_strictly(report: &LoadReport, path: &Path) -> Result<()> {
+    let LoadReport { dropped, unsupported, placeholders, .. } = report;
+    if report.is_clean() {
         return Ok(());
     }
     let dropped = dropped.iter().map(|(why, count)| format!("dropped: {count} {}", why.name()));

@@ -37,7 +37,7 @@ pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
 /// When it could not, or the file is not named as a PNG.
 pub fn check_png(path: Option<&PathBuf>) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
-    if write::Format::of(path)? != write::Format::Png {
+    if write::Format::from_path(path)? != write::Format::Png {
         return Err(Error::input("a heat map is written as PNG").at(path).help("name it .png"));
     }
     write::check(path)
@@ -54,7 +54,7 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     if is_stdout(path) {
         return print(&text);
     }
-    write::atomically(path, |out| out.write_all(text.as_bytes()))
+    write::write_atomically(path, |out| out.write_all(text.as_bytes()))
 }
 
 /// Prints to standard output. A reader that has gone, as `head` does, wants no more; that is no

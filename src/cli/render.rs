@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::cli::args::Render;
 use crate::cli::frames::Plan;
 use crate::cli::json::Stats;
+use crate::cli::load::Input;
 use crate::cli::values::{SampleRange, ViewName};
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::error::{Error, Result};
@@ -13,9 +14,9 @@ use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::load;
-use crate::render::{self, Options, Rendering, Statistics};
-use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, Tone, precision_warnings};
+use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
+use crate::scene::animation::PosedScene;
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene, Tone};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Outcome {
@@ -26,7 +27,7 @@ pub fn run(arguments: &Render) -> Outcome {
         None => Default::default(),
     };
     output::check_json(arguments.stats.as_ref())?;
-    let (mut scene, camera) = arguments.tracing.load_animated()?;
+    let Input { mut scene, report: loaded, camera } = arguments.tracing.load_animated()?;
     if arguments.ground {
         load::add_ground(&mut scene);
     }
@@ -35,31 +36,34 @@ pub fn run(arguments: &Render) -> Outcome {
     scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
     let plan = Plan::new(arguments, &scene, outputs)?;
     let first = first(&scene, &plan).map_err(|e| e.at(&arguments.tracing.scene))?;
-    let loaded = start.elapsed();
+    let load_time = start.elapsed();
 
     let view = View::from(arguments.view);
     let threads = arguments.tracing.threads();
     let precision = arguments.tracing.precision.into();
     let quality = arguments.bvh.quality();
     let options =
-        Options { backend, precision, quality, threads, camera, view, ..Options::default() };
+        RenderOptions { backend, precision, quality, threads, camera, view, ..Default::default() };
     let progress = report::progress_bar(arguments.tracing.quiet);
     let settings = Settings {
         half: arguments.half,
         metadata: metadata(&scene, camera, view, precision),
-        ..Settings::of(&scene.film)
+        ..Settings::from_film(&scene.film)
     };
     let mut sink = Sink::new(&plan, settings, &options, scene.film.size)?;
     let times: Vec<f64> = plan.frames.iter().map(|(_, time)| *time).collect();
     let step = |share: f32| progress.set_position((share * 1000.0) as u64);
-    render::render_frames(&scene, &times, &options, &step, &mut |i, frame| sink.take(i, frame))
+    Renderer::new(&scene)
+        .options(options)
+        .on_progress(step)
+        .render_frames(&times, |i, frame| sink.take(i, frame))
         .map_err(|e| e.at(&arguments.tracing.scene))?;
     progress.finish_and_clear();
     let done = sink.finish()?;
 
-    let mut warnings = scene.warnings.clone();
+    let mut warnings = loaded.warnings.clone();
     let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
+    warnings.extend(report::precision_warnings(&first, f32_rays));
     warnings.extend(oddities(&first, camera, view, &done));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
@@ -69,9 +73,9 @@ pub fn run(arguments: &Render) -> Outcome {
         output::print(&plan.summary(total.as_secs_f64()))?;
     }
     if let Some(path) = &arguments.stats {
-        let seconds = [loaded, done.write, total].map(|d| d.as_secs_f64());
+        let seconds = [load_time, done.write, total].map(|d| d.as_secs_f64());
         let (statistics, layers) = (&done.statistics, done.layers);
-        let stats = Stats::new(&first, times.len(), statistics, layers, seconds, warnings);
+        let stats = Stats::new(&first, times.len(), &loaded, statistics, layers, seconds, warnings);
         output::write_json(path, &stats)?;
     }
     Ok(Verdict::Good)
@@ -83,8 +87,9 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
         (film.spp, film.adaptive) = (1, None);
     }
     if let Some(SampleRange { min, max }) = arguments.adaptive {
-        let threshold = film.adaptive.map_or(Adaptive::THRESHOLD, |adaptive| adaptive.threshold);
-        (film.spp, film.adaptive) = (min, Some(Adaptive { max, threshold }));
+        let threshold =
+            film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
+        (film.spp, film.adaptive) = (min, Some(AdaptiveSampling { max, threshold }));
     }
     match (arguments.threshold, &mut film.adaptive) {
         (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
@@ -100,7 +105,7 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
 /// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
 /// what only a check of its numbers finds, such as a way out of bounds, is found in its turn.
 fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
-    let mut poses = Poses::new(scene);
+    let mut poses = PosedScene::new(scene);
     for (i, (frame, time)) in plan.frames.iter().enumerate() {
         poses.pose(*time)?;
         let files: Vec<PathBuf> = plan.files(*frame).collect();
@@ -133,11 +138,16 @@ struct Done {
 }
 
 impl<'a> Sink<'a> {
-    fn new(plan: &'a Plan, settings: Settings, options: &Options, size: [u32; 2]) -> Result<Self> {
+    fn new(
+        plan: &'a Plan,
+        settings: Settings,
+        options: &RenderOptions,
+        size: [u32; 2],
+    ) -> Result<Self> {
         let frames = plan.frames.len() as u32;
         let movie = |path: &PathBuf| Movie::create(path, size, frames, plan.fps);
         let movies = plan.movies.iter().map(movie).collect::<Result<_>>()?;
-        let statistics = Statistics::none(options);
+        let statistics = Statistics::zero(options);
         let done = Done { statistics, write: Duration::ZERO, layers: 0, is_black: true };
         Ok(Self { plan, settings, movies, done })
     }
@@ -189,7 +199,7 @@ fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
             return Err(Error::input("this output is named twice").at(path).help("name it once"));
         }
     }
-    let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
+    let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
     if arguments.half && !formats.contains(&Format::Exr) {
         return Err(Error::input("--half is about EXR, and no .exr is asked for")
             .help("add `-o NAME.exr`, or leave --half out"));
@@ -296,7 +306,7 @@ fn metadata(
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
-    if let Some(Adaptive { max, threshold }) = scene.film.adaptive {
+    if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));
     }

@@ -4,11 +4,20 @@ use std::io::{IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::error::{Error, Place};
+use crate::error::{Error, Place, Remedy};
+use crate::scene::{Scene, precision_warnings};
 
 /// Prints an error: file, place and message; the line in question; the way out.
 pub fn error(error: &Error) {
     to_stderr(&printable(&format(error)));
+}
+
+/// The warnings about lost precision, with the flag that avoids them.
+pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
+    precision_warnings::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
+        let certified = "; --precision certified has no such limit";
+        warning.message + if warning.is_of_fast_only { certified } else { "" }
+    })
 }
 
 /// Prints a warning.
@@ -68,15 +77,44 @@ fn format(error: &Error) -> String {
         let mark = "^".repeat(*length);
         text += &format!("{margin} |\n{number} | {quote}\n{margin} | {lead}{mark}\n");
     }
-    if let Some(help) = error.advice() {
-        text += &format!("help: {help}\n");
+    let flag = error.remedy().map(flag);
+    let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
+    if !help.is_empty() {
+        text += &format!("help: {}\n", help.join(": "));
     }
     text
+}
+
+/// The flag of the command that is a way out of an error.
+fn flag(remedy: Remedy) -> String {
+    match remedy {
+        Remedy::AllowOutside => "`--allow-outside`".to_owned(),
+        Remedy::RaiseLimit { name, least: Some(least) } => format!("`--limit {name}={least}`"),
+        Remedy::RaiseLimit { name, least: None } => format!("`--limit {name}=NUMBER`"),
+        Remedy::RustBackend => "`--backend rust`".to_owned(),
+        Remedy::ReferenceSamples(samples) => format!("`--reference-spp {samples}`"),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Instance, MaterialId, Mesh, Sphere};
+    use glam::{DAffine3, DVec3};
+
+    #[test]
+    fn warnings_of_fast_precision_name_the_flag_that_avoids_them() {
+        let mut scene = Scene::default();
+        let mesh = scene.add_mesh(Mesh {
+            positions: vec![[0.0; 3], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-4]],
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        });
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
+        scene.spheres.push(Sphere::new(DVec3::ZERO, 0.5, MaterialId(0)));
+        let found: Vec<String> = precision_warnings(&scene, true).collect();
+        assert!(found.len() == 1 && found[0].contains("--precision certified"), "{found:?}");
+    }
     use std::path::Path;
 
     #[test]

@@ -36,7 +36,7 @@ pub fn run(arguments: &Stress) -> Outcome {
     if let Some(path) = &arguments.plot {
         let rays = if arguments.quick { options.rays } else { PLOT_RAYS };
         let svg = plot(arguments.seed, rays)?;
-        write::atomically(path, |out| out.write_all(svg.as_bytes()))?;
+        write::write_atomically(path, |out| out.write_all(svg.as_bytes()))?;
     }
     Ok(if rows.iter().all(|row| row.passed) { Verdict::Good } else { Verdict::Bad })
 }

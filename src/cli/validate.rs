@@ -5,11 +5,12 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::args::Validate;
+use crate::cli::load::Input;
 use crate::cli::{Outcome, Verdict, files, output, report};
 use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::{Scene, Transfer, precision_warnings};
+use crate::scene::{Scene, Transfer};
 use crate::write::{self, Settings};
 
 /// `validate --json`.
@@ -25,14 +26,14 @@ struct Outcomes<'a> {
 pub fn run(arguments: &Validate) -> Outcome {
     output::check_json(arguments.json.as_ref())?;
     output::check_png(arguments.heatmap.as_ref())?;
-    let (scene, camera) = arguments.tracing.load()?;
+    let Input { scene, report: loaded, camera } = arguments.tracing.load()?;
     if let Some(ray) = &arguments.ray {
         return replay(arguments, &scene, ray);
     }
     files::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = Precision::from(arguments.tracing.precision);
-    let mut warnings = scene.warnings.clone();
-    warnings.extend(precision_warnings::precision_warnings(&scene, precision == Precision::Fast));
+    let mut warnings = loaded.warnings.clone();
+    warnings.extend(report::precision_warnings(&scene, precision == Precision::Fast));
     if !arguments.tracing.quiet {
         warnings.iter().for_each(|w| report::warning(w));
     }

@@ -1,21 +1,23 @@
-//! What importers do alike to a mesh just read: make it valid, and count what that cost.
+//! The repair of a mesh that an importer has read: it makes the mesh valid, and counts the losses.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use super::diagnostics::Diagnostics;
-use crate::scene::{DropReason, GRAIN, Mesh};
+use crate::load::report::DropReason;
+use crate::scene::{GRAIN, Mesh};
 
-/// Drops triangles that cannot be had, and mends normals, texture coordinates and colours, so
-/// that the mesh is valid.
-pub fn repair(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
-    let at = || place.to_owned();
+/// Drops invalid triangles, and replaces invalid normals, texture coordinates and colours, so that the
+/// mesh is valid.
+pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, place: &str) {
+    let first_place = || place.to_owned();
     let count = mesh.positions.len();
+    // Triangles without a vertex, without a place or without an area.
     if !mesh.has_all_vertices() {
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| t.iter().all(|&i| (i as usize) < count));
         let dropped = (before - mesh.triangles.len()) as u64;
-        tally.drop(DropReason::IndexOutOfRange, dropped, at);
+        diagnostics.drop(DropReason::IndexOutOfRange, dropped, first_place);
     }
     if !mesh.is_finite() {
         let finite: Vec<bool> =
@@ -23,37 +25,38 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
         let before = mesh.triangles.len();
         mesh.triangles.retain(|t| t.iter().all(|&i| finite.get(i as usize) == Some(&true)));
         let dropped = (before - mesh.triangles.len()) as u64;
-        tally.drop(DropReason::NotFinite, dropped, at);
+        diagnostics.drop(DropReason::NotFinite, dropped, first_place);
         for (position, finite) in mesh.positions.iter_mut().zip(finite) {
             if !finite {
                 *position = [0.0; 3];
             }
         }
     }
-    drop_degenerate(mesh, tally, place);
+    drop_degenerate(mesh, diagnostics, place);
     for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.tangents.len()] {
         debug_assert!(length == 0 || length == count);
     }
-    mend_normals(mesh, tally, place);
-    let bad = mend_uvs(&mut mesh.uvs) + mend_uvs(&mut mesh.second_uvs);
-    tally.add("{} texture coordinates are not finite and become 0", bad, at);
+    // Attributes of vertices.
+    repair_normals(mesh, diagnostics, place);
+    let bad = repair_uvs(&mut mesh.uvs) + repair_uvs(&mut mesh.second_uvs);
+    diagnostics.add("{} texture coordinates are not finite and become 0", bad, first_place);
     let mut bad = 0;
     let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
     for color in colors.filter(|x| !(x.is_finite() && **x >= 0.0)) {
         *color = 0.0;
         bad += 1;
     }
-    tally.add("{} vertex colours are negative or not finite and become 0", bad, at);
-    let is_sound = |t: &[f32; 4]| {
+    diagnostics.add("{} vertex colours are negative or not finite and become 0", bad, first_place);
+    let is_valid = |t: &[f32; 4]| {
         let [x, y, z, sign] = *t;
         let length = Vec3::new(x, y, z).length_squared();
         length > 0.0 && length.is_finite() && sign.abs() == 1.0
     };
-    let bad = mesh.tangents.iter().filter(|t| !is_sound(t)).count();
-    tally.add(
+    let bad = mesh.tangents.iter().filter(|t| !is_valid(t)).count();
+    diagnostics.add(
         "{} tangents have no direction or no sign; all of the mesh are made anew",
         bad as u64,
-        at,
+        first_place,
     );
     if bad > 0 {
         mesh.tangents.clear();
@@ -61,8 +64,8 @@ pub fn repair(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
 }
 
 /// Replaces texture coordinates that are not finite with 0, and counts them.
-fn mend_uvs(uvs: &mut [[f32; 2]]) -> u64 {
-    // Nearly always there are none, which is told fast.
+fn repair_uvs(uvs: &mut [[f32; 2]]) -> u64 {
+    // Nearly always all are finite, which a parallel test tells fast.
     let finite =
         |uvs: &[[f32; 2]]| uvs.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
     if uvs.par_chunks(GRAIN).all(finite) {
@@ -74,7 +77,7 @@ fn mend_uvs(uvs: &mut [[f32; 2]]) -> u64 {
 
 /// Drops triangles with two corners at one place. Those whose corners only stand in line are kept:
 /// they close the seams between large faces and several small ones.
-fn drop_degenerate(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
+fn drop_degenerate(mesh: &mut Mesh, diagnostics: &mut Diagnostics, place: &str) {
     let Mesh { positions, triangles, .. } = mesh;
     let is_degenerate = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|i| positions[i as usize]);
@@ -84,12 +87,13 @@ fn drop_degenerate(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
         let before = triangles.len();
         triangles.retain(|t| !is_degenerate(t));
         let dropped = (before - triangles.len()) as u64;
-        tally.drop(DropReason::Degenerate, dropped, || place.to_owned());
+        diagnostics.drop(DropReason::Degenerate, dropped, || place.to_owned());
     }
 }
 
-/// Gives a normal of length 0 (or none at all) the mean of the triangles around its vertex.
-fn mend_normals(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
+/// Replaces a normal of length 0, or one that is not finite, by the mean of the triangles around its
+/// vertex.
+fn repair_normals(mesh: &mut Mesh, diagnostics: &mut Diagnostics, place: &str) {
     let is_bad = |n: &[f32; 3]| {
         let length = Vec3::from(*n).length_squared();
         !(length > 0.0 && length.is_finite())
@@ -108,12 +112,13 @@ fn mend_normals(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
     if bad == 0 {
         return;
     }
-    let at = || place.to_owned();
-    tally.add("{} normals have no direction; the surface's own take their place", bad as u64, at);
+    let reason = "{} normals have no direction; the surface's own take their place";
+    diagnostics.add(reason, bad as u64, || place.to_owned());
     if bad == mesh.normals.len() {
         mesh.normals.clear();
         return;
     }
+    // The sums of the triangles' normals, weighted by area.
     let mut sums = vec![glam::DVec3::ZERO; mesh.positions.len()];
     for triangle in &mesh.triangles {
         let corners = triangle.map(|i| {
@@ -146,9 +151,9 @@ mod tests {
     }
 
     fn repaired(mut mesh: Mesh) -> (Mesh, Vec<String>) {
-        let mut tally = Diagnostics::default();
-        repair(&mut mesh, &mut tally, "here");
-        (mesh, tally.sentences(std::path::Path::new("m")))
+        let mut diagnostics = Diagnostics::default();
+        repair(&mut mesh, &mut diagnostics, "here");
+        (mesh, diagnostics.warnings(std::path::Path::new("m")))
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! From a path to a [`Scene`]: the only parsers.
+//! Loading: from a path to a [`Scene`](crate::scene::Scene) and a [`LoadReport`]. The only parsers.
 //!
 //! A model file (`.gltf`, `.glb`, `.obj`) loads as a scene of its own; a scene file (`.toml`)
 //! places such scenes within another one. What leaves this module is resolved and checked:
@@ -12,6 +12,7 @@ mod limits;
 mod merge;
 mod mesh_repair;
 mod obj;
+mod report;
 mod sandbox;
 mod scene_file;
 mod spelling;
@@ -20,84 +21,113 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{LoadReport, Scene, watertight};
+use crate::scene::watertight;
 
-pub use defaults::auto_lighting::add_ground;
+pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits, NamedLimit};
+pub use report::{DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;
 
-/// Samples per pixel of a bare model file, which has no setting of its own.
-pub const BARE_MODEL_SPP: u32 = 16;
+/// The samples per pixel of a bare model file, which has no setting of its own.
+const BARE_MODEL_SPP: u32 = 16;
 
-/// How to load a scene, where it is not the usual way.
+/// The options of a load.
+///
+/// ```no_run
+/// let loaded = envers::LoadOptions::default().size([640, 360]).load("model.glb")?;
+/// # Ok::<(), envers::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// The size of the picture in pixels, in place of the file's; a camera that frames the scene is
-    /// placed for it.
+#[non_exhaustive]
+pub struct LoadOptions {
+    /// The size of the picture in pixels, in place of the file's. A camera that frames the scene
+    /// is placed for it.
     pub size: Option<[u32; 2]>,
-    /// Which variant of its materials a glTF file shows (KHR_materials_variants), in place of the
-    /// default ones; in a scene file, each model that has one of this name and names none itself.
+    /// The variant of the materials of a glTF file (`KHR_materials_variants`), in place of the
+    /// default materials; in a scene file, for each model that has a variant of this name and
+    /// names none itself.
     pub variant: Option<String>,
-    /// Whether files may name others that are neither beside nor below the one that is loaded.
+    /// True if files may name others that are neither beside nor below the file that is loaded.
     pub allow_outside: bool,
-    /// How much a load may make of what it reads.
+    /// The limits on what the load may read, unpack and build.
     pub limits: Limits,
+}
+
+impl LoadOptions {
+    /// Sets the size of the picture, in pixels.
+    pub fn size(mut self, size: [u32; 2]) -> Self {
+        self.size = Some(size);
+        self
+    }
+
+    /// Sets the variant of the materials.
+    pub fn variant(mut self, name: impl Into<String>) -> Self {
+        self.variant = Some(name.into());
+        self
+    }
+
+    /// Allows files to name others anywhere.
+    pub fn allow_outside(mut self, allow: bool) -> Self {
+        self.allow_outside = allow;
+        self
+    }
+
+    /// Sets the limits.
+    pub fn limits(mut self, limits: Limits) -> Self {
+        self.limits = limits;
+        self
+    }
+
+    /// Loads a scene file or a bare model file, by its extension, as [`load`] does.
+    ///
+    /// # Errors
+    /// As [`load`]; when a file names another one outside, or asks for more than a limit allows,
+    /// unless the options say otherwise; and when no file has the variant.
+    pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
+        let path = path.as_ref();
+        let guard = Sandbox::new(path, self.allow_outside, self.limits)?;
+        let file = guard.open_named(path)?;
+        let is_scene_file = extension(path) == "toml";
+        let Loaded { mut scene, mut report } = if is_scene_file {
+            scene_file::load(file, &guard, self)?
+        } else {
+            let variant = self.variant.as_deref();
+            model(file, &guard, &Choice { animation: None, variant, pictures: true })?
+        };
+        if let Some(variant) = &self.variant {
+            check_variant(variant, &report).map_err(|e| e.at(path))?;
+        }
+        if let Some(size) = self.size {
+            scene.film.size = size;
+        }
+        // Defaults for what the file leaves out.
+        defaults::auto_camera::add_camera(&mut scene);
+        if !is_scene_file {
+            scene.film.spp = BARE_MODEL_SPP;
+            defaults::auto_lighting::add_lights(&mut scene);
+        }
+        defaults::complete(&mut scene);
+        scene.check().map_err(|e| e.at(path))?;
+        report.warnings.extend(watertight::open_dielectric_warnings(&scene));
+        Ok(Loaded { scene, report })
+    }
 }
 
 /// Loads a scene file or a bare model file, by its extension.
 ///
 /// A bare model gets a camera that frames it and lights where it has none of its own, a neutral
-/// background, and [`BARE_MODEL_SPP`] samples per pixel; a scene file gets no lights that it does
-/// not name.
+/// background, and 16 samples per pixel; a scene file gets no lights that it does not name.
+///
+/// ```no_run
+/// let scene = envers::load("scene.toml")?.scene;
+/// # Ok::<(), envers::Error>(())
+/// ```
 ///
 /// # Errors
 /// When a file cannot be read, or is not what it should be; the error names file and place.
-pub fn load(path: &Path) -> Result<Scene> {
-    load_with(path, &Options::default())
-}
-
-/// Loads as [`load`] does, for a picture of another size than the file asks for; a camera that
-/// frames the scene is placed for that size.
-///
-/// # Errors
-/// As [`load`].
-pub fn load_for(path: &Path, size: Option<[u32; 2]>) -> Result<Scene> {
-    load_with(path, &Options { size, ..Options::default() })
-}
-
-/// Loads as [`load`] does, with options.
-///
-/// # Errors
-/// As [`load`]; and when a file names another one outside, or more than a limit allows, unless
-/// the options say otherwise; when no file has the variant that they name.
-pub fn load_with(path: &Path, options: &Options) -> Result<Scene> {
-    let guard = Sandbox::new(path, options.allow_outside, options.limits)?;
-    let file = guard.open_named(path)?;
-    let from_file = extension(path) == "toml";
-    let mut scene = match from_file {
-        true => scene_file::load(file, &guard, options)?,
-        false => {
-            let variant = options.variant.as_deref();
-            model(file, &guard, &Choice { animation: None, variant, pictures: true })?
-        }
-    };
-    if let Some(variant) = &options.variant {
-        check_variant(variant, &scene.report).map_err(|e| e.at(path))?;
-    }
-    if let Some(size) = options.size {
-        scene.film.size = size;
-    }
-    defaults::auto_camera::frame(&mut scene);
-    if !from_file {
-        scene.film.spp = BARE_MODEL_SPP;
-        defaults::auto_lighting::light(&mut scene);
-    }
-    defaults::materials::settle(&mut scene);
-    scene.check().map_err(|e| e.at(path))?;
-    let open = watertight::warn_of_open_dielectrics(&scene);
-    scene.warnings.extend(open);
-    Ok(scene)
+pub fn load(path: impl AsRef<Path>) -> Result<Loaded> {
+    LoadOptions::default().load(path)
 }
 
 /// What of a model file is to be loaded.
@@ -111,7 +141,7 @@ struct Choice<'a> {
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.
-fn model(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Scene> {
+fn model(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
     match extension(&file.path).as_str() {
         "gltf" | "glb" | "vrm" => gltf::load(file, guard, choice),
         "obj" if choice.animation.is_some() => Err(Error::input("an OBJ file has no animations")

@@ -42,7 +42,7 @@ impl Picture {
         let damaged = |e: &dyn std::fmt::Display| {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
-        match Format::of(path)? {
+        match Format::from_path(path)? {
             Format::Gif | Format::Apng => Err(Error::input("animated pictures are not compared")
                 .at(path)
                 .help("compare their frames: render them as `-o frame-####.png`")),

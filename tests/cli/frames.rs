@@ -253,7 +253,7 @@ fn a_gif_too_large_for_its_format_is_refused() {
 
 #[test]
 fn a_bare_models_animation_has_frames() {
-    let mut model = import_common::Model::triangle();
+    let mut model = envers_testing::Model::triangle();
     let input = model.floats("SCALAR", &[0.0, 0.25]);
     let output = model.floats("VEC3", &[0., 0., 0., 1., 0., 0.]);
     model.json["animations"] = serde_json::json!([{

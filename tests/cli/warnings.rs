@@ -1,4 +1,4 @@
-//! What is done and probably not meant: said on stderr, with the likely cause.
+//! The warnings on stderr about input that is probably not meant, with the likely cause.
 
 use super::*;
 

@@ -102,7 +102,7 @@ impl Bins {
 
 /// Finds the split that costs least.
 fn best_split(items: &[Item], bounds: &Bounds) -> Split {
-    let centers = Bounds::of(items.iter().map(|i| i.center));
+    let centers = Bounds::from_points(items.iter().map(|i| i.center));
     let size = centers.size();
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
     let bins = Bins { lower: centers.lower[axis], scale: BINS as f64 / size[axis] };
@@ -155,7 +155,7 @@ fn partition(items: &mut [Item], low: impl Fn(&Item) -> bool) -> usize {
 
 /// Splits at the median of the widest axis, and returns the size of the lower half.
 fn split_at_median(items: &mut [Item]) -> usize {
-    let size = Bounds::of(items.iter().map(|i| i.center)).size();
+    let size = Bounds::from_points(items.iter().map(|i| i.center)).size();
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {

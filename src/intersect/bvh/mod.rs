@@ -149,7 +149,7 @@ impl MeshTree {
     fn new(mesh: &Mesh) -> Self {
         let vertex = |i: u32| DVec3::from(mesh.positions[i as usize].map(f64::from));
         let bounds: Vec<Bounds> =
-            mesh.triangles.par_iter().map(|t| Bounds::of(t.map(vertex))).collect();
+            mesh.triangles.par_iter().map(|t| Bounds::from_points(t.map(vertex))).collect();
         Self(build(&bounds))
     }
 }

@@ -45,7 +45,11 @@ impl F32Space {
     /// Makes the space of a scene with this box.
     pub fn from_bounds(bounds: Bounds) -> Self {
         if bounds.is_empty() {
-            return Self { center: DVec3::ZERO, bounds: Bounds::of([DVec3::ZERO]), extent: 1.0 };
+            return Self {
+                center: DVec3::ZERO,
+                bounds: Bounds::from_points([DVec3::ZERO]),
+                extent: 1.0,
+            };
         }
         let extent = bounds.size().max_element();
         // A scene that is a single point still needs room to round in.
@@ -139,7 +143,7 @@ mod tests {
 
     /// A box with sides of this length about a point of the x axis.
     fn cube(x: f64, side: f64) -> Bounds {
-        Bounds::of([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
+        Bounds::from_points([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
     }
 
     #[test]

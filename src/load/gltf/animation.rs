@@ -18,8 +18,8 @@ use crate::load::limits::Limit;
 use crate::load::sandbox::Sandbox;
 use crate::load::spelling;
 use crate::scene::animation::{
-    Animated, Animation, Curve, Interpolation, Keyframes, MAX_FRAMES, Motion, Node, NodeId,
-    Rotation, Value,
+    Animated, Animation, Curve, Interpolate, Interpolation, Keyframes, MAX_FRAMES, Motion, Node,
+    NodeId, Rotation,
 };
 
 /// Frames in a second of a model's own animation, which is made of times alone.
@@ -157,9 +157,9 @@ impl Clip {
                 moves.rotation.clone().unwrap_or(Curve::constant(still)),
             ),
             scale: moves.scale.clone().unwrap_or(Curve::constant(scale)),
-            repeats: self.repeats(),
+            period: self.repeats(),
         };
-        self.nodes.push(Node { parent, place, motion: Motion::Keys(keys) });
+        self.nodes.push(Node { parent, base: place, motion: Motion::Keyframes(keys) });
         Some(NodeId(self.nodes.len() as u32 - 1))
     }
 
@@ -171,7 +171,7 @@ impl Clip {
         // Rounding in f32 makes no frame of its own.
         let frames = (self.seconds * FPS - 1e-3).ceil().clamp(1.0, f64::from(MAX_FRAMES));
         let (nodes, movers) = (self.nodes, self.movers);
-        Some(Animation { frames: frames as u32, fps: FPS, nodes, movers })
+        Some(Animation { frames: frames as u32, fps: FPS, nodes, objects: movers })
     }
 }
 
@@ -183,7 +183,7 @@ fn node_mesh(root: &json::Root, node: usize) -> Result<&json::Mesh> {
 }
 
 /// Puts a curve in its place; says whether there was one, and when it ends.
-fn put<T: Value>(to: &mut Option<Curve<T>>, curve: Curve<T>) -> (bool, f64) {
+fn put<T: Interpolate>(to: &mut Option<Curve<T>>, curve: Curve<T>) -> (bool, f64) {
     let last = curve.times.last().copied().unwrap_or(0.0);
     (to.replace(curve).is_some(), last)
 }
@@ -256,7 +256,7 @@ impl Reader<'_> {
 
     /// The curve of a sampler; `value` makes a value of its numbers, or a slope where the flag is
     /// not set.
-    fn curve<T: Value, const N: usize>(
+    fn curve<T: Interpolate, const N: usize>(
         &self,
         value: impl Fn([f32; N], bool) -> T,
     ) -> Result<Curve<T>> {

@@ -151,23 +151,13 @@ impl<'a> Buffers<'a> {
         self.loaded_bytes.set(self.loaded_bytes.get() + bytes as u64);
     }
 
-    /// What a URI names.
+    /// What a URI names: data within it, or a file that may be read.
     pub fn resolve(&self, uri: &str) -> Result<Target> {
-        resolve(uri, &self.folder, self.guard)
+        Ok(match Uri::parse(uri)? {
+            Uri::Data(bytes) => Target::Data(bytes),
+            Uri::File(names) => Target::File(self.guard.open(&self.folder, &names)?),
+        })
     }
-
-    /// The folder of the file.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-}
-
-/// What a URI in a file of this folder names: data within it, or a file that may be read.
-pub fn resolve(uri: &str, folder: &Path, guard: &Sandbox) -> Result<Target> {
-    Ok(match Uri::parse(uri)? {
-        Uri::Data(bytes) => Target::Data(bytes),
-        Uri::File(names) => Target::File(guard.open(folder, &names)?),
-    })
 }
 
 /// The error that what a URI names, a buffer or a picture, is not to be had.

@@ -13,7 +13,7 @@ use super::buffers::get;
 use super::nodes::Placed;
 use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
-use crate::scene::animation::{Influences, Joint, Morph};
+use crate::scene::animation::{Influences, Joint, MorphTarget};
 
 /// The morph targets of a primitive of so many vertices.
 ///
@@ -25,7 +25,7 @@ pub fn morphs(
     count: usize,
     tally: &mut Diagnostics,
     at: &str,
-) -> Result<Vec<Morph>> {
+) -> Result<Vec<MorphTarget>> {
     let mut morphs = Vec::new();
     for (i, target) in primitive.targets.iter().flatten().enumerate() {
         let read = |index: &Option<json::Index<json::Accessor>>, name: &str| {
@@ -38,7 +38,7 @@ pub fn morphs(
                     .place(Place::Json(place))),
             }
         };
-        let mut morph = Morph {
+        let mut morph = MorphTarget {
             positions: read(&target.positions, "POSITION")?,
             normals: read(&target.normals, "NORMAL")?,
         };
@@ -149,8 +149,8 @@ pub fn joints(
             .map_or((DAffine3::IDENTITY, None, DAffine3::IDENTITY), |placed| {
                 (placed.world, placed.mover, placed.rest)
             });
-        made.still.push(Joint { node: None, place: world, bind });
-        made.moving.push(Joint { node, place: rest, bind });
+        made.still.push(Joint { node: None, transform: world, inverse_bind: bind });
+        made.moving.push(Joint { node, transform: rest, inverse_bind: bind });
         made.moves |= node.is_some();
     }
     Ok(made)

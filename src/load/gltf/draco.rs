@@ -12,7 +12,8 @@ use gltf::json::mesh::Primitive;
 use gltf::json::validation::Checked;
 
 use super::accessor::{Accessors, Supplied};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Place, Remedy, Result};
+use crate::load::limits::Limit;
 
 const NAME: &str = "KHR_draco_mesh_compression";
 
@@ -91,12 +92,11 @@ fn decode(bytes: &[u8], faces: u64) -> Result<draco_core::Mesh> {
     let decoded = draco_core::MeshDecoder::new().decode(&mut buffer, &mut mesh);
     match decoded {
         Ok(()) => Ok(mesh),
-        Err(error) if error.kind() == ErrorKind::LimitExceeded => Err(Error::input(format!(
-            "its data make a mesh larger than the limits allow: {error}"
-        ))
-        .help(
-            "`--limit elements=NUMBER` allows more, four for each triangle, if you trust the file",
-        )),
+        Err(error) if error.kind() == ErrorKind::LimitExceeded => {
+            Err(Error::input(format!("its data make a mesh larger than the limits allow: {error}"))
+                .help("raise the limit `elements`, four for each triangle, if you trust the file")
+                .remedied_by(Remedy::RaiseLimit { name: Limit::Elements.name(), least: None }))
+        }
         Err(error) => Err(Error::input(format!("its data cannot be unpacked: {error}"))
             .help("the file is damaged or was written wrong; export it again")),
     }

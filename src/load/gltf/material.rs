@@ -12,8 +12,8 @@ use super::texture::Textures;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
-    Channel, Material, MaterialId, Metallic, MetallicMaps, NormalMap, OcclusionMap, Scene,
-    ShininessMap, TextureId, Transfer, sharpness, shininess,
+    Channel, Material, MaterialId, MetallicRoughness, MetallicRoughnessMaps, NormalMap,
+    OcclusionMap, Scene, ShininessMap, TextureId, Transfer, mirror_share, shininess,
 };
 
 /// The materials of a file, made when a primitive first uses them.
@@ -137,7 +137,7 @@ impl<'a> Maker<'_, 'a> {
             }
             None => None,
         };
-        let factors = Metallic {
+        let factors = MetallicRoughness {
             base: self.base_color(),
             metallic: unit(pbr.metallic_factor.0),
             roughness: unit(pbr.roughness_factor.0),
@@ -146,7 +146,8 @@ impl<'a> Maker<'_, 'a> {
             transmission: 0.0,
             ior: self.ior(),
         };
-        let mut maps = MetallicMaps { base: base_map, ..MetallicMaps::new(factors) };
+        let mut maps =
+            MetallicRoughnessMaps { base: base_map, ..MetallicRoughnessMaps::new(factors) };
         if let Some(info) = &pbr.metallic_roughness_texture {
             let place = "pbrMetallicRoughness.metallicRoughnessTexture";
             // A factor of 0 leaves nothing of the map.
@@ -159,13 +160,13 @@ impl<'a> Maker<'_, 'a> {
         }
         self.specular(&mut maps)?;
         self.transmission(&mut maps)?;
-        material.set_metallic(maps);
+        material.set_metallic_roughness(maps);
         self.inside(material);
         Ok(base_map)
     }
 
     /// KHR_materials_specular.
-    fn specular(&mut self, maps: &mut MetallicMaps) -> Result<()> {
+    fn specular(&mut self, maps: &mut MetallicRoughnessMaps) -> Result<()> {
         let extensions = self.source.extensions.as_ref();
         let Some(source) = extensions.and_then(|e| e.specular.as_ref()) else { return Ok(()) };
         let place = |key: &str| format!("extensions.KHR_materials_specular.{key}");
@@ -261,7 +262,7 @@ impl<'a> Maker<'_, 'a> {
             }
         });
         let by = format!("{}.{place}.index", self.at);
-        self.textures.get(slot, set as u8, transfer, &by, self.scene, self.tally)
+        self.textures.texture(slot, set as u8, transfer, &by, self.scene, self.tally)
     }
 
     /// A channel of a texture of data.
@@ -284,7 +285,7 @@ impl<'a> Maker<'_, 'a> {
 
 /// Whether what a surface of this roughness sends on is too blurred to be drawn sharp.
 pub fn is_frosted(roughness: f32) -> bool {
-    sharpness(roughness) == 0.0
+    mirror_share(roughness) == 0.0
 }
 
 /// A factor within [0, 1]; what is no number is 1, the default.

@@ -46,10 +46,10 @@ use self::nodes::Placed;
 use self::texture::Textures;
 use self::variants::Variants;
 use crate::error::Result;
-use crate::load::Choice;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
+use crate::load::{Choice, Loaded};
 use crate::scene::Scene;
 
 /// Loads a `.gltf` or `.glb` file.
@@ -57,13 +57,13 @@ use crate::scene::Scene;
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
 /// the place in the JSON. When there is no such animation.
-pub fn load(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Scene> {
+pub fn load(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(guard)?;
     import(&path, &bytes, guard, choice).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], guard: &Sandbox, choice: &Choice) -> Result<Scene> {
+fn import(path: &Path, bytes: &[u8], guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
     let (json, bin) = container::split(bytes)?;
     guard.check(Limit::Json, document::memory(json))?;
     let (root, value) = document::parse(json)?;

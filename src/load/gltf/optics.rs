@@ -7,7 +7,7 @@ use gltf::json::validation::Checked;
 
 use super::material::{Maker, is_frosted, unit};
 use crate::error::Result;
-use crate::scene::{AlphaMode, Channel, Coverage, Material, MetallicMaps, TextureId};
+use crate::scene::{AlphaMode, Channel, Coverage, Material, MetallicRoughnessMaps, TextureId};
 
 /// The index of refraction of what names none.
 const IOR: f32 = 1.5;
@@ -44,7 +44,7 @@ impl Maker<'_, '_> {
     }
 
     /// KHR_materials_transmission.
-    pub fn transmission(&mut self, maps: &mut MetallicMaps) -> Result<()> {
+    pub fn transmission(&mut self, maps: &mut MetallicRoughnessMaps) -> Result<()> {
         let extensions = self.source.extensions.as_ref();
         let Some(source) = extensions.and_then(|e| e.transmission.as_ref()) else { return Ok(()) };
         maps.factors.transmission = unit(source.transmission_factor.0);

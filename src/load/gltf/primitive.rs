@@ -15,8 +15,9 @@ use super::topology;
 use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::mesh_repair::repair;
-use crate::scene::animation::{Influences, Morph};
-use crate::scene::{DropReason, Mesh};
+use crate::load::report::DropReason;
+use crate::scene::Mesh;
+use crate::scene::animation::{Influences, MorphTarget};
 
 /// A primitive, read.
 #[derive(Clone)]
@@ -24,7 +25,7 @@ pub struct Part {
     /// The mesh as it was modelled.
     pub mesh: Arc<Mesh>,
     /// What it can be morphed to.
-    pub morphs: Arc<[Morph]>,
+    pub morphs: Arc<[MorphTarget]>,
     /// How it hangs on joints, if it does.
     pub influences: Option<Arc<Influences>>,
 }
@@ -106,7 +107,7 @@ fn assemble(
             keep(&mut morph.normals, &kept);
         }
         if let Some(influences) = &mut influences {
-            influences.keep(&kept);
+            influences.retain_vertices(&kept);
         }
     }
     let influences = influences.map(Arc::new);

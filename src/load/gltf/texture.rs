@@ -1,191 +1,169 @@
 //! Textures: samplers, pictures, and where on them a surface's coordinates fall.
 
-use std::borrow::Cow;
-use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use glam::Affine2;
 use gltf::json;
 use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf::json::validation::Checked;
 
-use super::buffers::{Buffers, Target, cannot_have, get, resolve};
-use super::slot::Slot;
+use super::buffers::{Buffers, Target, cannot_have, get};
+use super::slot::Slot as TextureReference;
 use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::images::decode;
-use crate::load::images::placeholder;
+use crate::load::images::placeholder::set_image_or_placeholder;
+use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
 use crate::load::sandbox::Sandbox;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
-/// The textures of a file. What they show is decoded when all are known, each picture once.
+/// The textures of a file; the images that they show are decoded when all are known.
 pub struct Textures<'a> {
     root: &'a json::Root,
-    guard: &'a Sandbox,
+    sandbox: &'a Sandbox,
     buffers: &'a Buffers<'a>,
-    /// Whether anything shows the pictures; otherwise they are only named.
-    wanted: bool,
-    /// Those that are in the scene, with what makes them different.
-    /// By their numbers in the file, how they are read, and what was made of that.
-    made: HashMap<usize, Vec<(Reading, TextureId)>>,
-    /// Pictures that are still to be decoded.
-    pictures: Vec<Picture<'a>>,
-    numbers: HashMap<Key<'a>, usize>,
+    /// True if images are read; otherwise they are only named.
+    reads_images: bool,
+    cache: TextureCache<ImageKey<'a>, ImageSource<'a>, TextureKey>,
 }
 
-/// What makes two pictures one.
+/// What makes two images the same.
 #[derive(PartialEq, Eq, Hash)]
-enum Key<'a> {
-    Data(&'a str),
+enum ImageKey<'a> {
+    DataUri(&'a str),
     File(PathBuf),
-    View(usize),
+    BufferView(usize),
 }
 
-/// How a texture is read: by which coordinates, how its colours are encoded, and which set of the
-/// scene places it.
-type Reading = (Slot, Transfer, u8);
+/// The index of a texture in the file, the bits of its transform, the set of texture coordinates
+/// in the scene's mesh, and the transfer function of its values.
+type TextureKey = (usize, [u32; 6], u8, Transfer);
 
-/// A picture that is still to be decoded, and the textures that show it.
-struct Picture<'a> {
-    source: Result<Source<'a>>,
-    at: String,
-    shown_by: Vec<TextureId>,
+/// An image that is still to be decoded.
+struct ImageSource<'a> {
+    bytes: Result<ImageBytes<'a>>,
+    /// Its JSON path.
+    path: String,
 }
 
-/// Where a picture's bytes are.
-#[derive(Clone)]
-enum Source<'a> {
-    Bytes(Cow<'a, [u8]>),
-    /// Of a file, by the URI: it is opened when it is read, so that few are open at a time.
-    File(&'a str),
+/// The place of an image's bytes.
+#[derive(Clone, Copy)]
+enum ImageBytes<'a> {
+    BufferView(&'a [u8]),
+    /// In the URI or the file that it names, which is opened when it is read, so that few are open
+    /// at a time.
+    Uri(&'a str),
 }
 
 impl<'a> Textures<'a> {
-    /// The textures of a file, whose pictures are read where they are `wanted`.
+    /// The textures of a file, without any so far.
     pub fn new(
         root: &'a json::Root,
-        guard: &'a Sandbox,
+        sandbox: &'a Sandbox,
         buffers: &'a Buffers<'a>,
-        wanted: bool,
+        reads_images: bool,
     ) -> Self {
-        let (made, pictures, numbers) = Default::default();
-        Self { root, guard, buffers, wanted, made, pictures, numbers }
+        Self { root, sandbox, buffers, reads_images, cache: TextureCache::default() }
     }
 
-    /// A texture that is placed by the scene's texture coordinates `set`.
+    /// The texture of the scene for a material's reference, which is at the JSON path `by`; it is
+    /// placed by the texture coordinates `set` of the scene's mesh.
     ///
     /// # Errors
     /// When the file's own references lead nowhere.
-    pub fn get(
+    pub fn texture(
         &mut self,
-        slot: Slot,
+        reference: TextureReference,
         set: u8,
         transfer: Transfer,
         by: &str,
         scene: &mut Scene,
-        tally: &mut Diagnostics,
+        diagnostics: &mut Diagnostics,
     ) -> Result<TextureId> {
-        let key = (slot, transfer, set);
-        let mut made = self.made.get(&slot.index).into_iter().flatten();
-        if let Some(&(_, id)) = made.find(|(made, _)| *made == key) {
-            return Ok(id);
+        let TextureReference { index, mut transform, .. } = reference;
+        let key = (index, transform_bits(transform), set, transfer);
+        if let Some(known) = self.cache.find_texture(&key) {
+            return Ok(known);
         }
-        let Slot { index, transform, .. } = slot;
+
+        // Follow the texture's own references.
+        let path = format!("textures[{index}]");
         let texture = get(&self.root.textures, index, "texture", by)?;
-        let sampler = match texture.sampler {
-            Some(s) => Some(get(
-                &self.root.samplers,
-                s.value(),
-                "sampler",
-                &format!("textures[{index}].sampler"),
-            )?),
-            None => None,
-        };
-        let picture = match source(texture) {
-            Some(source) => self.picture(source, &format!("textures[{index}].source"))?,
-            None => self.missing(format!("textures[{index}]")),
-        };
-        let transform = match transform.is_finite() {
-            true => transform,
-            false => {
-                tally.say(format!("textures[{index}]: a transform that is not finite is left out"));
-                Affine2::IDENTITY
+        let sampler = texture.sampler.map(|sampler| {
+            get(&self.root.samplers, sampler.value(), "sampler", &format!("{path}.sampler"))
+        });
+        let sampler = sampler.transpose()?;
+        let image = match image_index(texture) {
+            Some(image) => self.image(image, &format!("{path}.source"))?,
+            None => {
+                let bytes = Err(Error::input("there is no picture that can be read"));
+                self.cache.add_image(ImageSource { bytes, path: path.clone() })
             }
         };
-        let image = placeholder::white(&format!("textures[{index}]"));
-        let id = scene.add_texture(Texture {
+
+        if !transform.is_finite() {
+            diagnostics.say(format!("{path}: a transform that is not finite is left out"));
+            transform = Affine2::IDENTITY;
+        }
+        Ok(self.cache.texture(key, image, scene, |image| Texture {
             transfer,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
             filter: sampler.map_or(Filter::Linear, filter),
             mipmap: sampler.is_none_or(has_mipmaps),
             set,
             transform,
-            ..Texture::new(Arc::new(image))
-        });
-        self.pictures[picture].shown_by.push(id);
-        self.made.entry(index).or_default().push((key, id));
-        Ok(id)
+            ..Texture::new(image)
+        }))
     }
 
-    /// The picture of an image, to be decoded; one that several images name is one.
-    fn picture(&mut self, index: usize, by: &str) -> Result<usize> {
+    /// The image with an index in the file; several of one file, URI or buffer view are the same.
+    fn image(&mut self, index: usize, by: &str) -> Result<ImageIndex> {
         let image = get(&self.root.images, index, "image", by)?;
-        let at = format!("images[{index}]");
-        let (key, source) = match (&image.uri, image.buffer_view) {
+        let path = format!("images[{index}]");
+        let found = match (&image.uri, image.buffer_view) {
             (Some(uri), _) => match self.buffers.resolve(uri) {
-                Ok(Target::Data(bytes)) => (Some(Key::Data(uri)), Ok(Source::Bytes(bytes.into()))),
-                Ok(Target::File(file)) => (Some(Key::File(file.identity)), Ok(Source::File(uri))),
-                Err(error) => (None, Err(cannot_have("picture", uri, &error))),
+                Ok(Target::Data(_)) => Ok((ImageKey::DataUri(uri), ImageBytes::Uri(uri))),
+                Ok(Target::File(file)) => Ok((ImageKey::File(file.identity), ImageBytes::Uri(uri))),
+                Err(error) => Err(cannot_have("picture", uri, &error)),
             },
             (None, Some(view)) => {
-                let bytes = self.buffers.view(view.value(), &format!("{at}.bufferView"));
-                (Some(Key::View(view.value())), bytes.map(|bytes| Source::Bytes(bytes.into())))
+                let bytes = self.buffers.view(view.value(), &format!("{path}.bufferView"));
+                bytes.map(|b| (ImageKey::BufferView(view.value()), ImageBytes::BufferView(b)))
             }
-            (None, None) => {
-                (None, Err(Error::input("the image has neither a URI nor a buffer view")))
-            }
+            (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
         };
-        let next = self.pictures.len();
-        let number = key.map_or(next, |key| *self.numbers.entry(key).or_insert(next));
-        if number == next {
-            self.pictures.push(Picture { source, at, shown_by: Vec::new() });
-        }
-        Ok(number)
+        Ok(match found {
+            Ok((key, bytes)) => self.cache.image(key, || ImageSource { bytes: Ok(bytes), path }),
+            Err(error) => self.cache.add_image(ImageSource { bytes: Err(error), path }),
+        })
     }
 
-    /// A picture that is nowhere.
-    fn missing(&mut self, at: String) -> usize {
-        let source = Err(Error::input("there is no picture that can be read"));
-        self.pictures.push(Picture { source, at, shown_by: Vec::new() });
-        self.pictures.len() - 1
-    }
-
-    /// Decodes the pictures, side by side, and gives them to the textures of the scene that show
-    /// them. One that cannot be had is a warning, and a placeholder takes its place.
-    pub fn decode(self, scene: &mut Scene, tally: &mut Diagnostics) {
-        let Self { guard, buffers, wanted, pictures, .. } = self;
-        let folder = buffers.folder();
-        let open = |picture: &Picture<'a>| match picture.source.clone()? {
-            Source::Bytes(bytes) => Ok(decode::Source::Bytes(bytes, picture.at.clone())),
-            Source::File(uri) => match resolve(uri, folder, guard) {
+    /// Decodes the images, in parallel, and gives them to the textures of the scene. For one that
+    /// cannot be read there is a warning and a placeholder.
+    pub fn decode(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
+        let Self { sandbox, buffers, reads_images, cache, .. } = self;
+        let open = |image: &ImageSource<'a>| match image.bytes.clone()? {
+            ImageBytes::BufferView(bytes) => {
+                Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
+            }
+            ImageBytes::Uri(uri) => match buffers.resolve(uri) {
                 Ok(Target::Data(bytes)) => {
-                    Ok(decode::Source::Bytes(bytes.into(), picture.at.clone()))
+                    Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
                 }
                 Ok(Target::File(file)) => Ok(decode::Source::File(file)),
                 Err(error) => Err(cannot_have("picture", uri, &error)),
             },
         };
-        let images = decode::decode_all(&pictures, guard, open, |_| wanted);
-        for (image, Picture { at, shown_by, .. }) in images.into_iter().zip(pictures) {
-            let image = image.map_err(|e| e.place(Place::Json(at.clone())));
-            placeholder::show(image, &at, shown_by.into_iter(), scene, tally);
+        for decoded in cache.decode(sandbox, open, |_| reads_images) {
+            let path = decoded.source.path;
+            let image = decoded.image.map_err(|e| e.place(Place::Json(path.clone())));
+            set_image_or_placeholder(image, &path, &decoded.textures, scene, diagnostics);
         }
     }
 }
 
-/// The picture of a texture; that of an extension where there is one.
-fn source(texture: &json::Texture) -> Option<usize> {
+/// The index of the image that a texture shows; that of an extension where there is one.
+fn image_index(texture: &json::Texture) -> Option<usize> {
     let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
     let of = |name: &str| usize::try_from(others?.get(name)?.get("source")?.as_u64()?).ok();
     // The crate writes a missing source as the greatest index.

@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn the_first_pictures_are_those_that_the_limits_allow() {
-        let limits = Limits::default().with(Limit::Pictures, 20);
+        let limits = Limits::default().with_limit(Limit::Pictures, 20);
         let guard = Sandbox::new(Path::new("a"), false, limits).unwrap();
         let red = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(1, 1, Rgb([255, 0, 0])));
         let bytes = encoded(red, ImageFormat::Png);

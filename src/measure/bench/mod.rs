@@ -118,7 +118,7 @@ pub fn bench(
     let reference = options.reference()?;
     scene.check()?;
     render::check_camera(scene, options.camera)?;
-    let scene = &scene.at(0.0)?;
+    let scene = &scene.at_time(0.0)?;
     render::in_pool(options.threads, || {
         let of_modes: f64 = options.samples.iter().map(|samples| f64::from(samples.most())).sum();
         let of_modes = of_modes * options.setups.len() as f64 * f64::from(options.runs);

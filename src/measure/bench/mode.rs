@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::intersect::{Backend, BuildQuality, Intersector, IntersectorBuilder, Precision};
-use crate::scene::{Adaptive, FilmSettings, Scene};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
 
 /// What has to be built before the first ray: one serves pictures of any number of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub struct Mode {
 pub enum Samples {
     /// As many as any other.
     Regular(u32),
-    /// From some to others, with the usual threshold; see [`Adaptive`].
+    /// From some to others, with the usual threshold; see [`AdaptiveSampling`].
     Adaptive(u32, u32),
 }
 
@@ -96,7 +96,7 @@ impl Samples {
         let (spp, adaptive) = match self {
             Samples::Regular(spp) => (spp, None),
             Samples::Adaptive(min, max) => {
-                (min, Some(Adaptive { max, threshold: Adaptive::THRESHOLD }))
+                (min, Some(AdaptiveSampling { max, threshold: AdaptiveSampling::THRESHOLD }))
             }
         };
         FilmSettings { spp, adaptive, ..film.clone() }

@@ -8,7 +8,7 @@ use crate::film::{Film, View};
 use crate::intersect::Intersector;
 use crate::measure::flip::{Flip, Seen};
 use crate::measure::{Comparison, Picture, compare};
-use crate::render::{self, Options};
+use crate::render::{Renderer, Traced};
 use crate::scene::{Scene, Transfer};
 use crate::write::{Settings, png_bytes};
 
@@ -47,9 +47,8 @@ impl Reference {
         let intersector = mode.setup.build(scene)?;
         let build = start.elapsed();
         let of_mode = Scene { film: mode.samples.film(&scene.film), ..scene.clone() };
-        let options = Options { camera, ..Options::default() };
-        let (film, _, render) =
-            render::with_intersector(&of_mode, &options, &*intersector, progress);
+        let renderer = Renderer::new(&of_mode).camera(camera).on_progress(progress);
+        let Traced { film, duration: render, .. } = renderer.render_with(&*intersector);
         let ids = ids(scene, camera, &*intersector);
         let (shown, bytes) = shown(&film, scene);
         let seen = seen(&shown);
@@ -75,8 +74,7 @@ impl Reference {
 
 /// What one ray of each pixel hits.
 fn ids(scene: &Scene, camera: usize, intersector: &dyn Intersector) -> Film {
-    let options = Options { camera, view: View::Id, ..Options::default() };
-    render::with_intersector(scene, &options, intersector, &|_| {}).0
+    Renderer::new(scene).camera(camera).view(View::Id).render_with(intersector).film
 }
 
 /// The values of an EXR.
@@ -87,7 +85,7 @@ fn radiance(film: &Film) -> Picture {
 
 /// The values of a PNG, and its bytes.
 fn shown(film: &Film, scene: &Scene) -> (Picture, Vec<u8>) {
-    let bytes = png_bytes(film, &Settings::of(&scene.film));
+    let bytes = png_bytes(film, &Settings::from_film(&scene.film));
     let values = bytes.iter().map(|&b| f32::from(b) / 255.0).collect();
     (Picture { values, ..radiance(film) }, bytes)
 }

@@ -6,9 +6,8 @@ use super::Options;
 use super::mode::{Mode, Samples, Setup};
 use super::reference::{Distance, Reference};
 use crate::error::Result;
-use crate::film::Film;
 use crate::intersect::Intersector;
-use crate::render::{self, Options as Rendering};
+use crate::render::{Renderer, Traced};
 use crate::scene::{FilmSettings, Scene};
 
 /// By how much smaller, each way, the picture is that tells how long the others will take.
@@ -83,8 +82,8 @@ impl<'a> Trial<'a> {
         let mut small = self.scene.clone();
         small.film = FilmSettings { size, ..Samples::Regular(1).film(&small.film) };
         // Once to warm up.
-        let [_, (_, time)] = [(); 2].map(|()| self.render(&small, by));
-        self.pace = time.mul_f64(whole / part);
+        let [_, measured] = [(); 2].map(|()| self.render(&small, by));
+        self.pace = measured.duration.mul_f64(whole / part);
     }
 
     fn run(
@@ -96,7 +95,7 @@ impl<'a> Trial<'a> {
     ) -> Result<()> {
         let mode = self.modes[index].mode;
         let scene = Scene { film: mode.samples.film(&self.scene.film), ..self.scene.clone() };
-        let (film, time) = self.render(&scene, by);
+        let Traced { film, duration: time, .. } = self.render(&scene, by);
         if let Samples::Regular(spp) = mode.samples {
             self.pace = time / spp;
         }
@@ -111,10 +110,8 @@ impl<'a> Trial<'a> {
         Ok(())
     }
 
-    fn render(&self, scene: &Scene, by: &dyn Intersector) -> (Film, Duration) {
-        let options = Rendering { camera: self.options.camera, ..Rendering::default() };
-        let (film, _, time) = render::with_intersector(scene, &options, by, &|_| {});
-        (film, time)
+    fn render(&self, scene: &Scene, intersector: &dyn Intersector) -> Traced {
+        Renderer::new(scene).camera(self.options.camera).render_with(intersector)
     }
 
     fn build_time(&self) -> Duration {

@@ -145,7 +145,7 @@ impl MismatchClassifier<'_> {
             return None;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
         let margin = self.margin_at(ray, id);
         let near_edge = self.passes_edge(ray, id) && self.within(&edges, corners, ray, margin);
         if !edges.crosses() && !near_edge {
@@ -166,10 +166,16 @@ impl MismatchClassifier<'_> {
 
     /// Whether the line passes the triangle within the margin: on the inner side of each edge, or
     /// no farther outside it than the margin.
-    fn within(&self, edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray, margin: f64) -> bool {
-        let sign = (edges.functions[0] + edges.functions[1] + edges.functions[2]).signum();
+    fn within(
+        &self,
+        edges: &triangle::EdgeFunctions,
+        corners: [DVec3; 3],
+        ray: &Ray,
+        margin: f64,
+    ) -> bool {
+        let sign = (edges.values[0] + edges.values[1] + edges.values[2]).signum();
         let distances = edge_distances(edges, corners, ray);
-        edges.functions.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
+        edges.values.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
     }
 
     /// Whether the ray passes an edge of the triangle within the margin.
@@ -178,7 +184,7 @@ impl MismatchClassifier<'_> {
             return false;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
         let margin = self.margin_at(ray, id);
         edge_distances(&edges, corners, ray).into_iter().any(|d| d <= margin)
     }
@@ -187,7 +193,7 @@ impl MismatchClassifier<'_> {
     fn cosine(&self, ray: &Ray, hit: &Hit) -> f64 {
         let index = hit.id.primitive as usize;
         let normal = match hit.id.geometry {
-            Geometry::Spheres => ray.at(hit.t) - self.scene.spheres[index].center,
+            Geometry::Spheres => ray.position(hit.t) - self.scene.spheres[index].center,
             Geometry::Planes => self.scene.planes[index].normal,
             Geometry::Mesh(_) => triangle::area_normal(self.scene.triangle_vertices(hit.id)),
         };
@@ -221,11 +227,11 @@ impl MismatchClassifier<'_> {
 
 /// How far the ray's line passes from the line of each edge; the edge opposite the first vertex
 /// first. For edges p, q relative to the origin this is |d·(p×q)| / |d×(q−p)|.
-fn edge_distances(edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
+fn edge_distances(edges: &triangle::EdgeFunctions, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
     let [a, b, c] = corners;
     let sides = [c - b, a - c, b - a];
     std::array::from_fn(|i| {
         let across = ray.direction.cross(sides[i]).length();
-        if across == 0.0 { f64::INFINITY } else { edges.functions[i].abs() / across }
+        if across == 0.0 { f64::INFINITY } else { edges.values[i].abs() / across }
     })
 }

@@ -16,7 +16,7 @@ fn scene() -> Scene {
 
 fn hit(ray: &Ray, scene: &Scene, instance: u32) -> Hit {
     let id = PrimitiveId::triangle(0, 0, instance);
-    let t = triangle::Edges::new(scene.triangle_vertices(id), ray.origin, ray.direction).t;
+    let t = triangle::EdgeFunctions::new(scene.triangle_vertices(id), ray.origin, ray.direction).t;
     Hit { t, u: 0.0, v: 0.0, id }
 }
 

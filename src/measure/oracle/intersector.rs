@@ -24,7 +24,7 @@ impl<'s> Oracle<'s> {
             let count = scene.meshes[mesh as usize].triangles.len() as u32;
             (0..count).map(move |t| {
                 let id = PrimitiveId::triangle(mesh, t, instance);
-                (id, Bounds::of(scene.triangle_vertices(id)))
+                (id, Bounds::from_points(scene.triangle_vertices(id)))
             })
         });
         Self { scene, boxes: spheres.chain(triangles).collect() }

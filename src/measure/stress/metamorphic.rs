@@ -9,12 +9,12 @@ use super::shapes::{icosphere, torus};
 use crate::error::Result;
 use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
-use crate::render::{Options, render};
+use crate::render::{RenderOptions, Renderer};
 use crate::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
     Shadow, Sphere,
 };
-use crate::write::{Settings, png_bytes};
+use crate::write::png_bytes;
 
 /// Powers of two by which the scene is scaled.
 const SCALES: [std::ops::RangeInclusive<i32>; 4] = [-20..=-11, -10..=-1, 1..=10, 11..=20];
@@ -36,7 +36,7 @@ pub fn cells() -> Vec<Cell> {
         let method = format!("certified, {}", name(backend));
         let like = move |threads, tiling| {
             let precision = Precision::Certified;
-            Options { backend, precision, threads, tiling, ..Options::default() }
+            RenderOptions { backend, precision, threads, tiling, ..RenderOptions::default() }
         };
         for scales in SCALES {
             let cell = format!("scaled by 2^{} … 2^{}", scales.start(), scales.end());
@@ -64,8 +64,8 @@ pub fn cells() -> Vec<Cell> {
 /// Compares the picture of each camera with what the variants of scene and options make of it.
 fn same(
     draw: &Draw,
-    options: &Options,
-    variants: impl Fn(&Scene) -> Vec<(Scene, Options)>,
+    options: &RenderOptions,
+    variants: impl Fn(&Scene) -> Vec<(Scene, RenderOptions)>,
 ) -> Result<Tally> {
     let scene = scene(side(draw));
     let variants = variants(&scene);
@@ -105,10 +105,9 @@ fn side(draw: &Draw) -> u32 {
 }
 
 /// The PNG's bytes of a picture, and how many rays it took.
-fn picture(scene: &Scene, options: &Options, camera: usize) -> Result<(Vec<u8>, u64)> {
-    let rendering = render(scene, &Options { camera, ..options.clone() }, &|_| {})?;
-    let settings = Settings::of(&scene.film);
-    Ok((png_bytes(&rendering.film, &settings), rendering.statistics.counts.rays.total()))
+fn picture(scene: &Scene, options: &RenderOptions, camera: usize) -> Result<(Vec<u8>, u64)> {
+    let rendering = Renderer::new(scene).options(options.clone()).camera(camera).render()?;
+    Ok((png_bytes(&rendering.film, &rendering.settings), rendering.statistics.counts.rays.total()))
 }
 
 /// Spheres of paint, glass and mirrors, a checkered plane, meshes, and a light of every kind.
@@ -172,7 +171,14 @@ fn scene(side: u32) -> Scene {
     let right = forward.cross(DVec3::Y).normalize();
     let up = right.cross(forward);
     for lens in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
-        scene.cameras.push(Camera { name: String::new(), position, forward, right, up, lens });
+        scene.cameras.push(Camera {
+            name: String::new(),
+            position,
+            forward,
+            right,
+            up,
+            projection: lens,
+        });
     }
     scene
 }
@@ -213,7 +219,7 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
     }
     for camera in &mut scene.cameras {
         camera.position *= by;
-        if let Projection::OrthoHeight(height) = &mut camera.lens {
+        if let Projection::OrthoHeight(height) = &mut camera.projection {
             *height *= by;
         }
     }
@@ -233,7 +239,7 @@ mod tests {
 
     #[test]
     fn pictures_of_the_sweep_show_something() {
-        let (bytes, _) = picture(&scene(16), &Options::default(), 0).unwrap();
+        let (bytes, _) = picture(&scene(16), &RenderOptions::default(), 0).unwrap();
         let bright = bytes.iter().filter(|b| **b > 40).count();
         assert!(bright > bytes.len() / 4 && bright < bytes.len(), "{bright} of {}", bytes.len());
     }

@@ -41,7 +41,7 @@ pub fn cells() -> Vec<Cell> {
 }
 
 fn arrival(toward: DVec3) -> IncidentLight {
-    IncidentLight { toward, bounded: true, intensity: Vec3::ONE }
+    IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE }
 }
 
 /// Hits a sphere from both sides, and asks from there for lights on both sides.
@@ -71,7 +71,7 @@ fn itself(radius: f64, offset: f64, precision: Precision, draw: &Draw) -> Result
                 let exact = oracle::sphere(center, radius, ray, false);
                 let moved = exact.map_or(f64::NAN, |exact| {
                     // f64 holds this point to a thousandth of what is allowed.
-                    surface.position.distance(ray.at(exact.to_f64()))
+                    surface.position.distance(ray.position(exact.to_f64()))
                 });
                 tally.relative(moved / (radius + center.length()));
                 let toward = *light - surface.position;

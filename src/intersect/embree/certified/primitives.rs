@@ -147,7 +147,7 @@ impl PrimitiveTable for TriangleTable {
             Some((_, instance)) => vertices.map(|p| instance.to_world(p)),
             None => vertices.map(|p| DVec3::from(p.map(f64::from))),
         };
-        (Bounds::of(vertices), &self.space)
+        (Bounds::from_points(vertices), &self.space)
     }
 }
 
@@ -181,7 +181,7 @@ impl UserPrimitives for CertifiedTriangle {
 impl Shape for CertifiedTriangle {
     #[inline(always)]
     fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
-        triangle::certified::Edges::new(self.vertices, origin, direction).may_cross()
+        triangle::certified::EdgeBounds::new(self.vertices, origin, direction).may_cross()
     }
 
     #[inline(always)]

@@ -69,7 +69,7 @@ fn round_spheres<const W: usize>(
         let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
         let r = sphere::certified::round(center, radius[i], origin, direction, false);
         to.t[i] = r.t;
-        to.certain[i] = r.certain & is_first_root[i];
+        to.certain[i] = r.is_certain & is_first_root[i];
     }
 }
 
@@ -87,15 +87,15 @@ fn round_triangles<const W: usize>(
         }
     }
     let QueryContext { scene, hits, .. } = context;
-    let triangles = Triangles::of(scene, &geometry, &hits.primitive, &hits.instance);
+    let triangles = Triangles::from_ids(scene, &geometry, &hits.primitive, &hits.instance);
     let Some(triangles) = triangles else { return };
     for i in 0..W {
         let (origin, direction) = context.rays.origin_and_direction(i);
-        let r = triangle::certified::round(triangles.corners(i), origin, direction);
+        let r = triangle::certified::round(triangles.vertices(i), origin, direction);
         let is_triangle = geometry[i] != PrimitiveId16::NONE;
         to.t[i] = if is_triangle { r.t } else { to.t[i] };
         to.u[i] = if is_triangle { r.u } else { 0.0 };
         to.v[i] = if is_triangle { r.v } else { 0.0 };
-        to.certain[i] = if is_triangle { r.certain } else { to.certain[i] };
+        to.certain[i] = if is_triangle { r.is_certain } else { to.certain[i] };
     }
 }

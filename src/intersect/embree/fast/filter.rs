@@ -105,7 +105,8 @@ pub fn counts<const OCCLUSION: bool, const W: usize>(
 fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
     let scene = context.scene;
     let (origin, direction) = context.rays.origin_and_direction(lane);
-    let (u, v) = triangle::Edges::new(scene.triangle_vertices(id), origin, direction).weights();
+    let (u, v) =
+        triangle::EdgeFunctions::new(scene.triangle_vertices(id), origin, direction).weights();
     scene.is_cut_out(id, u, v)
 }
 

@@ -35,7 +35,7 @@ pub fn refine<const W: usize>(
         let mesh = scene.instances[instances[i] as usize].mesh.0;
         geometry[i] = PrimitiveId16::MESHES + mesh;
     }
-    let triangles = Triangles::of(scene, &geometry, primitives, &instances);
+    let triangles = Triangles::from_ids(scene, &geometry, primitives, &instances);
     let Some(triangles) = triangles else { return true };
     // Intersect them in f64.
     let mut ts = [0.0; W];
@@ -44,14 +44,14 @@ pub fn refine<const W: usize>(
     let mut flat = [false; W];
     for i in 0..W {
         let (origin, direction) = rays.origin_and_direction(i);
-        let edges = triangle::Edges::new(triangles.corners(i), origin, direction);
+        let edges = triangle::EdgeFunctions::new(triangles.vertices(i), origin, direction);
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
-        flat[i] = edges.flat;
+        flat[i] = edges.is_flat;
     }
     for i in (0..W).filter(|&i| flat[i] && geometry[i] != PrimitiveId16::NONE) {
         let (origin, direction) = rays.origin_and_direction(i);
-        ts[i] = triangle::certified::round(triangles.corners(i), origin, direction).t;
+        ts[i] = triangle::certified::round(triangles.vertices(i), origin, direction).t;
     }
     // Take Embree's own numbers where f64 gives none.
     let mut failed = [false; W];

@@ -297,7 +297,7 @@ mod tests {
             let t = (offset + to - ray.origin).dot(direction) / direction.length_squared();
             let along = (t - exact.interval.start[0]) * exact.interval.scale[0];
             let p = DVec3::from(org.map(f64::from)) + DVec3::from(dir.map(f64::from)) * along;
-            let error = (p - (ray.at(t) - space.center)).abs().max_element();
+            let error = (p - (ray.position(t) - space.center)).abs().max_element();
             prop_assert!(error <= 0.5 * BOX_PADDING, "{error:e}");
         }
     }

@@ -23,6 +23,7 @@ use super::{instancing, lights, shapes};
 use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
+use crate::load::report::{LoadReport, Loaded};
 use crate::load::sandbox::Sandbox;
 use crate::scene::animation::Animated;
 use crate::scene::{MaterialId, MeshId, Scene};
@@ -148,16 +149,16 @@ impl Importer<'_> {
         Ok(parts)
     }
 
-    /// The scene, once all nodes are in it.
-    pub fn finish(mut self, path: &Path) -> Scene {
+    /// The scene and the load report, once all nodes are added.
+    pub fn finish(mut self, path: &Path) -> Loaded {
         self.scene.animation = self.clip.finish();
         self.materials.decode(&mut self.scene, &mut self.tally);
         let Scene { instances, spheres, planes, .. } = &self.scene;
         if instances.is_empty() && spheres.is_empty() && planes.is_empty() {
             self.tally.say("there is no triangle in the scene that the file shows");
         }
-        self.tally.finish(path, &mut self.scene);
-        self.scene.report.variants = self.variants.names();
-        self.scene
+        let report = self.tally.finish(path, &self.scene);
+        let variants = self.variants.names();
+        Loaded { scene: self.scene, report: LoadReport { variants, ..report } }
     }
 }

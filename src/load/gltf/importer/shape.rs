@@ -21,7 +21,7 @@ impl Importer<'_> {
         let skin = match (placed.node.skin, influences) {
             (Some(skin), Some(influences)) => {
                 let joints = self.joints(skin.value(), &by)?;
-                let stray = influences.beyond(joints.still.len());
+                let stray = influences.count_out_of_range(joints.still.len());
                 let reason = "{} corners hang on joints that their skin does not have";
                 self.tally.add(reason, stray, || by.clone());
                 Some((joints, influences.clone()))
@@ -43,16 +43,20 @@ impl Importer<'_> {
         self.guard.take(Limit::Deformed, count).map_err(at)?;
         let mut deformation = Deformation {
             base: base.clone(),
-            morphs: morphs.clone(),
+            morph_targets: morphs.clone(),
             weights: weights.into_iter().map(Curve::constant).collect(),
-            repeats: None,
+            period: None,
             skin: skin.as_ref().map(|(joints, influences)| Skin {
                 joints: joints.still.clone(),
                 influences: influences.clone(),
-                space: Joint { node: None, place: DAffine3::IDENTITY, bind: DAffine3::IDENTITY },
+                space: Joint {
+                    node: None,
+                    transform: DAffine3::IDENTITY,
+                    inverse_bind: DAffine3::IDENTITY,
+                },
             }),
         };
-        let id = self.scene.add_mesh(deformation.mesh(0.0, &[]));
+        let id = self.scene.add_mesh(deformation.deform(0.0, &[]));
         // Read once, and stored as often as it has shapes.
         self.tally.read(base.triangles.len() as u64);
         let moves = skin.as_ref().is_some_and(|(joints, _)| joints.moves);
@@ -60,7 +64,7 @@ impl Importer<'_> {
             if let Some(curves) = curves {
                 deformation.weights = curves.to_vec();
             }
-            deformation.repeats = self.clip.repeats();
+            deformation.period = self.clip.repeats();
             if let (Some(skin), Some((joints, _))) = (&mut deformation.skin, &skin) {
                 skin.joints.clone_from(&joints.moving);
             }

@@ -13,7 +13,7 @@ use crate::integrator::sample_positions;
 use crate::intersect::{Coherence, Intersector, Precision};
 use crate::measure::mismatch::{MismatchCause, MismatchClassifier};
 use crate::measure::replay::ray_to_text;
-use crate::render::{self, Options};
+use crate::render::Renderer;
 use crate::scene::{RayGenerator, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
@@ -60,7 +60,7 @@ struct Place<'m> {
 impl Comparer<'_> {
     pub fn run(&self) -> Validation {
         let size = self.scene.film.size;
-        let rays = self.scene.cameras[self.camera].rays(size);
+        let rays = self.scene.cameras[self.camera].ray_generator(size);
         let mut heatmap = Film::new(size, View::Beauty);
         let width = size[0] as usize;
         let tallies: Vec<Tally> = heatmap
@@ -191,11 +191,9 @@ impl Comparer<'_> {
 
     /// Renders the picture twice and compares; so also the rays that mirrors and glass send on.
     fn pictures(&self, heatmap: &mut Film) -> (Differing, Tally) {
-        let options = Options { camera: self.camera, ..Options::default() };
-        let settings = Settings::of(&self.scene.film);
-        let film = |intersector: &dyn Intersector| {
-            render::with_intersector(self.scene, &options, intersector, &|_| {}).0
-        };
+        let settings = Settings::from_film(&self.scene.film);
+        let renderer = Renderer::new(self.scene).camera(self.camera);
+        let film = |intersector: &dyn Intersector| renderer.render_with(intersector).film;
         let witness = Witness::new(self);
         let (a, b) = (film(self.subject), film(&witness));
         let values = |film: &Film| film.pixels.as_flattened().to_vec();

@@ -88,7 +88,7 @@ fn compared(precision: Precision, spoil: fn(&Ray, &mut Option<Hit>)) -> Validati
 
 /// Whether the ray is the one through the middle of pixel (8, 9), which meets the ball.
 fn is_chosen(ray: &Ray) -> bool {
-    *ray == scene().cameras[0].rays([16, 16]).ray(8.5, 9.5)
+    *ray == scene().cameras[0].ray_generator([16, 16]).ray(8.5, 9.5)
 }
 
 #[test]

@@ -1,0 +1,157 @@
+//! The load report: warnings, and what became of everything that a scene's files hold.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
+
+use crate::scene::Scene;
+
+/// A scene, and beside it the report of its load.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Loaded {
+    /// The scene, complete and checked.
+    pub scene: Scene,
+    /// The load report.
+    pub report: LoadReport,
+}
+
+/// The account of a load: what importers read, handed over, dropped and could not do as the files
+/// ask.
+///
+/// A face is a triangle; a polygon of n corners counts as the n − 2 triangles that it is cut into,
+/// and each point, line or curve counts as one. A mesh is read once, however often it stands in the
+/// scene. Of what is read, [`LoadReport::balances`] holds.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadReport {
+    /// Faces of all meshes that were read.
+    pub read: u64,
+    /// Faces that stand in the scene, for rays to meet.
+    pub handed_over: u64,
+    /// Faces that do not, by reason; no reason has 0.
+    pub dropped: BTreeMap<DropReason, u64>,
+    /// Warnings: what could not be done as the files ask, or looks odd; one sentence each.
+    pub warnings: Vec<String>,
+    /// Features that a file uses and that are not supported; one sentence each, also among the
+    /// warnings.
+    pub unsupported: Vec<String>,
+    /// Pictures and materials in whose place a placeholder stands; one sentence each, also among
+    /// the warnings.
+    pub placeholders: Vec<String>,
+    /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
+    pub variants: BTreeSet<String>,
+}
+
+/// Why a face is not in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum DropReason {
+    /// Two of its corners are at one place, so that it covers nothing.
+    Degenerate,
+    /// It has fewer than three corners.
+    Incomplete,
+    /// It names a vertex that is not there.
+    IndexOutOfRange,
+    /// Its mesh stands only where it is scaled to 0 along some direction.
+    Flat,
+    /// Its mesh has no positions.
+    NoPositions,
+    /// A coordinate of a corner is not a finite number.
+    NotFinite,
+    /// It is a point, a line, or a curved piece of a line or surface.
+    UnsupportedMode,
+}
+
+impl DropReason {
+    /// Its name in JSON.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Degenerate => "degenerate",
+            Self::Incomplete => "incomplete",
+            Self::IndexOutOfRange => "index-out-of-range",
+            Self::Flat => "flat",
+            Self::NoPositions => "no-positions",
+            Self::NotFinite => "not-finite",
+            Self::UnsupportedMode => "unsupported-mode",
+        }
+    }
+
+    /// The sentence about faces that were dropped, with `{}` where their number belongs.
+    pub(crate) fn sentence(self) -> &'static str {
+        match self {
+            Self::Degenerate => "{} faces are left out: two of their corners are at one place",
+            Self::Incomplete => "{} faces are left out: they have fewer than three corners",
+            Self::IndexOutOfRange => "{} faces are left out: they name vertices that are not there",
+            Self::Flat => "{} faces are left out: their mesh is scaled to 0 along some direction",
+            Self::NoPositions => "{} faces are left out: their vertices have no positions",
+            Self::NotFinite => "{} faces are left out: a corner is not a finite number",
+            Self::UnsupportedMode => {
+                "{} points, lines or curves are left out: only faces are drawn"
+            }
+        }
+    }
+}
+
+impl LoadReport {
+    /// How many faces were dropped, for any reason.
+    pub fn dropped_total(&self) -> u64 {
+        self.dropped.values().sum()
+    }
+
+    /// Whether every face that was read was either dropped for a reason or handed over.
+    pub fn balances(&self) -> bool {
+        self.read == self.handed_over + self.dropped_total()
+    }
+
+    /// Whether nothing was lost: no face dropped, every feature supported, every picture there.
+    pub fn is_clean(&self) -> bool {
+        self.dropped.is_empty() && self.unsupported.is_empty() && self.placeholders.is_empty()
+    }
+
+    /// Adds what became of another file.
+    pub fn add(&mut self, other: LoadReport) {
+        self.read += other.read;
+        self.handed_over += other.handed_over;
+        for (reason, count) in other.dropped {
+            *self.dropped.entry(reason).or_default() += count;
+        }
+        self.warnings.extend(other.warnings);
+        self.unsupported.extend(other.unsupported);
+        self.placeholders.extend(other.placeholders);
+        self.variants.extend(other.variants);
+    }
+}
+
+/// The faces alone: `14 read = 12 handed over + 2 degenerate`.
+impl fmt::Display for LoadReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} read = {} handed over", self.read, self.handed_over)?;
+        self.dropped.iter().try_for_each(|(why, count)| write!(f, " + {count} {}", why.name()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report(reason: DropReason) -> LoadReport {
+        LoadReport {
+            read: 3,
+            handed_over: 1,
+            dropped: [(reason, 2)].into(),
+            ..LoadReport::default()
+        }
+    }
+
+    #[test]
+    fn sums_of_reports_balance_as_they_do() {
+        let mut sum = report(DropReason::Degenerate);
+        sum.add(report(DropReason::NotFinite));
+        sum.add(report(DropReason::Degenerate));
+        assert!(sum.balances());
+        assert_eq!(sum.to_string(), "9 read = 3 handed over + 4 degenerate + 2 not-finite");
+    }
+
+    #[test]
+    fn a_face_that_nobody_accounts_for_unbalances_it() {
+        assert!(!LoadReport { read: 4, ..report(DropReason::Flat) }.balances());
+    }
+}

@@ -1,0 +1,324 @@
+//! The tables of a scene file: one type per table, one field per key.
+//!
+//! The comments and defaults here become those of the JSON Schema. A test compares the defaults with
+//! what a missing key means.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::animation_tables::AnimationTable;
+use super::color::{Color, Pair};
+use super::spanned::{At, OneOrMore, Table, Tables};
+use super::values::{
+    Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
+    Priority, Rotation, SampleRange, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
+};
+use crate::scene::{Falloff, SamplePosition, Tone, Transfer};
+
+/// The contents of a scene file: objects, lights, cameras, and the picture to make of them.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(title = "envers scene")]
+pub struct SceneTable {
+    /// The size and quality of the picture.
+    pub film: Table<FilmTable>,
+    /// The camera. Several are written as `[[camera]]`; the first is used unless another is chosen.
+    /// Without one: the first model's own camera, or one that frames the scene.
+    pub camera: OneOrMore<CameraTable>,
+    /// Materials.
+    pub material: Tables<MaterialTable>,
+    /// Spheres.
+    pub sphere: Tables<SphereTable>,
+    /// Infinite planes, such as the ground.
+    pub plane: Tables<PlaneTable>,
+    /// Models from other files.
+    pub model: Tables<ModelTable>,
+    /// Lights.
+    pub light: Tables<LightTable>,
+    /// The motion of objects, and its length.
+    pub animation: Option<At<Table<AnimationTable>>>,
+}
+
+/// The size and quality of the picture.
+#[derive(Debug, Default, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct FilmTable {
+    /// Width and height of the picture, in pixels.
+    #[schemars(extend("default" = [1280, 720]))]
+    pub size: Option<At<Size>>,
+    /// Samples per pixel, from 1 to 65536.
+    #[schemars(extend("default" = 1))]
+    pub spp: Option<Samples>,
+    /// The fewest and the most samples per pixel, in place of `spp`. A pixel gets more than the
+    /// fewest where neighbouring samples differ in what they hit, in its normal or in colour.
+    pub adaptive: Option<At<SampleRange>>,
+    /// The difference from which two colours count as different for `adaptive`, from 0 (always) to
+    /// 1; 0.1 by default.
+    pub threshold: Option<At<Share>>,
+    /// The curve by which the PNG encodes light and hex colours are decoded: sRGB, or none.
+    #[schemars(extend("default" = "srgb"))]
+    pub transfer: Option<Transfer>,
+    /// The exposure of the PNG, in EV: its light is multiplied by 2 to this power.
+    #[schemars(extend("default" = 0))]
+    pub exposure: Option<Number>,
+    /// The tone curve of the PNG, which decides how light brighter than white is shown.
+    #[schemars(extend("default" = "none"))]
+    pub tone: Option<Tone>,
+    /// The colour where a ray hits nothing.
+    #[schemars(extend("default" = "#000000"))]
+    pub background: Option<Color>,
+    /// The point of its pixel on which a sample is centred: the middle or the upper left corner.
+    #[schemars(extend("default" = "center"))]
+    pub sample_position: Option<SamplePosition>,
+    /// The most reflections and refractions in a row, from 0 to 65536.
+    #[schemars(extend("default" = 8))]
+    pub max_depth: Option<Depth>,
+    /// The share of a pixel up to which a secondary ray is not traced; 0 leaves out only rays that
+    /// add nothing.
+    #[schemars(extend("default" = 0))]
+    pub cutoff: Option<Share>,
+}
+
+/// A camera. It looks at `look_at` or along `direction`. One of `fov_y`, `fov_x`, `focal_px` and
+/// `ortho_height` says how much it sees.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraTable {
+    /// The name by which the camera is chosen and moved; unique among all objects.
+    pub name: Option<At<String>>,
+    /// The position of the camera.
+    pub position: Point,
+    /// The point that the camera looks at, or the name of an object.
+    pub look_at: Option<At<PointOrName>>,
+    /// The direction in which the camera looks, in place of `look_at`.
+    pub direction: Option<At<Direction>>,
+    /// The direction that is upward in the picture.
+    #[schemars(extend("default" = [0, 1, 0]))]
+    pub up: Option<At<Direction>>,
+    /// The field of view from the lower to the upper edge, in degrees.
+    #[schemars(extend("default" = 45))]
+    pub fov_y: Option<At<FieldOfView>>,
+    /// The field of view from the left to the right edge, in degrees.
+    pub fov_x: Option<At<FieldOfView>>,
+    /// The distance from the eye to the picture, in pixels of the film's `size`.
+    pub focal_px: Option<At<Length>>,
+    /// The height of the view in world units, for an orthographic camera.
+    pub ortho_height: Option<At<Length>>,
+}
+
+/// A material: Lambert's diffuse and Phong's specular reflection, mirrors and glass.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MaterialTable {
+    /// The name by which objects refer to the material; unique among the materials.
+    pub name: At<String>,
+    /// The share of the light that is scattered in all directions.
+    #[schemars(extend("default" = 0.8))]
+    pub diffuse: Option<At<Color>>,
+    /// An image file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied
+    /// by `diffuse`.
+    pub diffuse_map: Option<At<String>>,
+    /// The share of the light in Phong's highlight.
+    #[schemars(extend("default" = 0))]
+    pub specular: Option<Color>,
+    /// An image file, in sRGB, multiplied by `specular`.
+    pub specular_map: Option<At<String>>,
+    /// Phong's exponent: the greater, the smaller the highlight.
+    #[schemars(extend("default" = 50))]
+    pub shininess: Option<Shininess>,
+    /// The light that the surface emits; it lights nothing else.
+    #[schemars(extend("default" = 0))]
+    pub emission: Option<Color>,
+    /// An image file, in sRGB, multiplied by `emission`.
+    pub emission_map: Option<At<String>>,
+    /// An image file of normals in tangent space, as in glTF: linear, y up in the image.
+    pub normal_map: Option<At<String>>,
+    /// The filter of the material's images: `"nearest"`, `"linear"`, or `"mipmap"`, which averages
+    /// the area that a sample covers.
+    #[schemars(extend("default" = "linear"))]
+    pub filter: Option<MapFilter>,
+    /// The meaning of the alpha of `diffuse_map`: none; a hole where it is below `alpha_cutoff`; or
+    /// the share of what lies behind that the surface covers.
+    #[schemars(extend("default" = "opaque"))]
+    pub alpha_mode: Option<At<MapAlpha>>,
+    /// The alpha below which `alpha_mode = "mask"` cuts holes. The default is 0.5.
+    pub alpha_cutoff: Option<At<Share>>,
+    /// The share of the light that is reflected as by a mirror.
+    #[schemars(extend("default" = 0))]
+    pub reflect: Option<At<Color>>,
+    /// The share of the light that goes through as through glass, less what Fresnel's law reflects.
+    #[schemars(extend("default" = 0))]
+    pub transmit: Option<At<Color>>,
+    /// The index of refraction of the inside.
+    #[schemars(extend("default" = 1.5))]
+    pub ior: Option<Index>,
+    /// The absorption of the inside per unit of length: light falls to e^(−absorption). One number,
+    /// or three for red, green and blue.
+    #[schemars(extend("default" = 0))]
+    pub absorption: Option<Triple>,
+    /// True if the object is a thin sheet, such as a pane, with no inside.
+    #[schemars(extend("default" = false))]
+    pub thin: Option<bool>,
+    /// The priority where two transparent bodies overlap: the body with the greater one fills the
+    /// place; with equal ones, the smaller body does.
+    #[schemars(extend("default" = 0))]
+    pub priority: Option<Priority>,
+    /// True if a sphere is lit on its inside too. Planes and meshes always are.
+    #[schemars(extend("default" = false))]
+    pub double_sided: Option<bool>,
+}
+
+/// The filter by which images are read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MapFilter {
+    /// The pixel at the point.
+    Nearest,
+    /// The four pixels around the point, weighted by distance.
+    #[default]
+    Linear,
+    /// The mean of the area that a sample covers.
+    Mipmap,
+}
+
+/// The meaning of the alpha of an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum MapAlpha {
+    /// No meaning: the surface is opaque.
+    Opaque,
+    /// A hole where the alpha is below a cutoff.
+    Mask,
+    /// The share of what lies behind that the surface covers.
+    Blend,
+}
+
+/// A sphere.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SphereTable {
+    /// The name by which the sphere is moved or looked at; unique among all objects.
+    pub name: Option<At<String>>,
+    /// The centre of the sphere.
+    pub center: Point,
+    /// The radius of the sphere, above 0.
+    pub radius: At<Length>,
+    /// The name of the sphere's material. The default is plain grey.
+    pub material: Option<At<String>>,
+    /// True if the sphere casts shadows.
+    #[schemars(extend("default" = true))]
+    pub casts_shadow: Option<bool>,
+}
+
+/// An infinite plane.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaneTable {
+    /// Any point of the plane.
+    pub point: Point,
+    /// The normal of the plane, of any length but zero.
+    pub normal: Direction,
+    /// The name of the plane's material. The default is plain grey.
+    pub material: Option<At<String>>,
+    /// A checker in place of the material's diffuse colour.
+    pub checker: Option<Table<CheckerTable>>,
+    /// The side of the square that an image of the material covers before it repeats.
+    #[schemars(extend("default" = 1))]
+    pub texture_size: Option<Length>,
+    /// True if the plane casts shadows.
+    #[schemars(extend("default" = true))]
+    pub casts_shadow: Option<bool>,
+}
+
+/// A checker, with a corner of its squares at the plane's point.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CheckerTable {
+    /// The two colours of the squares.
+    pub colors: Pair,
+    /// The side of a square.
+    #[schemars(extend("default" = 1))]
+    pub size: Option<Length>,
+}
+
+/// A model from another file: scaled, then rotated, then translated.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ModelTable {
+    /// The name by which the model is moved or looked at; unique among all objects.
+    pub name: Option<At<String>>,
+    /// The model file, `.gltf`, `.glb` or `.obj`, relative to the scene file.
+    pub file: At<String>,
+    /// The position of the model's origin.
+    #[schemars(extend("default" = [0, 0, 0]))]
+    pub translate: Option<Point>,
+    /// The rotation: angles in degrees about the fixed x axis, then y, then z.
+    #[schemars(extend("default" = [0, 0, 0]))]
+    pub rotate: Option<Rotation>,
+    /// The scale: one factor, or one for each axis; not zero, negative to mirror.
+    #[schemars(extend("default" = 1))]
+    pub scale: Option<Scale>,
+    /// The name of a material that replaces the model's own.
+    pub material: Option<At<String>>,
+    /// True if the model casts shadows.
+    #[schemars(extend("default" = true))]
+    pub casts_shadow: Option<bool>,
+    /// True if the lights in the model's file shine.
+    #[schemars(extend("default" = true))]
+    pub lights: Option<bool>,
+    /// The name of the animation that a glTF model plays. The default is its first.
+    pub animation: Option<At<String>>,
+    /// The name of the material variant that a glTF model shows. The default is the one of the
+    /// file.
+    pub variant: Option<At<String>>,
+}
+
+/// A light.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LightTable {
+    /// The name by which the light is moved or looked at; unique among all objects.
+    pub name: Option<At<String>>,
+    /// The kind of light: point, directional (very far away), spot (a point with a cone) or
+    /// ambient.
+    pub kind: At<Kind>,
+    /// The position of the light (point, spot).
+    pub position: Option<At<Point>>,
+    /// The direction in which the light travels (directional, spot).
+    pub direction: Option<At<Direction>>,
+    /// The half-angle, in degrees, of the cone that has full light (spot).
+    #[schemars(extend("default" = 0))]
+    pub inner_angle: Option<At<HalfAngle>>,
+    /// The half-angle, in degrees, of the cone outside which there is no light (spot).
+    #[schemars(extend("default" = 45))]
+    pub outer_angle: Option<At<HalfAngle>>,
+    /// The colour of the light.
+    #[schemars(extend("default" = [1, 1, 1]))]
+    pub color: Option<Color>,
+    /// A factor on the colour.
+    #[schemars(extend("default" = 1))]
+    pub intensity: Option<At<Amount>>,
+    /// The decrease with distance: none, or with its square (point, spot).
+    #[schemars(extend("default" = "none"))]
+    pub falloff: Option<At<Falloff>>,
+    /// The distance at which the light has faded to nothing. The default is no limit (point, spot).
+    pub range: Option<At<Length>>,
+    /// The shadows of the light (not ambient): with `true` and `"tinted"` glass lets light through
+    /// and tints it; with `"opaque"` glass blocks it; `false` means no shadows.
+    #[schemars(extend("default" = true))]
+    pub shadow: Option<At<ShadowKind>>,
+}
+
+/// The kind of a light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A point that shines in all directions.
+    Point,
+    /// A light from very far away.
+    Directional,
+    /// A point that shines within a cone.
+    Spot,
+    /// Light from everywhere: Phong's ambient term.
+    Ambient,
+}
