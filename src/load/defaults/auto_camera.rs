@@ -179,7 +179,7 @@ mod tests {
         scene.film.size = [300, 300];
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         // Away from the camera: the box of its way has corners far from all that is seen.
-        let mut keys = Keyframes::still();
+        let mut keys = Keyframes::identity();
         keys.translation =
             Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW_DIRECTION * 8.0]);
         let mut animation = Animation::new(24, 24.0);
