@@ -11,6 +11,7 @@ use glam::Vec3;
 use crate::film::Pixel;
 use crate::geometry::{LANES, Lanes, PrimitiveId16};
 use crate::integrator::radiance::{Radiance16, lane};
+use crate::integrator::simd;
 use crate::integrator::wave::Wave;
 use crate::scene::Scene;
 use crate::surface::Surface16;
@@ -63,7 +64,8 @@ impl PixelRecords {
 
     /// Records what the camera rays of a tile hit, or compares it with what was recorded.
     pub fn record_hits(&mut self, arch: pulp::Arch, scene: &Scene, wave: &Wave) {
-        arch.dispatch(
+        simd::dispatch(
+            arch,
             #[inline(always)]
             || self.record_blocks(scene, wave),
         );
@@ -185,10 +187,16 @@ impl ContrastRow {
     }
 
     /// Marks the pixels that disagree with one beside them, or with one of the row below.
-    pub fn mark_contrast(&mut self, arch: pulp::Arch, below: Option<&mut Self>, threshold: f32) {
-        arch.dispatch(
+    pub fn mark_contrast(
+        &mut self,
+        arch: pulp::Arch,
+        mut below: Option<&mut Self>,
+        threshold: f32,
+    ) {
+        simd::dispatch(
+            arch,
             #[inline(always)]
-            || self.mark_pairs(below, threshold),
+            || self.mark_pairs(below.as_deref_mut(), threshold),
         );
     }
 

@@ -1,6 +1,7 @@
 //! The camera rays of a tile.
 
 use crate::geometry::{LANES, RayBatch};
+use crate::integrator::simd;
 use crate::integrator::tiling::Tile;
 use crate::scene::RayGenerator;
 
@@ -15,7 +16,8 @@ pub(super) fn generate(
 ) {
     let ([dx, dy], [left, top]) = (position, tile.origin.map(|x| x as f64));
     let blocks = rays.resize_blocks(tile.pixels.len());
-    arch.dispatch(
+    simd::dispatch(
+        arch,
         #[inline(always)]
         || {
             for (ray16, pixels) in blocks.iter_mut().zip(&tile.pixels) {

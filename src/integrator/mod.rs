@@ -19,6 +19,7 @@ mod reciprocity;
 mod sample_pattern;
 mod secondary_rays;
 mod shadow_rays;
+mod simd;
 mod surface_evaluation;
 mod texture_lod;
 mod tile_loop;

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use crate::film::Pixel;
 use crate::geometry::{LANES, Lanes};
-use crate::integrator::Counts;
 use crate::integrator::counts::NotFiniteCause;
 use crate::integrator::tiling::Tile;
 use crate::integrator::wave::Wave;
+use crate::integrator::{Counts, simd};
 
 /// The radiance along sixteen rays, channel by channel; also other colours of sixteen points.
 pub(super) type Radiance16 = [Lanes<f32>; 3];
@@ -157,7 +157,8 @@ pub(super) fn add_samples(
     sums: &mut [Radiance16],
     overflows: &mut u64,
 ) {
-    arch.dispatch(
+    simd::dispatch(
+        arch,
         #[inline(always)]
         || {
             for (sums, samples) in sums.iter_mut().zip(samples) {
@@ -202,7 +203,8 @@ pub(super) fn write_pixels(
     pixels: &mut [Pixel],
     width: usize,
 ) {
-    arch.dispatch(
+    simd::dispatch(
+        arch,
         #[inline(always)]
         || {
             let mut written = 0;

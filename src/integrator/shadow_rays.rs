@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use crate::geometry::{LANES, Lanes, RayBatch};
 use crate::integrator::radiance::{Radiance16, WaveRadiance, lane};
+use crate::integrator::simd;
 
 /// The shadow rays to one light, in the lanes of the rays that hit the surfaces.
 #[derive(Default)]
@@ -54,7 +55,8 @@ impl ShadowQueue {
     /// Adds the light that arrives along the rays, which are resolved, to the radiance of the wave.
     pub fn add_light(&self, arch: pulp::Arch, radiance: &mut WaveRadiance) {
         // Light that nothing occludes.
-        arch.dispatch(
+        simd::dispatch(
+            arch,
             #[inline(always)]
             || {
                 for (pending, occluded) in self.pending.iter().zip(self.occluded.chunks(LANES)) {

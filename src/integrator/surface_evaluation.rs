@@ -8,7 +8,7 @@ use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::material_cache::scattered_reflectance;
 use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
 use crate::integrator::wave::Wave;
-use crate::integrator::{Integrator, ShadingFeatures};
+use crate::integrator::{Integrator, ShadingFeatures, simd};
 use crate::scene::ShadingParams;
 use crate::shading::{self, Reflectance};
 use crate::surface::{self, RayCone, Surface, Surface16, TextureContext};
@@ -78,7 +78,8 @@ pub(super) fn evaluate(
 ) {
     // The loop is compiled for what a scene has, and for each instruction set.
     let ShadingFeatures { textures, smooth_normals, .. } = integrator.features;
-    integrator.arch.dispatch(
+    simd::dispatch(
+        integrator.arch,
         #[inline(always)]
         || match (textures, smooth_normals) {
             (false, false) => {

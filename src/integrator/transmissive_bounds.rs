@@ -1,6 +1,7 @@
 //! The bounding boxes of transmissive objects: shadow rays outside them need not look for glass.
 
 use crate::geometry::{Bounds, LANES, Lanes, Ray16, RayBatch};
+use crate::integrator::simd;
 use crate::scene::{MaterialId, Scene};
 
 /// The greatest number of boxes; more are united into one.
@@ -36,7 +37,8 @@ impl TransmissiveBounds {
     /// the lanes beyond the end of the batch.
     pub fn find_clear(&self, arch: pulp::Arch, rays: &RayBatch, is_clear: &mut Vec<bool>) {
         is_clear.clear();
-        arch.dispatch(
+        simd::dispatch(
+            arch,
             #[inline(always)]
             || {
                 for block in rays.blocks() {

@@ -12,7 +12,7 @@ use crate::integrator::radiance::{Radiance16, WaveRadiance, all_finite, any, lan
 use crate::integrator::shadow_rays::{PendingLight, ShadowQueue};
 use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
-use crate::integrator::{Counts, Integrator};
+use crate::integrator::{Counts, Integrator, simd};
 use crate::scene::{Light, LightKind};
 use crate::shading;
 
@@ -52,7 +52,8 @@ pub(super) fn reflect(
     // The loop is compiled for what a scene has, and for each instruction set.
     let (lit, counts) = (surfaces.lit(), &mut counts.work);
     shadows.clear();
-    integrator.arch.dispatch(
+    simd::dispatch(
+        integrator.arch,
         #[inline(always)]
         || {
             if integrator.features.highlights {
