@@ -18,7 +18,7 @@ use crate::intersect::embree::ffi::handles::CommittedScene;
 use crate::intersect::embree::ffi::packet_width::Callback;
 use crate::intersect::embree::ffi::queries::call_for_width;
 use crate::intersect::embree::ffi::records::{Candidate, LaneMask, RayHitRecord};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 
 /// The positions of fields among those of a ray, of which each is as wide as the packet.
 const DIR: usize = 4;

@@ -1,14 +1,10 @@
 //! The queries of a batch: its packets, traced through Embree one by one.
 
 use crate::geometry::{Hit16, HitBatch, RayBatch};
-use crate::intersect::embree::certified::rounding::round_hits;
-use crate::intersect::embree::fast::refine::refine;
-use crate::intersect::embree::ffi::callbacks::Filter;
-use crate::intersect::embree::ffi::packet_width::Kernel;
-use crate::intersect::embree::ffi::queries;
-use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord};
-use crate::intersect::embree::packet::context::{QueryContext, QueryScene};
-use crate::intersect::embree::packet::{Packet, planes};
+use crate::intersect::embree::certified::round_hits;
+use crate::intersect::embree::fast::refine;
+use crate::intersect::embree::ffi::{Filter, INVALID, Kernel, LaneMask, RayHitRecord, queries};
+use crate::intersect::embree::packet::{Packet, QueryContext, QueryScene, planes};
 use crate::intersect::{Coherence, Precision};
 
 /// The query for the closest hits of a batch.
