@@ -63,7 +63,7 @@ impl<'s> Embree<'s> {
         Self::with_options(scene, BuildOptions { precision, threads, ..BuildOptions::default() })
     }
 
-    /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
+    /// Builds an intersector that traces ray by ray instead of in packets: to measure what packets
     /// bring, and to compare the two.
     ///
     /// # Errors

@@ -51,7 +51,7 @@ pub trait UserPrimitive {
     /// Keeps the primitive for those rays of a packet that it is the closest hit of.
     fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>);
 
-    /// As [`UserPrimitive::intersect`], for the ray in one lane.
+    /// Keeps the primitive for the ray in one lane if it is its closest hit.
     fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize);
 
     /// Sets `tfar` of each ray that the primitive occludes to minus infinity.
