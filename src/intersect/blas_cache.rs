@@ -24,7 +24,7 @@ impl<T: Send + Sync> BlasCache<T> {
     /// several at a time; the cache, if there is one, then has those, too.
     ///
     /// # Errors
-    /// Those of `build`.
+    /// The errors of `build`.
     pub fn get_or_build<E: Send>(
         cache: Option<&mut Self>,
         scene: &Scene,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::geometry::{Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{Coherence, Intersector, Precision};
+use crate::intersect::{Coherence, Intersector, Precision, trace_each};
 use crate::scene::Scene;
 
 /// True if a ray is so extreme that its distance to a box may overflow or underflow f64, in world space
@@ -71,16 +71,10 @@ impl Intersector for BruteForce<'_> {
     }
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        for (ray, best) in rays.iter().zip(hits) {
-            *best = self.closest_hit(ray);
-        }
+        trace_each(rays, hits, |ray| self.closest_hit(ray));
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, occluded: &mut [bool]) {
-        assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
-        for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = self.is_occluded(ray);
-        }
+        trace_each(rays, occluded, |ray| self.is_occluded(ray));
     }
 }

@@ -71,7 +71,7 @@ pub trait Intersector: Send + Sync {
     /// When the two slices differ in length.
     fn occluded(&self, rays: &[Ray], coherence: Coherence, occluded: &mut [bool]);
 
-    /// As [`Intersector::closest`], for rays in lanes.
+    /// Finds the closest hits of rays in lanes; see [`Intersector::closest`].
     fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
         let (indices, active) = active_rays(rays);
         let mut active_hits = vec![None; active.len()];
@@ -80,7 +80,7 @@ pub trait Intersector: Send + Sync {
         indices.into_iter().zip(active_hits).for_each(|(i, hit)| hits.set(i, hit));
     }
 
-    /// As [`Intersector::occluded`], for rays in lanes.
+    /// Finds whether rays in lanes are occluded; see [`Intersector::occluded`].
     fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, occluded: &mut Vec<bool>) {
         let (indices, active) = active_rays(rays);
         let mut active_occluded = vec![false; active.len()];
@@ -95,6 +95,15 @@ pub trait Intersector: Send + Sync {
     fn uses_filter(&self, _: Query, _: &RayBatch) -> bool {
         false
     }
+}
+
+/// Traces rays one by one.
+///
+/// # Panics
+/// When the two slices differ in length.
+fn trace_each<T>(rays: &[Ray], results: &mut [T], trace: impl Fn(&Ray) -> T) {
+    assert_eq!(rays.len(), results.len(), "one result for each ray");
+    rays.iter().zip(results).for_each(|(ray, result)| *result = trace(ray));
 }
 
 /// The rays of a batch that can hit anything, and their indices.

@@ -22,7 +22,7 @@
 //! = 26, and 32 ε S is what is allowed. The height of the origin over a triangle is itself rounded;
 //! that is bounded where it is computed.
 //!
-//! What is farther apart than that is two surfaces, such as a vertex stored in f32 and a plane at
+//! Surfaces that are farther apart than that are two, such as a vertex stored in f32 and a plane at
 //! the same decimal number.
 
 use glam::DVec3;

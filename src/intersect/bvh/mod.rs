@@ -20,7 +20,7 @@ use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::object_space::{ObjectSpace, world_bounds};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{BruteForce, Coherence, Intersector, Precision};
+use crate::intersect::{BruteForce, Coherence, Intersector, Precision, trace_each};
 use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
 use tree::{TraversalRay, Tree};
@@ -164,31 +164,29 @@ impl Intersector for Bvh<'_> {
     }
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        for (ray, best) in rays.iter().zip(hits) {
-            *best = None;
-            let mut limit = ray.tmax;
+        trace_each(rays, hits, |ray| {
+            let (mut best, mut limit) = (None, ray.tmax);
             self.visit(ray, &mut limit, |hit, limit| {
-                Hit::keep_closest(best, hit);
+                Hit::keep_closest(&mut best, hit);
                 *limit = limit.min(hit.t);
                 false
             });
-            self.primitives.merge_planes(ray, best);
-        }
+            self.primitives.merge_planes(ray, &mut best);
+            best
+        });
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, occluded: &mut [bool]) {
-        assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
-        for (ray, occluded) in rays.iter().zip(occluded) {
-            *occluded = self.primitives.planes_occlude(ray);
-            if !*occluded {
-                let mut limit = ray.tmax;
-                self.visit(ray, &mut limit, |hit, _| {
-                    *occluded = self.primitives.scene.blocks_light(hit.id);
-                    *occluded
+        trace_each(rays, occluded, |ray| {
+            let mut occluded = self.primitives.planes_occlude(ray);
+            if !occluded {
+                self.visit(ray, &mut { ray.tmax }, |hit, _| {
+                    occluded = self.primitives.scene.blocks_light(hit.id);
+                    occluded
                 });
             }
-        }
+            occluded
+        });
     }
 }
 

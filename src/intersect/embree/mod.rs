@@ -35,11 +35,9 @@ use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::self_intersection::max_coordinate;
 use crate::intersect::{Coherence, Intersector, Precision, Query};
 use crate::scene::{Instance, Scene};
-use ffi::handles::DeviceHandle;
-pub use ffi::handles::peak_memory;
-use ffi::packet_width::PacketWidth;
-use packet::context::QueryScene;
-use packet::query::{ClosestQuery, OcclusionQuery};
+pub use ffi::peak_memory;
+use ffi::{DeviceHandle, PacketWidth};
+use packet::{ClosestQuery, OcclusionQuery, QueryScene};
 pub(super) use scene_builder::BuildOptions;
 pub(super) use tlas::FrameCache;
 use tlas::Tlas;
@@ -65,7 +63,7 @@ impl<'s> Embree<'s> {
         Self::with_options(scene, BuildOptions { precision, threads, ..BuildOptions::default() })
     }
 
-    /// As [`Embree::build`], but traces ray by ray instead of in packets: to measure what packets
+    /// Builds an intersector that traces ray by ray instead of in packets: to measure what packets
     /// bring, and to compare the two.
     ///
     /// # Errors

@@ -5,10 +5,9 @@ use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::UserPrimitives;
-use crate::intersect::embree::ffi::handles::{DeviceHandle, OpenScene};
-use crate::intersect::embree::ffi::packet_width::PacketWidth;
-use crate::intersect::embree::ffi::user_geometry::{PrimitiveTable, new_geometry};
+use crate::intersect::embree::ffi::{
+    DeviceHandle, OpenScene, PacketWidth, PrimitiveTable, UserPrimitives, new_geometry,
+};
 use crate::intersect::{BuildQuality, Precision};
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;

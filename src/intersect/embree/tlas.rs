@@ -12,14 +12,11 @@ use crate::geometry::Bounds;
 use crate::intersect::Precision;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::build_stats::BuildStats;
-use crate::intersect::embree::certified::primitives::CertifiedSphere;
+use crate::intersect::embree::certified::{self, CertifiedSphere};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::fast::spheres::{FastSpheres, SphereTable};
-use crate::intersect::embree::ffi::abi_check;
-use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle};
-use crate::intersect::embree::ffi::user_geometry::update_geometry;
+use crate::intersect::embree::fast::{self, FastSpheres, SphereTable};
+use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, check_abi, update_geometry};
 use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder, is_outsized};
-use crate::intersect::embree::{certified, fast};
 use crate::intersect::frame_diff::FrameDiff;
 use crate::scene::{Mesh, Scene};
 
@@ -38,8 +35,8 @@ pub struct Tlas {
 
 /// The geometries of the meshes, in either precision.
 enum Meshes {
-    Fast(fast::meshes::Meshes),
-    Certified(certified::meshes::Meshes),
+    Fast(fast::Meshes),
+    Certified(certified::Meshes),
 }
 
 impl Tlas {
@@ -66,11 +63,11 @@ impl Tlas {
         let meshes = match precision {
             Precision::Fast => {
                 let cache = cache.map(|cache| &mut cache.fast);
-                Meshes::Fast(fast::meshes::Meshes::attach(&builder, cache)?)
+                Meshes::Fast(fast::Meshes::attach(&builder, cache)?)
             }
             Precision::Certified => {
                 let cache = cache.map(|cache| &mut cache.certified);
-                Meshes::Certified(certified::meshes::Meshes::attach(&builder, cache)?)
+                Meshes::Certified(certified::Meshes::attach(&builder, cache)?)
             }
         };
         let mut spheres = None;
@@ -157,7 +154,7 @@ const FEW_PRIMITIVES: u64 = 1 << 12;
 fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
     static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
     CHECKED
-        .get_or_init(|| abi_check::check().map_err(|e| e.to_string()))
+        .get_or_init(|| check_abi().map_err(|e| e.to_string()))
         .clone()
         .map_err(Error::failed)?;
     // Waking threads takes longer than a small tree does.
@@ -171,8 +168,8 @@ fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
 pub struct FrameCache {
     /// The box in which the frames take place, as far as it is known.
     stage: Bounds,
-    fast: BlasCache<fast::meshes::Blas>,
-    certified: BlasCache<certified::meshes::Blas>,
+    fast: BlasCache<fast::Blas>,
+    certified: BlasCache<certified::Blas>,
     /// The TLAS of the last frame.
     tlas: Option<Arc<Tlas>>,
     /// The number of TLASes that were built.

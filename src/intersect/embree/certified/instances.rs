@@ -7,16 +7,44 @@
 
 use std::sync::Arc;
 
+use embree4_sys::RTCSceneFlags;
+
+use crate::error::Result;
 use crate::geometry::{Bounds, PrimitiveId};
-use crate::intersect::embree::certified::meshes::Blas;
+use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
-use crate::intersect::embree::ffi::records::{LaneMask, RayHitRecord};
-use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
-use crate::intersect::embree::packet::context::QueryContext;
-use crate::intersect::embree::packet::rays::PacketRays;
+use crate::intersect::embree::ffi::{
+    CallbackPacket, CommittedScene, LaneMask, PrimitiveTable, RayHitRecord, UserPrimitive,
+    UserPrimitives, new_geometry,
+};
+use crate::intersect::embree::packet::{PacketRays, QueryContext};
+use crate::intersect::embree::scene_builder::SceneBuilder;
 use crate::intersect::object_space::ObjectSpace;
 use crate::scene::Instance;
+
+/// The BLAS of a mesh.
+pub struct Blas {
+    scene: CommittedScene,
+    /// The space of its f32 vertices.
+    space: F32Space,
+    /// The table that the callbacks read; dropped after the scene that calls them.
+    _table: Box<TriangleTable>,
+}
+
+impl Blas {
+    /// Builds the BLAS of the mesh with this index.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn new(builder: &SceneBuilder<'_>, mesh: usize) -> Result<Self> {
+        let SceneBuilder { device, quality, .. } = builder;
+        let space = F32Space::from_bounds(builder.mesh_bounds[mesh]);
+        let table = TriangleTable::in_object_space(builder.scene, mesh as u32, space);
+        let geometry = new_geometry::<CertifiedTriangle>(device, *quality, &table)?;
+        let scene = CommittedScene::new(device, *quality, RTCSceneFlags::NONE, &geometry)?;
+        Ok(Self { scene, space, _table: table })
+    }
+}
 
 /// The instances whose meshes are in object space, by ascending index.
 pub struct InstanceTable {

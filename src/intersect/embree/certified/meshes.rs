@@ -1,15 +1,12 @@
 //! The meshes of precision `certified`: user geometry, in world space or in object space.
 
-use embree4_sys::RTCSceneFlags;
-
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
-use crate::intersect::embree::certified::instances::InstanceTable;
+use crate::intersect::embree::certified::instances::{Blas, InstanceTable};
 use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::CommittedScene;
-use crate::intersect::embree::ffi::user_geometry::{PrimitiveTable, new_geometry, update_geometry};
+use crate::intersect::embree::ffi::{CommittedScene, PrimitiveTable, update_geometry};
 use crate::intersect::embree::scene_builder::{SceneBuilder, is_outsized};
 use crate::intersect::object_space::world_bounds;
 use crate::scene::{Mesh, Scene};
@@ -21,26 +18,6 @@ pub struct Meshes {
     triangles: Vec<Box<TriangleTable>>,
     /// The geometry of the instances, and their table.
     instances: Option<(u32, Box<InstanceTable>)>,
-}
-
-/// The BLAS of a mesh.
-pub struct Blas {
-    pub scene: CommittedScene,
-    /// The space of its f32 vertices.
-    pub space: F32Space,
-    /// The table that the callbacks read; dropped after the scene that calls them.
-    _table: Box<TriangleTable>,
-}
-
-impl Blas {
-    fn new(builder: &SceneBuilder<'_>, mesh: usize) -> Result<Self> {
-        let SceneBuilder { device, quality, .. } = builder;
-        let space = F32Space::from_bounds(builder.mesh_bounds[mesh]);
-        let table = TriangleTable::in_object_space(builder.scene, mesh as u32, space);
-        let geometry = new_geometry::<CertifiedTriangle>(device, *quality, &table)?;
-        let scene = CommittedScene::new(device, *quality, RTCSceneFlags::NONE, &geometry)?;
-        Ok(Self { scene, space, _table: table })
-    }
 }
 
 /// The share of the scene below which the triangles of a mesh are small: the scene's padding would

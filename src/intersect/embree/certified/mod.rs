@@ -1,7 +1,12 @@
 //! Precision `certified`: every primitive is user geometry, tested with a proven bound or exactly.
 
-pub mod instances;
-pub mod meshes;
-pub mod primitives;
+mod instances;
+mod meshes;
+mod primitives;
 mod resolve;
-pub mod rounding;
+mod rounding;
+
+pub use instances::Blas;
+pub use meshes::Meshes;
+pub use primitives::CertifiedSphere;
+pub use rounding::round_hits;

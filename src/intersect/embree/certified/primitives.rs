@@ -9,10 +9,11 @@ use glam::DVec3;
 
 use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::fast::spheres::{SphereEntry, SphereTable};
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
-use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::fast::{SphereEntry, SphereTable};
+use crate::intersect::embree::ffi::{
+    CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
+};
+use crate::intersect::embree::packet::QueryContext;
 use crate::intersect::primitive::{SphereDeparture, sphere_departure, starts_on_triangle};
 use crate::scene::{Instance, Mesh, Scene};
 

@@ -3,7 +3,7 @@
 
 use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
 use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 
 impl<const W: usize> QueryContext<'_, W> {
     /// Keeps the primitive for those active rays that it is the closest hit of.

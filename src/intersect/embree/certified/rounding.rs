@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit, Hit16, PrimitiveId, PrimitiveId16, sphere, triangle};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Triangles;
 
 /// Distances and weights side by side, and which of them are proven.

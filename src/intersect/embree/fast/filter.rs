@@ -4,8 +4,8 @@
 //! Primary rays need no filter, unless something has a mask.
 
 use crate::geometry::{PrimitiveId, triangle};
-use crate::intersect::embree::ffi::records::{Candidate, INVALID};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::ffi::{Candidate, INVALID};
+use crate::intersect::embree::packet::QueryContext;
 
 /// Clears the active mask of a packet where its candidates do not count.
 #[inline(always)]

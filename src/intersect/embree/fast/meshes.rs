@@ -9,8 +9,7 @@ use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::{CommittedScene, OwnedGeometry};
-use crate::intersect::embree::ffi::mesh_geometry::new_mesh_geometry;
+use crate::intersect::embree::ffi::{CommittedScene, OwnedGeometry, new_mesh_geometry};
 use crate::intersect::embree::scene_builder::{SCENE_FLAGS, SceneBuilder, is_outsized};
 use crate::scene::{Instance, Mesh, Scene};
 

@@ -1,8 +1,8 @@
 //! The refinement: the f64 hits of the triangles that Embree found in f32.
 
 use crate::geometry::{Hit16, PrimitiveId16, triangle};
-use crate::intersect::embree::ffi::records::{INVALID, RayHitRecord};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::ffi::{INVALID, RayHitRecord};
+use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Triangles;
 
 /// Intersects the triangles in `record` again in f64, and writes the hits; if there is none, nothing is

@@ -8,9 +8,10 @@ use glam::DVec3;
 
 use crate::geometry::{Bounds, PrimitiveId, Ray, sphere};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::callbacks::{CallbackPacket, UserPrimitive, UserPrimitives};
-use crate::intersect::embree::ffi::user_geometry::PrimitiveTable;
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::ffi::{
+    CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
+};
+use crate::intersect::embree::packet::QueryContext;
 use crate::intersect::primitive::{SphereDeparture, sphere_departure};
 use crate::scene::{Scene, Sphere};
 

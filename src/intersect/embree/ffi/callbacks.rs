@@ -18,7 +18,7 @@ use crate::intersect::embree::ffi::handles::CommittedScene;
 use crate::intersect::embree::ffi::packet_width::Callback;
 use crate::intersect::embree::ffi::queries::call_for_width;
 use crate::intersect::embree::ffi::records::{Candidate, LaneMask, RayHitRecord};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 
 /// The positions of fields among those of a ray, of which each is as wide as the packet.
 const DIR: usize = 4;
@@ -51,7 +51,7 @@ pub trait UserPrimitive {
     /// Keeps the primitive for those rays of a packet that it is the closest hit of.
     fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>);
 
-    /// As [`UserPrimitive::intersect`], for the ray in one lane.
+    /// Keeps the primitive for the ray in one lane if it is its closest hit.
     fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize);
 
     /// Sets `tfar` of each ray that the primitive occludes to minus infinity.

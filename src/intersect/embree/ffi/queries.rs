@@ -6,7 +6,7 @@ use embree4_sys as sys;
 use crate::intersect::Coherence;
 use crate::intersect::embree::ffi::handles::CommittedScene;
 use crate::intersect::embree::ffi::records::{LaneMask, RayHitRecord};
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 
 /// The feature mask of Embree's own default arguments: everything.
 const ALL_FEATURES: sys::RTCFeatureFlags = sys::RTCFeatureFlags(u32::MAX);

@@ -2,8 +2,7 @@
 
 use crate::geometry::{Estimate, Geometry, Hit16, PrimitiveId, PrimitiveId16, RayBatch};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::CommittedScene;
-use crate::intersect::embree::ffi::records::{INVALID, RayHitRecord};
+use crate::intersect::embree::ffi::{CommittedScene, INVALID, RayHitRecord};
 use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::packet::rays::{PacketRays, TracedLanes};
 use crate::intersect::primitive::Primitives;

@@ -1,12 +1,16 @@
 //! The packet loop: rays of a batch, traced through Embree as many at a time as a packet is wide.
 
-pub mod context;
+mod context;
 mod planes;
-pub mod query;
-pub mod rays;
+mod query;
+mod rays;
+
+pub use context::{QueryContext, QueryScene};
+pub use query::{ClosestQuery, OcclusionQuery};
+pub use rays::PacketRays;
 
 use crate::geometry::{Departure, LANES, PrimitiveId16, Ray, Ray16, RayBatch};
-use crate::intersect::embree::ffi::records::INVALID;
+use crate::intersect::embree::ffi::INVALID;
 
 /// Neighbouring rays of a batch that are traced together: as many as a packet is wide, or fewer
 /// at the batch's end. They all lie in one block of sixteen lanes.

@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::geometry::plane::certified::{certainly_misses, round};
 use crate::geometry::{Hit16, PrimitiveId, PrimitiveId16, plane};
 use crate::intersect::Precision;
-use crate::intersect::embree::packet::context::QueryContext;
+use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Plane;
 
 /// Merges the planes into the hits of a packet; see

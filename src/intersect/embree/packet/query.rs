@@ -1,14 +1,10 @@
 //! The queries of a batch: its packets, traced through Embree one by one.
 
 use crate::geometry::{Hit16, HitBatch, RayBatch};
-use crate::intersect::embree::certified::rounding::round_hits;
-use crate::intersect::embree::fast::refine::refine;
-use crate::intersect::embree::ffi::callbacks::Filter;
-use crate::intersect::embree::ffi::packet_width::Kernel;
-use crate::intersect::embree::ffi::queries;
-use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord};
-use crate::intersect::embree::packet::context::{QueryContext, QueryScene};
-use crate::intersect::embree::packet::{Packet, planes};
+use crate::intersect::embree::certified::round_hits;
+use crate::intersect::embree::fast::refine;
+use crate::intersect::embree::ffi::{Filter, INVALID, Kernel, LaneMask, RayHitRecord, queries};
+use crate::intersect::embree::packet::{Packet, QueryContext, QueryScene, planes};
 use crate::intersect::{Coherence, Precision};
 
 /// The query for the closest hits of a batch.
@@ -87,7 +83,7 @@ pub struct OcclusionQuery<'a> {
     pub query: &'a QueryScene<'a>,
     pub rays: &'a RayBatch,
     pub coherence: Coherence,
-    /// As many as rays; true for each that is occluded.
+    /// The answers, one for each ray: true if it is occluded.
     pub occluded: &'a mut [bool],
 }
 
@@ -101,16 +97,10 @@ impl Kernel for OcclusionQuery<'_> {
             .then(|| query.top.device.width.callback::<Filter<true>>());
         for (packet, occluded) in Packet::split::<W>(self.rays).zip(self.occluded.chunks_mut(W)) {
             // Load the rays, and trace their f32 copies.
-            let lanes = context.load_packet(packet, &mut record);
+            let (context, record) = (&mut context, &mut record);
+            let lanes = context.load_packet(packet, record);
             let active = active_lanes(&packet, &lanes.traced);
-            queries::occluded(
-                query.top,
-                &active,
-                &mut record,
-                &mut context,
-                self.coherence,
-                filter,
-            );
+            queries::occluded(query.top, &active, record, context, self.coherence, filter);
             for (i, occluded) in occluded.iter_mut().enumerate() {
                 *occluded = (active.0[i] != 0) & (record.tfar[i] == f32::NEG_INFINITY);
             }
@@ -121,7 +111,7 @@ impl Kernel for OcclusionQuery<'_> {
                 }
             }
             if !context.scene.planes.is_empty() {
-                planes::occlude(&context, occluded);
+                planes::occlude(context, occluded);
             }
         }
     }

@@ -7,7 +7,7 @@ use crate::intersect::brute_force::is_extreme;
 use crate::intersect::embree::f32_space::{
     BOX_PADDING, F32Space, MAX_MOVED_DISTANCE, MAX_ORIGIN_DISTANCE,
 };
-use crate::intersect::embree::ffi::records::RayHitRecord;
+use crate::intersect::embree::ffi::RayHitRecord;
 use crate::intersect::embree::packet::Packet;
 
 /// Components of an f32 direction below this share of the largest are set to 0: over any
