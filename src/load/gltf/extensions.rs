@@ -6,45 +6,25 @@ use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are read.
+#[rustfmt::skip]
 const READ: [&str; 18] = [
-    "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
-    "KHR_implicit_shapes",
-    "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp",
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_variants",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_node_visibility",
-    "KHR_texture_basisu",
+    "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_implicit_shapes",
+    "EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
+    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 
 /// The extensions that say nothing of what is seen: metadata, physics, sound, what can be clicked,
 /// and coarser meshes beside the ones that are shown.
+#[rustfmt::skip]
 const UNSEEN: [&str; 15] = [
-    "EXT_feature_metadata",
-    "EXT_instance_features",
-    "EXT_mesh_features",
-    "EXT_structural_metadata",
-    "FB_ngon_encoding",
-    "GODOT_single_root",
-    "KHR_audio_emitter",
-    "KHR_interactivity",
-    "KHR_node_hoverability",
-    "KHR_node_selectability",
-    "KHR_physics_rigid_bodies",
-    "KHR_xmp",
-    "KHR_xmp_json_ld",
-    "MSFT_lod",
-    "MSFT_physics",
+    "EXT_feature_metadata", "EXT_instance_features", "EXT_mesh_features",
+    "EXT_structural_metadata", "FB_ngon_encoding", "GODOT_single_root", "KHR_audio_emitter",
+    "KHR_interactivity", "KHR_node_hoverability", "KHR_node_selectability",
+    "KHR_physics_rigid_bodies", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_lod", "MSFT_physics",
 ];
 /// How the names of further such extensions begin.
 const UNSEEN_FAMILIES: [&str; 6] =

@@ -109,7 +109,7 @@ fn damaged() -> Model {
 fn damaged_data_are_an_error_at_their_place() {
     let (place, text) = json_place(damaged().load());
     assert_eq!(place, format!("meshes[0].primitives[0].extensions.{DRACO}"));
-    assert!(text.contains("cannot be unpacked"), "{text}");
+    assert!(text.contains("cannot be decompressed"), "{text}");
 }
 
 #[test]
@@ -121,7 +121,7 @@ fn where_data_are_damaged_those_that_are_not_packed_are_read() {
     model.primitive().as_object_mut().unwrap().remove("indices");
     let loaded = model.load().unwrap();
     let scene = &loaded.scene;
-    assert_warns(&loaded, "what is not packed is read instead");
+    assert_warns(&loaded, "what is not compressed is read instead");
     assert_eq!(scene.triangle_count(), 1);
 }
 

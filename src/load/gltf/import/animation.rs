@@ -105,7 +105,8 @@ impl AnimationClip {
                 let mesh = node.mesh.and_then(|mesh| root.meshes.get(mesh.value()));
                 let mesh = mesh.ok_or_else(|| Error::input("it morphs a node without a mesh"))?;
                 let targets = mesh.primitives.first().and_then(|p| p.targets.as_ref());
-                let curves = reader.weight_curves(targets.map_or(0, Vec::len))?;
+                let count = targets.map_or(0, Vec::len);
+                let curves = reader.curves(count, |[weight], _| f64::from(weight))?;
                 let last = curves.first().map_or(0.0, last_time);
                 if self.weights.insert(index, curves).is_some() {
                     return Err(duplicate_channel());
@@ -217,83 +218,58 @@ struct SamplerReader<'a> {
 }
 
 impl SamplerReader<'_> {
-    /// Returns the times of `curves` curves.
-    fn times(&self, curves: u64) -> Result<Vec<f64>> {
-        // A small file can name the same ones any number of times.
-        let index = self.sampler.input.value();
-        self.sandbox.take(Limit::Keys, self.accessors.count(index).saturating_mul(curves))?;
-        let times = self.accessors.floats(index, &format!("{}.samplers.input", self.path))?;
-        Ok(times.into_iter().map(|[t]| f64::from(t)).collect())
-    }
-
-    /// Returns the output values, and how they are interpolated.
-    fn output<const N: usize>(&self) -> Result<(Vec<[f32; N]>, SamplerInterpolation)> {
-        let path = format!("{}.samplers.output", self.path);
-        let values = self.accessors.floats(self.sampler.output.value(), &path)?;
-        match self.sampler.interpolation {
-            Checked::Valid(interpolation) => Ok((values, interpolation)),
-            Checked::Invalid => Err(Error::input("the interpolation is of no known kind")),
-        }
-    }
-
-    /// Returns the curves of the weights of `count` morph targets, which the file stores side by
-    /// side for each time; a spline's slopes are before and after them (appendix C of the standard).
-    fn weight_curves(&self, count: usize) -> Result<Vec<Curve<f64>>> {
-        let times = self.times(count.max(1) as u64)?;
-        let (values, interpolation) = self.output::<1>()?;
-        let rows = if interpolation == SamplerInterpolation::CubicSpline { 3 } else { 1 };
-        if count == 0 || values.len() != times.len() * count * rows {
-            let (found, times) = (values.len(), times.len());
-            return Err(Error::input(format!(
-                "{found} numbers for {count} morph targets at {times} times"
-            )));
-        }
-        let curve = |target: usize| {
-            let value = |time: usize, row: usize| {
-                f64::from(values[(time * rows + row) * count + target][0])
-            };
-            let keys = 0..times.len();
-            let (row, interpolation) = match interpolation {
-                SamplerInterpolation::Linear => (0, Interpolation::Linear),
-                SamplerInterpolation::Step => (0, Interpolation::Step),
-                SamplerInterpolation::CubicSpline => {
-                    let slopes = keys.clone().map(|t| [value(t, 0), value(t, 2)]);
-                    (1, Interpolation::Cubic(slopes.collect()))
-                }
-            };
-            let values = keys.map(|t| value(t, row)).collect();
-            let curve = Curve { times: times.clone(), values, interpolation };
-            curve.check().map(|()| curve)
-        };
-        (0..count).map(curve).collect()
-    }
-
-    /// Returns the curve of the sampler; `convert` makes a value of its numbers, or a slope where
-    /// the flag is not set.
+    /// Returns the curve of a property; `convert` makes a value of its numbers, or a slope if the
+    /// flag is not set.
     fn curve<T: Interpolate, const N: usize>(
         &self,
         convert: impl Fn([f32; N], bool) -> T,
     ) -> Result<Curve<T>> {
-        let times = self.times(1)?;
-        let (read, interpolation) = self.output()?;
-        let values = || read.iter().map(|&v| convert(v, true)).collect();
-        let (values, interpolation) = match interpolation {
-            SamplerInterpolation::Linear => (values(), Interpolation::Linear),
-            SamplerInterpolation::Step => (values(), Interpolation::Step),
-            SamplerInterpolation::CubicSpline => {
-                let (triples, rest) = read.as_chunks::<3>();
-                if !rest.is_empty() {
-                    return Err(Error::input("a spline's values do not come in threes"));
-                }
-                let slopes =
-                    triples.iter().map(|[a, _, b]| [convert(*a, false), convert(*b, false)]);
-                let values = triples.iter().map(|[_, v, _]| convert(*v, true)).collect();
-                (values, Interpolation::Cubic(slopes.collect()))
-            }
+        Ok(self.curves(1, convert)?.remove(0))
+    }
+
+    /// Returns `count` curves, whose values the file stores side by side for each time. The slopes
+    /// of a spline are before and after its values (appendix C of the standard).
+    fn curves<T: Interpolate, const N: usize>(
+        &self,
+        count: usize,
+        convert: impl Fn([f32; N], bool) -> T,
+    ) -> Result<Vec<Curve<T>>> {
+        // A small file can name the same times for any number of curves.
+        let Sampler { input, output, .. } = self.sampler;
+        let keys = self.accessors.count(input.value()).saturating_mul(count.max(1) as u64);
+        self.sandbox.take(Limit::Keys, keys)?;
+        let path = |property: &str| format!("{}.samplers.{property}", self.path);
+        let times = self.accessors.floats(input.value(), &path("input"))?;
+        let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();
+        let values = self.accessors.floats(output.value(), &path("output"))?;
+        let Checked::Valid(kind) = self.sampler.interpolation else {
+            return Err(Error::input("the interpolation is of no known kind"));
         };
-        let curve = Curve { times, values, interpolation };
-        curve.check()?;
-        Ok(curve)
+        let rows = if kind == SamplerInterpolation::CubicSpline { 3 } else { 1 };
+        if count == 0 || values.len() != times.len() * count * rows {
+            let (found, times) = (values.len(), times.len());
+            let message = format!("{found} values for {count} curves at {times} times");
+            return Err(Error::input(message));
+        }
+
+        let curve = |i: usize| {
+            let row = |row: usize, is_value: bool| {
+                let values = values.iter().skip(row * count + i).step_by(rows * count);
+                let convert = &convert;
+                values.map(move |&v| convert(v, is_value))
+            };
+            let (values, interpolation) = match kind {
+                SamplerInterpolation::Linear => (row(0, true), Interpolation::Linear),
+                SamplerInterpolation::Step => (row(0, true), Interpolation::Step),
+                SamplerInterpolation::CubicSpline => {
+                    let slopes = row(0, false).zip(row(2, false)).map(|(a, b)| [a, b]);
+                    (row(1, true), Interpolation::Cubic(slopes.collect()))
+                }
+            };
+            let curve = Curve { times: times.clone(), values: values.collect(), interpolation };
+            curve.check().map(|()| curve)
+        };
+        (0..count).map(curve).collect()
     }
 }
 

@@ -197,19 +197,10 @@ fn box_mesh(size: DVec3) -> Mesh {
         let side = |bit: usize, half: f32| if i & bit == 0 { -half } else { half };
         [side(1, half.x), side(2, half.y), side(4, half.z)]
     };
+    #[rustfmt::skip]
     let triangles = [
-        [0, 2, 3],
-        [0, 3, 1],
-        [4, 5, 7],
-        [4, 7, 6],
-        [0, 1, 5],
-        [0, 5, 4],
-        [2, 6, 7],
-        [2, 7, 3],
-        [0, 4, 6],
-        [0, 6, 2],
-        [1, 3, 7],
-        [1, 7, 5],
+        [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
+        [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5],
     ];
     Mesh {
         positions: (0..8).map(corner).collect(),

@@ -6,28 +6,11 @@ use super::{JsonPath, Segment, error_at};
 use crate::error::Result;
 
 /// The keys of an index or a constant, or of a list of them.
+#[rustfmt::skip]
 const INDEX_KEYS: [&str; 21] = [
-    "buffer",
-    "bufferView",
-    "camera",
-    "children",
-    "componentType",
-    "index",
-    "indices",
-    "joints",
-    "light",
-    "material",
-    "mesh",
-    "mode",
-    "node",
-    "nodes",
-    "sampler",
-    "scene",
-    "skin",
-    "source",
-    "texCoord",
-    "wrapS",
-    "wrapT",
+    "buffer", "bufferView", "camera", "children", "componentType", "index", "indices", "joints",
+    "light", "material", "mesh", "mode", "node", "nodes", "sampler", "scene", "skin", "source",
+    "texCoord", "wrapS", "wrapT",
 ];
 
 /// Checks that no index and no constant needs more than 32 bits.

@@ -13,7 +13,7 @@ pub fn check(root: &Value, bin: Option<usize>, issues: &mut Issues) {
     {
         let message = format_args!("{declared}, and the GLB's chunk has {found} bytes");
         let is_valid = declared <= found as u64;
-        issues.check(IssueKind::Layout, is_valid, "buffers[0].byteLength", message);
+        issues.check(IssueKind::LAYOUT, is_valid, "buffers[0].byteLength", message);
     }
     for (i, view) in list(root, "bufferViews").iter().enumerate() {
         check_view(root, view, format_args!("bufferViews[{i}]"), issues);
@@ -31,7 +31,7 @@ pub fn check(root: &Value, bin: Option<usize>, issues: &mut Issues) {
         let replaced = integer(sparse, "count").unwrap_or(0);
         let message = format_args!("{replaced} of {count}");
         let count_path = format_args!("{path}.count");
-        issues.check(IssueKind::Layout, replaced <= count, count_path, message);
+        issues.check(IssueKind::LAYOUT, replaced <= count, count_path, message);
         if let Some(indices) = sparse.get("indices")
             && let Some(size) = component_size(indices)
         {
@@ -94,12 +94,12 @@ fn check_view(root: &Value, view: &Value, path: std::fmt::Arguments, issues: &mu
     if let (Some(length), Some(buffer)) = (length, buffer) {
         let end = length.saturating_add(integer(view, "byteOffset").unwrap_or(0));
         let message = format_args!("up to byte {end}, and its buffer has {buffer}");
-        issues.check(IssueKind::Layout, end <= buffer, path, message);
+        issues.check(IssueKind::LAYOUT, end <= buffer, path, message);
     }
     if let Some(stride) = integer(view, "byteStride") {
         let is_valid =
             stride % 4 == 0 && stride <= 252 && length.is_none_or(|length| stride <= length);
-        issues.check(IssueKind::Layout, is_valid, format_args!("{path}.byteStride"), stride);
+        issues.check(IssueKind::LAYOUT, is_valid, format_args!("{path}.byteStride"), stride);
     }
 }
 
@@ -120,13 +120,13 @@ fn check_elements(
     let last = count.saturating_sub(1).saturating_mul(stride);
     let end = last.saturating_add(size).saturating_add(offset);
     let message = format_args!("{count} elements up to byte {end}, and its view has {length}");
-    issues.check(IssueKind::Layout, end <= length, path, message);
+    issues.check(IssueKind::LAYOUT, end <= length, path, message);
     let message = format_args!("{size} bytes, every {stride} bytes");
-    issues.check(IssueKind::Layout, stride >= size, path, message);
+    issues.check(IssueKind::LAYOUT, stride >= size, path, message);
     let start = offset.saturating_add(integer(view, "byteOffset").unwrap_or(0));
     let is_aligned = start.is_multiple_of(element.size) && offset.is_multiple_of(element.size);
     let message = format_args!("{} bytes each, from byte {start} on", element.size);
-    issues.check(IssueKind::Layout, is_aligned, format_args!("{path}.byteOffset"), message);
+    issues.check(IssueKind::LAYOUT, is_aligned, format_args!("{path}.byteOffset"), message);
 }
 
 /// Checks the properties of an accessor that describe its numbers.
@@ -134,14 +134,14 @@ fn check_numbers(accessor: &Value, path: &str, element: Element, issues: &mut Is
     let is_normalized = accessor.get("normalized").and_then(Value::as_bool) == Some(true);
     let is_valid = !is_normalized || element.size != 4;
     let message = "of floats or 32-bit integers";
-    issues.check(IssueKind::Rule, is_valid, format_args!("{path}.normalized"), message);
+    issues.check(IssueKind::RULE, is_valid, format_args!("{path}.normalized"), message);
     let is_valid = accessor.get("bufferView").is_some() || accessor.get("byteOffset").is_none();
     let message = "without a bufferView";
-    issues.check(IssueKind::Rule, is_valid, format_args!("{path}.byteOffset"), message);
+    issues.check(IssueKind::RULE, is_valid, format_args!("{path}.byteOffset"), message);
     for bound in ["min", "max"] {
         let Some(found) = accessor.get(bound).and_then(Value::as_array) else { continue };
         let (found, count) = (found.len() as u64, element.count);
         let message = format_args!("{found} numbers for {count}");
-        issues.check(IssueKind::Type, found == count, format_args!("{path}.{bound}"), message);
+        issues.check(IssueKind::TYPE, found == count, format_args!("{path}.{bound}"), message);
     }
 }

@@ -22,62 +22,47 @@ use crate::load::diagnostics::Diagnostics;
 
 /// Warns of what is not valid in a file; `bin` is the length of a GLB's binary chunk.
 pub fn validate(root: &Value, bin: Option<usize>, diagnostics: &mut Diagnostics) {
-    let mut issues = Issues::default();
+    let mut issues = Issues(&mut |kind: IssueKind, path, message| {
+        diagnostics.add(kind.0, 1, || format!("{path} ({message})"));
+    });
     properties::check(root, &mut issues);
     buffers::check(root, bin, &mut issues);
     rules::check(root, &mut issues);
-    for issue in issues.0 {
-        let place = || format!("{} ({})", issue.path, issue.message);
-        diagnostics.add(issue.kind.sentence(), issue.count, place);
-    }
 }
 
 /// Returns the path of the first property that is missing or of the wrong type, and what is wrong.
 pub fn first_missing_or_mistyped(root: &Value) -> Option<(String, String)> {
-    let mut issues = Issues::default();
-    properties::check(root, &mut issues);
-    let is_needed = |issue: &Issue| matches!(issue.kind, IssueKind::Missing | IssueKind::Type);
-    issues.0.into_iter().find(is_needed).map(|issue| (issue.path, issue.message))
-}
-
-/// A kind of issue.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum IssueKind {
-    Empty,
-    Extension,
-    Layout,
-    Missing,
-    Range,
-    Reference,
-    Rule,
-    Type,
-}
-
-/// The issues of a file, by kind, in the order in which the first of each kind was found.
-#[derive(Default)]
-struct Issues(Vec<Issue>);
-
-/// The issues of one kind: their number, and the path and the message of the first.
-struct Issue {
-    kind: IssueKind,
-    count: u64,
-    path: String,
-    message: String,
-}
-
-impl Issues {
-    /// Counts an issue at a JSON path.
-    fn add(&mut self, kind: IssueKind, path: impl Display, message: impl Display) {
-        match self.0.iter_mut().find(|known| known.kind == kind) {
-            Some(known) => known.count += 1,
-            None => {
-                let (path, message) = (path.to_string(), message.to_string());
-                self.0.push(Issue { kind, count: 1, path, message });
-            }
+    let mut first = None;
+    let mut issues = Issues(&mut |kind, path, message| {
+        if first.is_none() && (kind == IssueKind::MISSING || kind == IssueKind::TYPE) {
+            first = Some((path.to_string(), message.to_string()));
         }
-    }
+    });
+    properties::check(root, &mut issues);
+    first
+}
 
-    /// Counts an issue of a kind if `is_valid` is false.
+/// A kind of issue: the sentence about issues of this kind, with `{}` where their number belongs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct IssueKind(&'static str);
+
+impl IssueKind {
+    const EMPTY: Self = Self("not valid glTF: {} lists are empty or name something twice");
+    const EXTENSION: Self =
+        Self("not valid glTF: {} extensions stand where they do not belong, or are not declared");
+    const LAYOUT: Self = Self("not valid glTF: {} ranges of bytes do not fit in what holds them");
+    const MISSING: Self = Self("not valid glTF: {} properties are missing");
+    const RANGE: Self = Self("not valid glTF: {} values are out of range");
+    const REFERENCE: Self = Self("not valid glTF: {} references lead nowhere");
+    const RULE: Self = Self("not valid glTF: {} objects contradict themselves or others");
+    const TYPE: Self = Self("not valid glTF: {} values are of the wrong type");
+}
+
+/// The receiver of the issues of a file: of each the kind, the JSON path, and a message.
+struct Issues<'a>(&'a mut dyn FnMut(IssueKind, &dyn Display, &dyn Display));
+
+impl Issues<'_> {
+    /// Reports an issue of a kind if `is_valid` is false.
     fn check(
         &mut self,
         kind: IssueKind,
@@ -86,25 +71,7 @@ impl Issues {
         message: impl Display,
     ) {
         if !is_valid {
-            self.add(kind, path, message);
-        }
-    }
-}
-
-impl IssueKind {
-    /// The sentence about issues of this kind, with `{}` where their number belongs.
-    fn sentence(self) -> &'static str {
-        match self {
-            Self::Empty => "not valid glTF: {} lists are empty or name something twice",
-            Self::Extension => {
-                "not valid glTF: {} extensions stand where they do not belong, or are not declared"
-            }
-            Self::Layout => "not valid glTF: {} ranges of bytes do not fit in what holds them",
-            Self::Missing => "not valid glTF: {} properties are missing",
-            Self::Range => "not valid glTF: {} values are out of range",
-            Self::Reference => "not valid glTF: {} references lead nowhere",
-            Self::Rule => "not valid glTF: {} objects contradict themselves or others",
-            Self::Type => "not valid glTF: {} values are of the wrong type",
+            self.0(kind, &path, &message);
         }
     }
 }

@@ -17,22 +17,22 @@ pub fn check(root: &Value, issues: &mut Issues) {
 }
 
 /// The state of the check, which visits the values as the schemas tell: no deeper than these.
-struct Checker<'v, 'i> {
+struct Checker<'v, 'i, 'r> {
     root: &'v Value,
     /// The names of the extensions that the file declares.
     used: HashSet<&'v str>,
     /// The path of the value that is visited.
     path: JsonPath<'v>,
-    issues: &'i mut Issues,
+    issues: &'i mut Issues<'r>,
 }
 
-impl<'v> Checker<'v, '_> {
-    /// Counts an issue of the current value.
+impl<'v> Checker<'v, '_, '_> {
+    /// Reports an issue of the current value.
     fn add(&mut self, kind: IssueKind, message: impl std::fmt::Display) {
         if self.path.is_root() {
-            self.issues.add(kind, "the root", message);
+            self.issues.check(kind, false, "the root", message);
         } else {
-            self.issues.add(kind, &self.path, message);
+            self.issues.check(kind, false, &self.path, message);
         }
     }
 
@@ -46,13 +46,13 @@ impl<'v> Checker<'v, '_> {
     /// Checks an object, by its name in the standard and its properties.
     fn object(&mut self, value: &'v Value, name: &str, properties: &'static [Property]) {
         let Some(object) = value.as_object() else {
-            return self.add(IssueKind::Type, "not an object");
+            return self.add(IssueKind::TYPE, "not an object");
         };
         for Property { name, is_required, kind } in properties {
             match object.get(*name) {
                 Some(value) => self.within(Segment::Key(name), |c| c.value(value, kind)),
                 None if *is_required => {
-                    self.add(IssueKind::Missing, format_args!("has no `{name}`"));
+                    self.add(IssueKind::MISSING, format_args!("has no `{name}`"));
                 }
                 None => {}
             }
@@ -64,7 +64,7 @@ impl<'v> Checker<'v, '_> {
 
     fn extensions(&mut self, value: &'v Value, parent: &str) {
         let Some(extensions) = value.as_object() else {
-            return self.add(IssueKind::Type, "not an object");
+            return self.add(IssueKind::TYPE, "not an object");
         };
         for (name, value) in extensions {
             let mut known = EXTENSIONS.iter().filter(|(extension, ..)| extension == name);
@@ -72,12 +72,12 @@ impl<'v> Checker<'v, '_> {
             let here = known.find(|(_, object, _)| *object == parent);
             self.within(Segment::Key(name), |c| {
                 if !c.used.contains(&**name) {
-                    c.add(IssueKind::Extension, "not in `extensionsUsed`");
+                    c.add(IssueKind::EXTENSION, "not in `extensionsUsed`");
                 }
                 match here {
                     Some((.., properties)) => c.object(value, "", properties),
-                    None if is_known => c.add(IssueKind::Extension, "does not belong here"),
-                    None if !value.is_object() => c.add(IssueKind::Type, "not an object"),
+                    None if is_known => c.add(IssueKind::EXTENSION, "does not belong here"),
+                    None if !value.is_object() => c.add(IssueKind::TYPE, "not an object"),
                     None => {}
                 }
             });
@@ -100,7 +100,7 @@ impl<'v> Checker<'v, '_> {
             Kind::Attributes | Kind::Object(_) => (value.is_object(), "not an object"),
         };
         if !is_type {
-            return self.add(IssueKind::Type, needed);
+            return self.add(IssueKind::TYPE, needed);
         }
 
         // The value.
@@ -108,14 +108,14 @@ impl<'v> Checker<'v, '_> {
         match kind {
             Kind::Flag | Kind::Text => {}
             Kind::Uri if is_uri(value.as_str().unwrap_or_default()) => {}
-            Kind::Uri => self.add(IssueKind::Type, "not a URI"),
+            Kind::Uri => self.add(IssueKind::TYPE, "not a URI"),
             Kind::OneOf(known) if known.contains(&natural) => {}
             Kind::OneOf(known) => {
-                self.add(IssueKind::Range, format_args!("{value}, and {known:?} are known"));
+                self.add(IssueKind::RANGE, format_args!("{value}, and {known:?} are known"));
             }
             Kind::Integer(least) if natural >= *least => {}
             Kind::Integer(least) => {
-                self.add(IssueKind::Range, format_args!("{value}, and at least {least} is needed"));
+                self.add(IssueKind::RANGE, format_args!("{value}, and at least {least} is needed"));
             }
             Kind::Number(range) => self.number(value, *range),
             Kind::Vector(length, range) => self.vector(value, *length, *range),
@@ -126,13 +126,13 @@ impl<'v> Checker<'v, '_> {
                 let mut items: Vec<String> = items(value).iter().map(Value::to_string).collect();
                 items.sort_unstable();
                 if items.windows(2).any(|two| two[0] == two[1]) {
-                    self.add(IssueKind::Empty, "something stands in it twice");
+                    self.add(IssueKind::EMPTY, "something stands in it twice");
                 }
             }
             Kind::Attributes => {
                 let attributes = value.as_object().into_iter().flatten();
                 if attributes.clone().next().is_none() {
-                    self.add(IssueKind::Empty, "no attribute is in it");
+                    self.add(IssueKind::EMPTY, "no attribute is in it");
                 }
                 for (name, value) in attributes {
                     let kind = &Kind::Index("accessors");
@@ -151,7 +151,7 @@ impl<'v> Checker<'v, '_> {
         // Angles up to a quarter turn are rounded in f32.
         let is_valid = x >= least && !(is_open && x == least) && x <= most * (1.0 + 1e-6);
         if !is_valid && !is_ior {
-            self.add(IssueKind::Range, format_args!("{value} is not from {least} to {most}"));
+            self.add(IssueKind::RANGE, format_args!("{value} is not from {least} to {most}"));
         }
     }
 
@@ -159,14 +159,14 @@ impl<'v> Checker<'v, '_> {
         let found = items(value).len();
         if found != length {
             let message = format!("{found} numbers, and {length} are needed");
-            return self.add(IssueKind::Type, message);
+            return self.add(IssueKind::TYPE, message);
         }
         for (i, item) in items(value).iter().enumerate() {
             self.within(Segment::Index(i), |c| {
                 if item.is_number() {
                     c.number(item, range);
                 } else {
-                    c.add(IssueKind::Type, "a number is needed");
+                    c.add(IssueKind::TYPE, "a number is needed");
                 }
             });
         }
@@ -174,7 +174,7 @@ impl<'v> Checker<'v, '_> {
 
     fn list(&mut self, value: &'v Value, kind: &'static Kind) {
         if items(value).is_empty() {
-            self.add(IssueKind::Empty, "nothing is in it");
+            self.add(IssueKind::EMPTY, "nothing is in it");
         }
         for (i, item) in items(value).iter().enumerate() {
             self.within(Segment::Index(i), |c| c.value(item, kind));
@@ -191,7 +191,7 @@ impl<'v> Checker<'v, '_> {
             }
         };
         if index >= length as u64 {
-            self.add(IssueKind::Reference, format_args!("{index}, and {name} has {length}"));
+            self.add(IssueKind::REFERENCE, format_args!("{index}, and {name} has {length}"));
         }
     }
 }

@@ -43,15 +43,15 @@ pub fn check(root: &Value, issues: &mut Issues) {
     }
 }
 
-struct Checker<'v, 'i> {
+struct Checker<'v, 'i, 'r> {
     root: &'v Value,
-    issues: &'i mut Issues,
+    issues: &'i mut Issues<'r>,
 }
 
-impl Checker<'_, '_> {
-    /// Counts a breach of a rule, unless it holds.
+impl Checker<'_, '_, '_> {
+    /// Reports a breach of a rule, unless it holds.
     fn rule(&mut self, holds: bool, path: impl Display, message: impl Display) {
-        self.issues.check(IssueKind::Rule, holds, path, message);
+        self.issues.check(IssueKind::RULE, holds, path, message);
     }
 
     fn root(&mut self) {
@@ -203,7 +203,7 @@ impl Checker<'_, '_> {
             let is_there = integer(channel, "sampler").is_none_or(|s| s < samplers as u64);
             let sampler = format_args!("{path}.sampler");
             let message = format_args!("there are {samplers} samplers");
-            self.issues.check(IssueKind::Reference, is_there, sampler, message);
+            self.issues.check(IssueKind::REFERENCE, is_there, sampler, message);
 
             // The target: a pointer, or the property of a node.
             let Some(target) = channel.get("target") else { continue };
