@@ -134,7 +134,7 @@ fn ratios<const W: usize>(case: &Case) {
     );
 }
 
-/// What `certified` costs: its rays and whole frames beside those of `fast`, in turn.
+/// Measures the cost of `certified`: its rays and whole frames beside those of `fast`, in turn.
 fn price(case: &Case) {
     let build = |precision| Embree::build(&case.scene, precision, 1).unwrap();
     let single = |precision| Embree::build_single(&case.scene, precision, 1).unwrap();

@@ -1,4 +1,4 @@
-//! What certainty costs: ns per ray of the certified intersections beside the plain f64 ones.
+//! The cost of certainty: ns per ray of the certified intersections beside the plain f64 ones.
 //!
 //! `cargo bench --bench precision` runs criterion over every kernel and then prints the ratios:
 //! medians of runs taken in turn. `-- ratios` prints the ratios only. Packet kernels take 16 rays
@@ -162,7 +162,7 @@ impl Packet {
 /// Runs a kernel over all packets, by a function that is called once per packet.
 type Run<P, T> = fn(&[Packet], &P, &mut [T; 16]);
 
-/// What runs a kernel on packets of primitives `$p`, compiled for an instruction set.
+/// A function that runs a kernel on packets of primitives `$p`, compiled for an instruction set.
 macro_rules! run {
     ($kernel:ident, $p:ty, $t:ty $(, $features:literal)?) => {{
         #[inline(never)]
@@ -233,7 +233,7 @@ impl Random {
     }
 }
 
-/// How many rays a run takes: 28 KiB of packets, which stay in the first cache.
+/// The number of rays of a run: 28 KiB of packets, which stay in the first cache.
 const RAYS: usize = 512;
 
 /// Rays from near the origin toward a square of half-side `spread` at z = 10.
@@ -262,7 +262,7 @@ fn packets(mut ray: impl FnMut() -> (DVec3, DVec3)) -> Vec<Packet> {
     lines.chunks(16).map(Packet::new).collect()
 }
 
-/// How often a timed run repeats: what is timed takes some 100 µs at least.
+/// The repetitions in a timed run: it takes some 100 µs at least.
 const REPEAT: usize = 40;
 
 /// Two kernels in turn; medians and the median ratio.

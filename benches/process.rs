@@ -31,7 +31,7 @@ use support::bare::{Bare, Packet, Shapes, packets};
 use support::clock::median;
 use support::record::{Batch, Recorder};
 
-/// As wide as is native nearly everywhere that times matter.
+/// The width of the packets: native on nearly every processor whose times matter.
 const WIDTH: usize = 16;
 
 /// The parts of the bare work, in seconds.
@@ -93,7 +93,7 @@ fn main() {
     println!("  ratio {:.2}", median(times.iter().map(|(ours, bare)| ours / bare.sum())));
 }
 
-/// What the bare library does for a picture of the scene, with what must lie ready for it.
+/// Returns a function that does the work of a picture with the bare library; all else lies ready for it.
 fn bare_work(
     scene: &Path,
     model: &Path,

@@ -1,4 +1,4 @@
-//! How time grows with triangles, spheres, lights, pixels and threads: ours beside bare Embree's,
+//! The growth of time with triangles, spheres, lights, pixels and threads: ours beside bare Embree's,
 //! in turn in one run.
 //!
 //! `cargo bench --bench scaling` measures everything, up to 4,000,000 triangles;
@@ -25,7 +25,7 @@ use support::bare::Bare;
 use support::scenes;
 use xtask::reference::knot::resolution;
 
-/// What is measured, and how often.
+/// The sizes that are measured, and the number of rounds.
 struct Plan {
     rounds: usize,
     /// Width and height of the pictures; both divisible by 4.

@@ -38,7 +38,7 @@
 //! # Modules
 //!
 //! Each uses only those above it: [`error`], [`geometry`], [`scene`], [`load`], [`intersect`],
-//! [`surface`], [`shading`], [`film`], [`integrator`], [`render`], [`mod@write`], `measure`,
+//! [`surface`], [`shading`], [`film`], [`mod@write`], [`integrator`], [`render`], `measure`,
 //! `cli`.
 //!
 //! [Intel Embree]: https://www.embree.org

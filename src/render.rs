@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, PixelRecord, Scratch, Tiling};
+use crate::integrator::{Counts, Integrator, PixelRecord, RefineStrip, Scratch, Tiling};
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
@@ -277,7 +277,7 @@ impl<'s> Renderer<'s> {
                     let built = BuildRecord::new(start, &builder, builder.stats() - before);
                     picture(posed, options, &*intersector, built, &share)
                 } else if let Some(intersector) = &shared {
-                    let kept = BuildStats::kept(before.meshes);
+                    let kept = BuildStats::reused(before.meshes_built);
                     let built = BuildRecord::new(start, &builder, kept);
                     picture(posed, options, &**intersector, built, &share)
                 } else {
@@ -409,7 +409,7 @@ fn trace(
     record_strips.resize_with(strips, Default::default);
     let first_pass = film.pixels.par_chunks_mut(strip).zip(record_strips).enumerate();
     first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, records))| {
-        finish_strip(integrator.strip(i * rows, pixels, records, scratch));
+        finish_strip(integrator.render_strip(i * rows, pixels, records, scratch));
     });
 
     // Second pass: more samples for the pixels that disagree with themselves or their neighbours.
@@ -418,7 +418,8 @@ fn trace(
         let pixels = film.pixels.par_chunks_mut(strip).enumerate();
         let parts = pixels.zip(records.par_chunks(strip).zip(refined.par_chunks(strip)));
         parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (records, refined))| {
-            finish_strip(integrator.refine(i * rows, (pixels, records, refined), scratch));
+            let strip = RefineStrip { first_row: i * rows, pixels, records, refined };
+            finish_strip(integrator.refine_strip(strip, scratch));
         });
     }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());

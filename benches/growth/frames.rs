@@ -88,7 +88,7 @@ fn table(name: &str, what: &str, scenes: impl Iterator<Item = (usize, Scene)>, p
     println!("time grows as rays^{:.3}", slope(&points));
 }
 
-/// What a second thread brings to frames, and to the bare library with their primary rays.
+/// Measures the gain of a second thread for frames, and for the bare library with their primary rays.
 pub fn threads<const W: usize>(plan: &Plan) {
     for (name, mut scene) in both() {
         scene.film.size = plan.size;

@@ -12,7 +12,7 @@ pub fn slope(points: &[[f64; 2]]) -> f64 {
 
 /// Ours and the bare library's at one size, in nanoseconds for each ray.
 pub struct Step {
-    /// How many there are of what grows.
+    /// The number of triangles, spheres or whatever grows.
     pub count: usize,
     /// The share of the rays that hit.
     pub hits: f64,

@@ -103,7 +103,7 @@ unsafe impl Sync for Bare {}
 /// Vertices and triangles.
 type Mesh = (Vec<[f32; 3]>, Vec<[u32; 3]>);
 
-/// What a scene of the bare library is built of, about a centre, as f32 numbers that lie ready.
+/// The shapes of a scene of the bare library, about a centre, as f32 numbers that lie ready.
 pub struct Shapes {
     /// Each mesh as it stands.
     meshes: Vec<Mesh>,
@@ -173,12 +173,12 @@ impl Shapes {
 }
 
 impl Bare {
-    /// The same geometry, build quality and scene flags as envers's own Embree scene.
+    /// Builds the same geometry, build quality and scene flags as envers's own Embree scene.
     pub fn build(scene: &Scene, width: usize) -> Self {
         Shapes::of(scene).build(width, c"threads=1", sys::RTCBuildQuality::MEDIUM)
     }
 
-    /// Whether the processor has packets of `width` natively.
+    /// True if the processor has packets of `width` natively.
     pub fn has(&self, width: usize) -> bool {
         let property = match width {
             4 => sys::RTCDeviceProperty::NATIVE_RAY4_SUPPORTED,

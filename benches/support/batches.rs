@@ -3,7 +3,7 @@
 use envers::geometry::{HitBatch, Ray, RayBatch};
 use envers::intersect::{Coherence, Intersector};
 
-/// How many rays make a tile.
+/// The number of rays of a tile.
 const TILE: usize = 1024;
 
 /// Rays in batches, and room for what they hit.
@@ -24,7 +24,7 @@ impl Batches {
         Self { rays, hits: HitBatch::default(), blocked: Vec::new() }
     }
 
-    /// How many hit anything.
+    /// Traces all rays; returns the number that hit anything.
     pub fn closest(&mut self, intersector: &dyn Intersector, coherence: Coherence) -> usize {
         let mut count = 0;
         for rays in &self.rays {
@@ -34,7 +34,7 @@ impl Batches {
         count
     }
 
-    /// How many are blocked.
+    /// Traces all rays; returns the number that are blocked.
     #[allow(dead_code)] // Not every bench asks for shadows.
     pub fn occluded(&mut self, intersector: &dyn Intersector) -> usize {
         let mut count = 0;

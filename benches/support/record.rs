@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use envers::geometry::{Hit, Ray};
 use envers::intersect::{Coherence, Intersector};
 
-/// What was asked, and how.
+/// The kind of a batch of rays.
 #[derive(Clone, Copy)]
 pub enum Batch {
     Coherent,

@@ -50,7 +50,7 @@ pub fn finish(mut scene: Scene, eye: DVec3) -> Scene {
     scene
 }
 
-/// Where the light stands, to which shadow rays go.
+/// The position of the light, to which shadow rays go.
 pub const LIGHT: DVec3 = DVec3::new(3.0, 5.0, 4.0);
 
 /// The primary rays of a picture in squares of four by four, as the renderer sends them.

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use envers::{Limit, LoadOptions, Limits};
 
-/// In memory where the system has a folder for that.
+/// The folder, in memory where the system has one for that.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let base = Some(PathBuf::from("/dev/shm")).filter(|path| path.is_dir());
     let base = base.unwrap_or_else(std::env::temp_dir);

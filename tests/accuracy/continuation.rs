@@ -14,7 +14,7 @@ fn empty() -> Scene {
     scene
 }
 
-/// All that lies on each ray's way, in order.
+/// Returns all hits on each ray's way, in order.
 fn crossings(scene: &Scene, intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Vec<Hit>> {
     let mut all = vec![Vec::new(); rays.len()];
     let mut open: Vec<usize> = (0..rays.len()).collect();

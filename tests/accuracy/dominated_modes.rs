@@ -1,4 +1,4 @@
-//! Which modes of a bench are worth having.
+//! The modes of a bench that are worth having.
 
 use envers::measure::bench::dominators;
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! How rays leave surfaces: closed scenes of which the radiance is known.
+//! Self-intersection avoidance: closed scenes of known radiance.
 
 use envers::geometry::{Geometry, PrimitiveId};
 use envers::intersect::{Backend, Precision};
@@ -388,7 +388,7 @@ fn camera_on_a_sphere_sees_its_inside_or_nothing() {
     }
 }
 
-/// What the scene looks like from the surface at 0 that `surface` adds, up at a ball.
+/// Asserts the picture seen from the surface at 0 that `surface` adds, up at a ball.
 #[track_caller]
 fn seen_from_a_surface(surface: impl Fn(&mut Scene)) {
     let mut scene = scene(DVec3::ZERO, DVec3::new(0.0, 1.0, 0.2));

@@ -1,4 +1,4 @@
-//! What the command says of itself.
+//! The help, the version, and the command line that is refused.
 
 use super::*;
 

@@ -138,7 +138,7 @@ const TETRAHEDRON: &str = "\
 v -0.5 0 0.5\nv 0.5 0 0.5\nv 0 0 -0.5\nv 0 1 0\n\
 f 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
 
-/// What a run of the command left behind.
+/// The outcome of a run of the command.
 struct Run {
     status: Option<i32>,
     stdout: String,
@@ -153,7 +153,7 @@ impl Run {
         self
     }
 
-    /// Its standard output as JSON and nothing else.
+    /// Returns its standard output, which is JSON and nothing else.
     #[track_caller]
     fn json(&self) -> Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in {}", self.stdout))
@@ -254,7 +254,7 @@ fn pixels(png: &[u8]) -> ((u32, u32), Vec<u8>) {
     (image.dimensions(), image.into_raw())
 }
 
-/// Whether the tests run as a user whom no permission stops.
+/// True if the tests run as a user whom no permission stops.
 #[cfg(unix)]
 fn is_root() -> bool {
     use std::os::unix::fs::MetadataExt;

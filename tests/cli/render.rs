@@ -83,7 +83,7 @@ fn a_certified_exr_is_the_same_bytes_at_any_bvh_quality() {
     assert!(low == medium && auto == medium);
 }
 
-/// What quality a run says that it built with.
+/// Returns the quality that a run says it built with.
 #[track_caller]
 fn bvh(folder: &Folder, flags: &str) -> Value {
     folder.run(&format!("render scene.toml {flags} --stats -")).good().json()["build"]["bvh"]

@@ -1,8 +1,8 @@
-//! What the command tells in JSON and in words.
+//! The reports of the command, in JSON and in words.
 
 use super::*;
 
-/// Whether a JSON value is of some kind.
+/// True if a JSON value is of some kind.
 type Kind = fn(&Value) -> bool;
 
 /// Asserts that a JSON object has these fields, of these kinds, and says which differ.

@@ -1,4 +1,4 @@
-//! How far files are trusted: `--allow-outside` and `--limit`.
+//! The trust in files: `--allow-outside` and `--limit`.
 
 use super::*;
 

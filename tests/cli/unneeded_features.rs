@@ -71,7 +71,7 @@ impl OutOfSight {
     const BEHIND_TUTORIAL: Self =
         Self { point: [0.0, 0.0, -8.0], plane: [0.0, 0.0, -40.0], normal: [0.0, 0.0, 1.0] };
 
-    /// What needs a feature, as tables of a scene file.
+    /// Returns tables of a scene file with something that needs a feature.
     fn tables(&self, work: Feature) -> String {
         let Self { point: at, plane, normal } = self;
         let material = |keys: &str| format!("[[material]]\nname = \"needless\"\n{keys}\n");
@@ -143,7 +143,7 @@ fn assert_same(folder: &Folder, out_of_sight: &OutOfSight, flags: &str) {
     }
 }
 
-/// As [`assert_same`], of a small picture of a scene that comes with envers and names these files.
+/// Asserts the same as [`assert_same`] of a small picture of a scene that comes with envers and names these files.
 #[track_caller]
 fn assert_same_of_asset(name: &str, files: &[&str], out_of_sight: &OutOfSight) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);

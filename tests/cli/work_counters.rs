@@ -1,4 +1,4 @@
-//! How much is done of each kind of work: exactly none where nothing needs it.
+//! The counters of the work for each scene feature: exactly 0 where nothing needs it.
 
 use super::*;
 use envers::scene::Feature;
@@ -67,7 +67,7 @@ fn shaped(from: &str, to: &str) -> Folder {
     folder
 }
 
-/// How much of each kind of work a rendering took.
+/// Returns the counters of the work of a rendering.
 fn work(folder: &Folder, flags: &str) -> Value {
     let run = folder.run(&format!("render scene.toml -o work.png --stats - {flags}")).good();
     run.json()["work"].clone()

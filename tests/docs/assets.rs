@@ -61,7 +61,7 @@ fn demo_scenes_and_models_load_without_a_warning() {
     }
 }
 
-/// What the room is there to show: instances of one mesh, textures, lights and a camera of its own.
+/// The room has all that it is there to show: instances of one mesh, textures, lights and a camera of its own.
 #[test]
 fn room_uses_what_gltf_offers() {
     let scene = load(&assets::root().join("assets/scenes/gallery/models/room.glb"))
@@ -73,7 +73,7 @@ fn room_uses_what_gltf_offers() {
     assert_eq!(scene.cameras[0].name, "view");
 }
 
-/// What the vase is there to show: two materials, one with a texture, on smooth polygons.
+/// The vase has all that it is there to show: two materials, one with a texture, on smooth polygons.
 #[test]
 fn vase_uses_what_obj_offers() {
     let scene = load(&assets::root().join("assets/scenes/gallery/models/vase.obj"))

@@ -1,4 +1,4 @@
-//! What the README shows is true.
+//! The README shows what is true.
 
 use std::fs;
 use std::path::Path;

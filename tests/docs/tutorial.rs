@@ -108,7 +108,7 @@ fn speculaire(u: Vecteur, n: Vecteur, l: Vecteur, alpha: i32, corrected: bool) -
     }
 }
 
-/// Which of the tutorial's three programs.
+/// One of the tutorial's three programs.
 #[derive(Clone, Copy)]
 enum Part {
     /// III.1
@@ -201,7 +201,7 @@ fn alpha_100_of_part_3_3() {
     compare("3-3-alpha-100.toml", Part::Phong { alpha: 100, corrected: true });
 }
 
-/// How many pixels the correction darkens, counted in bytes as numpy stores them; and by how much
+/// Counts the pixels that the correction darkens, in bytes as numpy stores them; and by how much
 /// at most.
 fn darkened(alpha: i32) -> (usize, u8) {
     let [with, without] = [true, false].map(|corrected| {

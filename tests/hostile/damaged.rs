@@ -15,7 +15,7 @@ use envers_testing::{Folder, Random, corpus, data_uri, files, whole};
 use image::ImageFormat;
 use serde_json::Value;
 
-/// How long a damaged file of a few kilobytes may take.
+/// The time that a damaged file of a few kilobytes may take.
 const TIME_LIMIT: Duration = Duration::from_secs(10);
 /// Mutations of each file, unless `ENVERS_MUTATIONS` says otherwise.
 const MUTATIONS: u64 = 1000;
@@ -144,7 +144,7 @@ fn hdr() -> Vec<u8> {
     b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 8\n".iter().copied().chain(pixels).collect()
 }
 
-/// What is loaded to read a file.
+/// Returns the file that is loaded to read another one.
 fn entry(file: &str) -> &str {
     match file {
         "model.bin" => "model.gltf",

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use envers_testing::{corpus, files};
 
-/// What a file should be: so many triangles (instances counted), or an error that says this.
+/// The expected outcome: the number of triangles (instances counted), or a part of the error.
 type Expected<'a> = Result<u64, &'a str>;
 
 const GLTF_1: Expected = Err("this is glTF 1.0");
@@ -162,7 +162,7 @@ fn every_face_of_every_file_is_handed_over_or_dropped_for_a_reason() {
     assert!(faces > 500_000, "only {faces}");
 }
 
-/// What Khronos' validator calls an error and this importer takes in silence, in files where
+/// The faults that Khronos' validator calls an error and this importer takes in silence, in files where
 /// nothing shows it, and why. docs/formats.md has the same table.
 const NOT_LOOKED_FOR: &[(&str, &str)] = &[
     (

@@ -1,4 +1,4 @@
-//! What OBJ and MTL files become: each test one feature or one fault.
+//! The scenes that OBJ and MTL files become: each test one feature or one fault.
 
 use envers::Loaded;
 use envers::error::{Error, Place};
@@ -311,7 +311,7 @@ fn mirrors_keep_their_colour_where_the_shininess_is_zero() {
     assert_eq!((m.reflect, m.specular), (Vec3::new(1.0, 0.5, 0.0), Vec3::ZERO));
 }
 
-/// What light does at the material `m` of an MTL file, of which there is nothing to say.
+/// Returns the material `m` of an MTL file that loads without a warning.
 fn optics(mtl: &str) -> Material {
     let (loaded, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{mtl}"));
     assert_eq!(loaded.report.warnings, [""; 0], "{mtl}");

@@ -24,9 +24,9 @@ pub struct Import {
 
 /// A source file.
 pub struct Source {
-    /// Its path.
+    /// The path of the file.
     pub path: PathBuf,
-    /// Its module.
+    /// The module that it is.
     pub module: Module,
     /// The whole text.
     pub text: String,
@@ -68,7 +68,7 @@ pub fn sources(root: &Path) -> Vec<Source> {
     sources
 }
 
-/// What reads the tokens of one file.
+/// A reader of the tokens of one file.
 #[derive(Default)]
 struct Reader {
     /// The module that the tokens stand in.

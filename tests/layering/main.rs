@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use imports::{Source, circles, graph, sources};
 
-/// From the top down; a module may use those before it and its own parts.
+/// The modules from the top down; each may use those before it and its own parts.
 const ORDER: [&str; 13] = [
     "error",
     "geometry",
@@ -18,9 +18,9 @@ const ORDER: [&str; 13] = [
     "surface",
     "shading",
     "film",
+    "write",
     "integrator",
     "render",
-    "write",
     "measure",
     "cli",
 ];

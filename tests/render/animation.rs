@@ -1,4 +1,4 @@
-//! What moves: the eclipses of the tutorial's VI.4, and frames that share what was built.
+//! Animation: the eclipses of the tutorial's VI.4, and frames that share what was built.
 
 use std::path::Path;
 
@@ -34,13 +34,13 @@ fn frames(scene: &Scene) -> impl Iterator<Item = (u32, Scene)> {
     (1..=animation.frames).map(|frame| (frame, scene.at_time(animation.time(frame)).unwrap()))
 }
 
-/// Where the light stands, from which the shadows fall.
+/// Returns the position of the light, from which the shadows fall.
 fn light(scene: &Scene) -> DVec3 {
     let LightKind::Point { position, .. } = scene.lights[0].kind else { panic!("a point light") };
     position
 }
 
-/// By how much the cones of two spheres, seen from the light, overlap: the sum of their angular
+/// Returns the overlap of the cones of two spheres, seen from the light: the sum of their angular
 /// radii less the angle between their centres, in radians.
 fn overlap(scene: &Scene, a: usize, b: usize) -> f64 {
     let seen = |s: &Sphere| {
@@ -86,7 +86,7 @@ fn points(scene: &Scene, of: usize, by: usize) -> Vec<DVec3> {
     spread.filter(faces).chain([nearest]).collect()
 }
 
-/// Whether anything stands between the light and a point of the sphere, a millionth above it.
+/// True if anything stands between the light and a point of the sphere, a millionth above it.
 fn is_shadowed(intersector: &dyn Intersector, scene: &Scene, of: usize, points: &[DVec3]) -> bool {
     let center = scene.spheres[of].center;
     let above = |p: &DVec3| center + (*p - center) * (1.0 + 1e-6);
@@ -278,7 +278,7 @@ fn each_mesh_is_built_once_for_all_frames() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
     }
 }
 
@@ -296,15 +296,21 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
-        assert_eq!((built.tops, built.tops_kept), (1, 5), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.tlas_built, built.tlas_kept), (1, 5), "{backend:?} {precision:?}");
         assert_ne!(films[0], films[1]);
     }
 }
 
 /// The counts of what was placed, in the first frame and again.
 fn places(built: BuildStats) -> [u64; 5] {
-    [built.tops, built.tops_kept, built.placed, built.moved, built.spheres_moved]
+    [
+        built.tlas_built,
+        built.tlas_kept,
+        built.instances_built,
+        built.instances_moved,
+        built.spheres_moved,
+    ]
 }
 
 #[test]
@@ -347,7 +353,7 @@ fn assert_alone(scene: &Scene) -> Vec<u64> {
                 .unwrap();
             assert!(*film == alone.film.pixels, "{backend:?} at {time}");
         }
-        tops.push(built.tops);
+        tops.push(built.tlas_built);
     }
     tops
 }

@@ -1,4 +1,4 @@
-//! What pictures do to surfaces: normals, occlusion, alpha, and pictures seen from afar. The
+//! Textures on surfaces: normals, occlusion, alpha, and pictures seen from afar. The
 //! radiances are worked out by hand, and every backend must give them.
 
 use envers::geometry::{Geometry, Hit, Ray};
@@ -90,7 +90,7 @@ const RIGHT: [u8; 4] = [204, 128, 230, 255];
 /// The normal (0, 0.6, 0.8).
 const UP: [u8; 4] = [128, 204, 230, 255];
 
-/// What a surface shows under the light of a sun that stands where the normal of its map points.
+/// Returns the radiance of a surface under the light of a sun that stands where the normal of its map points.
 fn bent(texel: [u8; 4], toward: DVec3, place: impl Fn(&mut Scene)) -> [f32; 3] {
     let mut scene = scene();
     let texture = dot(&mut scene, texel);

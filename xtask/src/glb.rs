@@ -20,12 +20,12 @@ pub struct Glb {
     roots: Vec<usize>,
 }
 
-/// Where a node stands in its parent.
+/// The place of a node in its parent.
 pub fn at(x: f64, y: f64, z: f64) -> Value {
     json!({ "translation": [x, y, z] })
 }
 
-/// Where a node stands, turned from looking along `from` to looking along `to`.
+/// The place of a node that is turned from looking along `from` to looking along `to`.
 pub fn turned(position: [f64; 3], from: DVec3, to: DVec3) -> Value {
     let round = |x: f64| (x * 1e7).round() / 1e7;
     let rotation = DQuat::from_rotation_arc(from.normalize(), to.normalize()).to_array().map(round);

@@ -10,7 +10,7 @@ type Uv = fn(DVec3) -> DVec2;
 /// Polygons over shared corners. Seen from outside they wind counter-clockwise.
 #[derive(Clone, Default)]
 pub struct Shape {
-    /// Where the corners are.
+    /// The places of the corners.
     pub positions: Vec<DVec3>,
     /// Their normals, of length 1.
     pub normals: Vec<DVec3>,
@@ -173,7 +173,7 @@ impl Shape {
         self
     }
 
-    /// What stands above the springing line of an arch: a panel `width` wide and `depth` thick from
+    /// Adds the wall above the springing line of an arch: a panel `width` wide and `depth` thick from
     /// `spring` to `top`, with a semicircle of `radius` cut out of it, centred on x = z = 0.
     pub fn arch(
         mut self,

@@ -1,4 +1,4 @@
-//! Takes chapters apart.
+//! The chapters, taken apart.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ pub fn tutorial() -> PathBuf {
     root().join("docs/tutorial")
 }
 
-/// What stands between two fences.
+/// A block between two fences.
 pub struct Block {
     /// What follows the opening fence.
     pub language: String,
@@ -53,12 +53,12 @@ impl Chapter {
         Self { path, prose, blocks }
     }
 
-    /// Its file's name.
+    /// Returns its file's name.
     pub fn name(&self) -> String {
         self.path.file_name().expect("ok: it is a file").display().to_string()
     }
 
-    /// Its language and file, to say where something is wrong.
+    /// Returns its language and file, to say where something is wrong.
     pub fn place(&self) -> String {
         self.path.strip_prefix(root()).expect("ok: it is within").display().to_string()
     }
@@ -69,7 +69,7 @@ impl Chapter {
         blocks.flat_map(|block| block.text.lines()).map(str::to_owned).collect()
     }
 
-    /// Where its links and pictures lead, as written.
+    /// Returns the targets of its links and pictures, as written.
     pub fn links(&self) -> Vec<&str> {
         links(&self.prose)
     }
@@ -95,7 +95,7 @@ pub fn chapters(language: &str) -> Vec<Chapter> {
     paths.into_iter().map(Chapter::read).collect()
 }
 
-/// All chapters of both languages.
+/// Returns the chapters of both languages.
 pub fn all() -> Vec<Chapter> {
     LANGUAGES.iter().flat_map(|language| chapters(language)).collect()
 }

@@ -1,7 +1,7 @@
 //! The tutorial's chapters keep what they show: commands run, pictures are what their commands
 //! make, excerpts stand in the sources, links lead somewhere, and both languages show the same.
 //!
-//! What a chapter may contain, and what is held:
+//! The parts of a chapter, and what is held of each:
 //!
 //! - Its first line links to the previous chapter, the contents (`../README.md`), the next chapter
 //!   and the same one in the other language.

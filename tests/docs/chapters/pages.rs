@@ -1,4 +1,4 @@
-//! What can be seen of the chapters without running anything.
+//! The properties of the chapters that can be seen without running anything.
 
 use std::fs;
 
@@ -153,7 +153,7 @@ fn squeezed(text: &str) -> String {
     text.split_whitespace().collect()
 }
 
-/// Whether a line stands for others that are left out.
+/// True if a line stands for others that are left out.
 fn is_gap(line: &str) -> bool {
     line.trim().trim_start_matches(['/', '#']).trim() == "…"
 }

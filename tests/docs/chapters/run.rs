@@ -35,7 +35,7 @@ static SESSION: LazyLock<Session> = LazyLock::new(|| {
     Session { folder, answers }
 });
 
-/// Whether a command holds Embree against something in a build that has none.
+/// True if a command holds Embree against something in a build that has none.
 fn lacks_embree(line: &str) -> bool {
     let compares = line.starts_with("envers validate ") && !line.contains("--ray");
     compares && !cfg!(feature = "embree")

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use super::book::tutorial;
 
-/// What Python prints for an expression, after `from vecteur import *`; or the kind of its error.
+/// Returns what Python prints for an expression, after `from vecteur import *`; or the kind of its error.
 fn python(expression: &str) -> String {
     let program = format!("from vecteur import *\nprint({expression})");
     let mut command = Command::new("python3");

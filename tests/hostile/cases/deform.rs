@@ -11,7 +11,7 @@ fn zeros(model: &mut Model, kind: &str, component: u32, count: u64) -> usize {
     model.accessor(json!({"componentType": component, "type": kind, "count": count}))
 }
 
-/// So many vertices, in squares.
+/// Adds `count` vertices, in squares.
 fn squares(model: &mut Model, count: usize) -> usize {
     let square = [0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 0.];
     model.floats("VEC3", &square.repeat(count / 4))

@@ -7,7 +7,7 @@ fn words(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-/// The same file with a word of four bytes replaced.
+/// Returns the same file with a word of four bytes replaced.
 fn patched(at: usize, word: u32) -> Vec<u8> {
     let mut glb = Model::triangle().glb();
     glb[at..at + 4].copy_from_slice(&word.to_le_bytes());

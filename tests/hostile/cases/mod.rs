@@ -22,16 +22,16 @@ use std::process::{Command, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// What the command should make of a file.
+/// The expected outcome of loading a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Expect {
     /// Exit status 2, and this on stderr.
     Error(&'static str),
-    /// It loads, with this on stderr.
+    /// The file loads, with this on stderr.
     Warning(&'static str),
-    /// It loads, and there is nothing to say of it.
+    /// The file loads without a word on stderr.
     Loads,
-    /// It loads, or exit status 2 tells why not: numbers that mean little, and what is not read yet.
+    /// The file loads, or exit status 2 tells why not: numbers that mean little, and what is not read yet.
     Any,
 }
 use Expect::{Error, Loads, Warning};
@@ -41,7 +41,7 @@ struct Case {
     name: String,
     /// The names and bytes of the files; the first is the one that is loaded.
     files: Vec<(String, Vec<u8>)>,
-    /// What else has to be done to the folder.
+    /// The further preparation of the folder.
     prepare: fn(&Path),
     expect: Expect,
 }
@@ -52,19 +52,19 @@ impl Case {
         Self { name: name.into(), files, prepare: |_| {}, expect }
     }
 
-    /// The same with another text in its file.
+    /// Returns the same case with another text in its file.
     fn instead(mut self, text: &str) -> Self {
         self.files[0].1 = text.as_bytes().to_vec();
         self
     }
 
-    /// The same with another file beside it.
+    /// Returns the same case with another file beside it.
     fn with(mut self, file: &str, bytes: impl AsRef<[u8]>) -> Self {
         self.files.push((file.to_owned(), bytes.as_ref().to_vec()));
         self
     }
 
-    /// The same in a folder to which this is done.
+    /// Returns the same case in a folder to which this is done.
     fn after(mut self, prepare: fn(&Path)) -> Self {
         self.prepare = prepare;
         self
@@ -100,7 +100,7 @@ fn cases() -> Vec<Case> {
 /// machine may be busy: what is limited to 10 s is the time of the processor.
 const HANGS: Duration = Duration::from_secs(300);
 
-/// What the command does with a file, within 10 s and 1 GiB: its exit status, and what it says.
+/// Runs the command on a file, within 10 s and 1 GiB; returns its exit status and its messages.
 fn run(file: &Path) -> Result<(i32, String), String> {
     // Seconds of processors, and the data segment, which since Linux 4.7 is all memory of one's own,
     // in KiB.
@@ -143,7 +143,7 @@ fn run(file: &Path) -> Result<(i32, String), String> {
     }
 }
 
-/// What is wrong with what the command does.
+/// Returns what is wrong with an outcome.
 fn fault(expect: Expect, outcome: Result<(i32, String), String>) -> Option<String> {
     let (code, said) = match outcome {
         Ok(outcome) => outcome,

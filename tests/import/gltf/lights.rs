@@ -17,7 +17,7 @@ fn with_light(light: serde_json::Value, node: serde_json::Value) -> Scene {
     model.load().unwrap().scene
 }
 
-/// How many lights are the file's own: a bare model gets a little ambient light besides.
+/// Counts the lights that are the file's own: a bare model gets a little ambient light besides.
 fn own_lights(scene: &Scene) -> usize {
     scene.lights.iter().filter(|light| light.kind != LightKind::Ambient).count()
 }

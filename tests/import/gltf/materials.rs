@@ -39,7 +39,7 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Loaded {
     model.load().unwrap()
 }
 
-/// What the material does with light, at a point of this vertex colour.
+/// Returns the shading parameters of the material at a point of this vertex colour.
 fn tinted(loaded: &Loaded, tint: Vec3) -> ShadingParams {
     let Loaded { scene, report, .. } = loaded;
     assert_eq!(report.warnings, [""; 0]);

@@ -1,4 +1,4 @@
-//! What glTF files become, each test one feature, and what is said of damaged and hostile ones,
+//! The scenes that glTF files become, each test one feature, and the errors of damaged and hostile ones,
 //! each test one fault.
 
 mod animation;

@@ -7,7 +7,7 @@ use envers::scene::ShadingParams;
 use envers::surface::TextureContext;
 use serde_json::Value;
 
-/// What a material becomes, of which there is nothing to say.
+/// Returns the material of a file that loads without a warning.
 #[track_caller]
 fn made(source: Value) -> Material {
     let mut model = Model::triangle();
@@ -227,7 +227,7 @@ fn transmission_and_volume_can_be_required() {
     assert_eq!(model.load().unwrap().report.warnings, [""; 0]);
 }
 
-/// What the material does with light.
+/// Returns the shading parameters of the material.
 fn finish(scene: &Scene) -> ShadingParams {
     envers::surface::shading_params(scene, material(scene), &TextureContext::default())
 }

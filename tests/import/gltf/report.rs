@@ -1,4 +1,4 @@
-//! What a file's report counts.
+//! The counts in a file's load report.
 
 use super::*;
 use envers::{DropReason, LoadReport};

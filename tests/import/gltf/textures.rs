@@ -100,7 +100,7 @@ fn material_chooses_its_set_of_texture_coordinates() {
     assert_eq!(model.load().unwrap().scene.meshes[0].uvs, [[0.5; 2]; 3]);
 }
 
-/// Where the corners of the triangle fall on the picture of a texture.
+/// Returns the places of the corners of the triangle on the picture of a texture.
 fn on_picture(scene: &Scene, texture: &Texture) -> Vec<[f32; 2]> {
     let mesh = &scene.meshes[0];
     let uvs = if texture.set == 0 { &mesh.uvs } else { &mesh.second_uvs };

@@ -1,4 +1,4 @@
-//! What is not valid in a file is a warning that names its place, used or not.
+//! Each part of a file that is not valid is a warning that names its place, used or not.
 
 use super::*;
 use serde_json::Value;

@@ -8,14 +8,14 @@ use serde_json::Value;
 
 use super::{docs_folder, scene};
 
-/// What the schema says of a key.
+/// The properties of a key in the schema.
 #[derive(Debug)]
 struct Key {
     required: bool,
     default: Option<Value>,
 }
 
-/// All keys by table, nested ones with a dot.
+/// Returns the keys by table, nested ones with a dot.
 fn keys() -> BTreeMap<String, BTreeMap<String, Key>> {
     let schema = schema().to_value();
     let tables = schema["properties"].as_object().unwrap();

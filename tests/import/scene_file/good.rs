@@ -1,4 +1,4 @@
-//! What scene files mean.
+//! The meaning of scene files.
 
 use envers::scene::{
     AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,

@@ -48,7 +48,7 @@ fn scene(text: &str) -> Scene {
     File::new(text).load().unwrap_or_else(|e| panic!("{e}\n{text}")).scene
 }
 
-/// The same with the camera in front.
+/// Loads a text with the camera in front.
 fn seen(text: &str) -> Scene {
     scene(&format!("{CAMERA}{text}"))
 }
@@ -71,7 +71,7 @@ fn refused(marked: &str) -> Error {
     error
 }
 
-/// The same for a text after a camera.
+/// Returns the error that a text gives after the camera.
 fn refused_seen(marked: &str) -> Error {
     refused(&format!("{CAMERA}{marked}"))
 }

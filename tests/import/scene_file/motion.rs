@@ -26,7 +26,7 @@ fn near(a: DVec3, b: [f64; 3]) -> bool {
     (a - DVec3::from(b)).length() < 1e-12
 }
 
-/// What is refused of a scene with the ball; its place is that of the mark.
+/// Returns the error of a scene with the ball; its place is that of the mark.
 fn refused_of_the_ball(text: &str) -> Error {
     refused(&format!("{CAMERA}{FRAMES}{BALL}{text}"))
 }

@@ -136,7 +136,7 @@ fn piece() -> impl Strategy<Value = String> {
     ]
 }
 
-/// The same cases each time; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore others.
+/// The configuration: the same cases each time; `PROPTEST_RNG_SEED` and `PROPTEST_CASES` explore others.
 fn config() -> ProptestConfig {
     let mut config = ProptestConfig { failure_persistence: None, ..ProptestConfig::default() };
     if std::env::var_os("PROPTEST_RNG_SEED").is_none() {

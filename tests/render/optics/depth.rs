@@ -1,4 +1,4 @@
-//! How far light is followed, and what that costs.
+//! The depth to which secondary rays are traced, and its cost.
 
 use envers::integrator::{RayCounts, Tiling};
 use envers::scene::{Material, Plane, Scene};

@@ -1,4 +1,4 @@
-//! What is no surface leaves no trace.
+//! Surfaces without any effect on light leave no trace.
 
 use envers::intersect::{Backend, Precision};
 use envers::scene::{

@@ -64,7 +64,7 @@ pub fn data_uri(bytes: &[u8]) -> String {
 
 /// A glTF file being made: one scene, one node, one mesh, to begin with.
 pub struct Model {
-    /// Its JSON, without buffers, views and accessors.
+    /// The JSON of the file, without buffers, views and accessors.
     pub json: Value,
     bin: Vec<u8>,
     views: Vec<Value>,
@@ -246,7 +246,7 @@ pub fn corpus() -> Option<PathBuf> {
     corpus
 }
 
-/// All files under a folder whose name ends in one of `extensions`, in order.
+/// Returns the files under a folder whose name ends in one of `extensions`, in order.
 pub fn files(folder: &Path, extensions: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];

@@ -77,7 +77,7 @@ pub fn ktx(size: [u32; 2], color: [u8; 4]) -> Vec<u8> {
     ktx_of(size, 0, [166, 2], block)
 }
 
-/// The same of floats, given as the bits of halves, packed as UASTC HDR.
+/// Returns the same with floats, given as the bits of halves, packed as UASTC HDR.
 pub fn ktx_of_floats(size: [u32; 2], [r, g, b, a]: [u16; 4]) -> Vec<u8> {
     // ASTC's block of one colour of floats, without bounds, in its lower half (Khronos Data Format
     // Specification, section 23.23); linear.

@@ -10,7 +10,7 @@ use glam::{DVec2, dvec2};
 
 use crate::shape::circle;
 
-/// How a line looks.
+/// The style of a line.
 #[derive(Clone, Copy)]
 pub struct Pen {
     color: &'static str,
@@ -22,7 +22,7 @@ pub struct Pen {
 pub const INK: Pen = Pen { color: "#1f2430", width: 2.0, dashed: false };
 /// Axes, measures, what helps to see.
 pub const FINE: Pen = Pen { color: "#7a8294", width: 1.2, dashed: false };
-/// What is only thought of: prolongations, perpendiculars.
+/// The pen for construction lines: prolongations, perpendiculars.
 pub const DASHED: Pen = Pen { dashed: true, ..FINE };
 /// The way of the light.
 pub const LIGHT: Pen = Pen { color: "#d98200", width: 2.2, dashed: false };
@@ -40,14 +40,14 @@ pub const SHADE: &str = "#d5d8df";
 /// No fill.
 pub const HOLLOW: &str = "none";
 
-/// Which part of a label stands at its point.
+/// The part of a label that stands at its point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
-    /// Its left end.
+    /// The left end.
     Start,
     /// Its middle.
     Middle,
-    /// Its right end.
+    /// The right end.
     End,
 }
 

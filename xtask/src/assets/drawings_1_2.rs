@@ -20,7 +20,7 @@ pub fn all() -> Vec<(&'static str, Drawing)> {
     ]
 }
 
-/// Where a line from `from` along `along`, of length 1, first meets a circle.
+/// Returns the point where a line from `from` along `along`, of length 1, first meets a circle.
 fn meet(from: DVec2, along: DVec2, center: DVec2, radius: f64) -> Option<DVec2> {
     let middle = (center - from).dot(along);
     let nearest = from + along * middle;
@@ -137,7 +137,7 @@ fn frame() -> Drawing {
     d
 }
 
-/// From the image's own coordinates to those of space.
+/// The drawing of the way from the image's own coordinates to those of space.
 fn pixels() -> Drawing {
     let mut d = Drawing::new(640.0, 330.0, "(0 ; 0) → O");
     let (corner, size) = (dvec2(110.0, 60.0), dvec2(420.0, 210.0));

@@ -53,7 +53,7 @@ fn beam() -> Drawing {
     d
 }
 
-/// What III.2 and III.3 measure at a point of the sphere.
+/// The drawing of the angles that III.2 and III.3 measure at a point of the sphere.
 fn angles() -> Drawing {
     let mut d = Drawing::new(640.0, 340.0, "M, n, ℓ, u, r, θ");
     let (center, radius) = (dvec2(400.0, 240.0), 90.0);

@@ -31,7 +31,7 @@ fn refract(u: DVec2, normal: DVec2, eta: f64) -> DVec2 {
     u * eta + normal * (eta * cosine - (1.0 - eta * eta * (1.0 - cosine * cosine)).sqrt())
 }
 
-/// Where a line in unit direction `u` leaves a circle that it is in.
+/// Returns the point where a line in unit direction `u` leaves a circle that it is in.
 fn exit(from: DVec2, u: DVec2, center: DVec2, radius: f64) -> DVec2 {
     let f = from - center;
     let half = f.dot(u);

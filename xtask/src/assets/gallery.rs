@@ -1,4 +1,4 @@
-//! What the gallery stands on: a gem, a cube, a ring, skies and a planet's clouds.
+//! The models and pictures of the gallery: a gem, a cube, a ring, skies and a planet's clouds.
 
 use std::fmt::Write;
 

@@ -18,9 +18,9 @@ mod vase;
 
 use std::path::Path;
 
-/// Where the models are, from the top of the checkout.
+/// The folder of the models, from the top of the checkout.
 pub const MODELS: &str = "assets/scenes/gallery/models";
-/// Where the drawings are, among the tutorial's pictures.
+/// The folder of the drawings, among the tutorial's pictures.
 pub const DRAWINGS: &str = "docs/tutorial/images";
 
 /// The files: their paths from the top of the checkout, and their bytes.

@@ -124,7 +124,7 @@ pub fn landscape() -> Vec<u8> {
     })
 }
 
-/// What is painted on the vase: u runs around it once, v from the rim down to the foot.
+/// The painting on the vase, a PNG: u runs around it once, v from the rim down to the foot.
 pub fn vase() -> Vec<u8> {
     const KEY: [&[u8; 6]; 5] = [b"#####.", b"#...#.", b"#.###.", b"#.....", b"######"];
     png(512, 256, |p| {

@@ -80,7 +80,7 @@ fn knot() -> Shape {
     Shape::default().tube(&curve, 0.07, 16)
 }
 
-/// What is seen through the arches: a hedge to the left and one at the back, and cypresses.
+/// Adds the garden that is seen through the arches: a hedge to the left and one at the back, and cypresses.
 fn garden(glb: &mut Glb, hedge: usize, cypress: usize) {
     let garden = glb.node("garden", None, at(0.0, 0.0, 0.0));
     let row = Shape::default().cuboid([-7.0, 0.0, -0.4], [7.0, 1.9, 0.4], 1.0);

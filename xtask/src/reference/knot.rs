@@ -14,10 +14,10 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// How many triangles the knot of M has.
+/// The number of triangles of the knot of M.
 pub const TRIANGLES: usize = 1_000_000;
 
-/// How many rings, of how many vertices each, make the knot that has about `triangles`, at least
+/// Returns the number of rings, and of vertices of each, of the knot that has about `triangles`, at least
 /// 18: the steps along it are about as long as those around it. For 1,000,000 that is exact.
 pub fn resolution(triangles: usize) -> [u32; 2] {
     let sides = (triangles as f64 / 16.0).sqrt().round().max(3.0);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 
-/// How many spheres stand about the tutorial's own.
+/// The number of spheres about the tutorial's own.
 pub const COUNT: usize = 500;
 
 /// The colours that the spheres are given, linear; the first is the tutorial's blue.
@@ -20,11 +20,11 @@ pub const COLORS: [[f64; 3]; 6] = [
 /// A sphere, in the tutorial's space: x to the right, y down, z into the picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
-    /// Its centre.
+    /// The centre.
     pub center: DVec3,
-    /// Its radius.
+    /// The radius.
     pub radius: f64,
-    /// Its colour's index in [`COLORS`].
+    /// The index of its colour in [`COLORS`].
     pub color: usize,
 }
 
