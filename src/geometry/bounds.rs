@@ -22,7 +22,7 @@ impl Bounds {
 
     /// The smallest box around this one and a point.
     #[inline]
-    pub fn union_point(self, point: DVec3) -> Self {
+    fn union_point(self, point: DVec3) -> Self {
         Self { lower: self.lower.min(point), upper: self.upper.max(point) }
     }
 

@@ -49,7 +49,7 @@ impl DoubleDouble {
 
     /// The exact sum a + b where |a| ≥ |b| or a = 0 (Dekker's fast two-sum).
     #[inline(always)]
-    pub fn ordered_sum(a: f64, b: f64) -> Self {
+    fn ordered_sum(a: f64, b: f64) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }
     }

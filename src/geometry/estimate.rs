@@ -18,6 +18,16 @@ impl Estimate {
     /// An undecided intersection: hit or miss, at any distance.
     pub const UNKNOWN: Self = Self { t: 0.0, error: f64::INFINITY };
 
+    /// [`Estimate::MISS`] for a certain miss, (`t`, `error`) for a certain hit, and otherwise
+    /// [`Estimate::UNKNOWN`]; by selects rather than branches.
+    #[inline(always)]
+    pub(super) fn select(is_miss: bool, is_hit: bool, t: f64, error: f64) -> Self {
+        Self {
+            t: if is_miss { f64::INFINITY } else { if is_hit { t } else { 0.0 } },
+            error: if is_miss { 0.0 } else { if is_hit { error } else { f64::INFINITY } },
+        }
+    }
+
     /// The lower bound of the exact t.
     #[inline(always)]
     pub fn lower(&self) -> f64 {

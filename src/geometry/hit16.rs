@@ -3,7 +3,7 @@
 use crate::geometry::{Geometry, Hit, LANES, Lanes, PrimitiveId};
 
 /// Sixteen primitive ids side by side, any of which may name no primitive; see [`PrimitiveId`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct PrimitiveId16 {
     /// The geometries: [`PrimitiveId16::NONE`], [`PrimitiveId16::SPHERES`],
@@ -24,9 +24,6 @@ impl PrimitiveId16 {
     pub const PLANES: u32 = 2;
     /// The geometry code of a triangle of the first mesh; later meshes follow.
     pub const MESHES: u32 = 3;
-
-    pub(super) const EMPTY: Self =
-        Self { geometry: [0; LANES], primitive: [0; LANES], instance: [0; LANES] };
 
     /// The id in lane `i`, if there is one.
     #[inline(always)]
@@ -55,7 +52,7 @@ impl PrimitiveId16 {
 }
 
 /// The hits of sixteen rays side by side; see [`Hit`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Hit16 {
     /// The distances; infinite where nothing is hit.
@@ -69,13 +66,6 @@ pub struct Hit16 {
 }
 
 impl Hit16 {
-    const MISSES: Self = Self {
-        t: [f64::INFINITY; LANES],
-        u: [0.0; LANES],
-        v: [0.0; LANES],
-        id: PrimitiveId16::EMPTY,
-    };
-
     /// The hit in lane `i`, if there is one.
     #[inline(always)]
     pub fn hit(&self, i: usize) -> Option<Hit> {
@@ -144,7 +134,7 @@ impl HitBatch {
     pub fn resize(&mut self, count: usize) -> &mut [Hit16] {
         let blocks = count.div_ceil(LANES);
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Hit16::MISSES);
+            self.blocks.resize(blocks, Hit16::default());
         }
         self.len = count;
         let all = &mut self.blocks[..blocks];

@@ -11,7 +11,7 @@ pub const LANES: usize = 16;
 pub type Lanes<T> = [T; LANES];
 
 /// Sixteen rays side by side, without their departures; see [`Ray`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Ray16 {
     /// The origins, axis by axis.
@@ -23,9 +23,6 @@ pub struct Ray16 {
 }
 
 impl Ray16 {
-    const EMPTY: Self =
-        Self { origin: [[0.0; LANES]; 3], direction: [[0.0; LANES]; 3], tmax: [0.0; LANES] };
-
     /// The origin and the direction in lane `i`.
     #[inline(always)]
     pub fn origin_and_direction(&self, i: usize) -> (DVec3, DVec3) {
@@ -35,7 +32,7 @@ impl Ray16 {
 }
 
 /// The departures of sixteen rays side by side; see [`Departure`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Departure16 {
     /// The primitives.
@@ -45,8 +42,6 @@ pub struct Departure16 {
 }
 
 impl Departure16 {
-    const NONE: Self = Self { id: PrimitiveId16::EMPTY, is_back: [false; LANES] };
-
     fn set(&mut self, i: usize, departure: Option<Departure>) {
         self.id.set(i, departure.map(|d| d.id));
         self.is_back[i] = departure.is_some_and(|d| d.side == Side::Back);
@@ -102,7 +97,7 @@ impl RayBatch {
 
     fn reserve(&mut self, blocks: usize) {
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Ray16::EMPTY);
+            self.blocks.resize(blocks, Ray16::default());
         }
     }
 
@@ -113,7 +108,7 @@ impl RayBatch {
         self.reserve(i / LANES + 1);
         self.len += 1;
         if ray.departure.is_some() || !self.departures.is_empty() {
-            self.departures.resize(i / LANES + 1, Departure16::NONE);
+            self.departures.resize(i / LANES + 1, Departure16::default());
             self.departures[i / LANES].set(i % LANES, ray.departure);
         }
         if ray.continuation.is_some() || !self.continuations.is_empty() {
@@ -136,7 +131,7 @@ impl RayBatch {
             && self.continuations.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        self.departures.resize(block + 1, Departure16::NONE);
+        self.departures.resize(block + 1, Departure16::default());
         self.len += LANES;
         (&mut self.blocks[block], &mut self.departures[block])
     }
@@ -148,7 +143,7 @@ impl RayBatch {
     pub fn set(&mut self, i: usize, ray: &Ray) {
         assert!(i < self.len, "ray {i} of {}", self.len);
         if ray.departure.is_some() && self.departures.is_empty() {
-            self.departures.resize(self.len.div_ceil(LANES), Departure16::NONE);
+            self.departures.resize(self.len.div_ceil(LANES), Departure16::default());
         }
         if let Some(departures) = self.departures.get_mut(i / LANES) {
             departures.set(i % LANES, ray.departure);

@@ -7,6 +7,7 @@ use crate::geometry::{LANES, Lanes, Ray, Ray16};
 
 /// The projection of a camera, with its field of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
     /// A perspective with this angle between the lower and the upper edge, in radians, in (0, π).
     FovY(f64),

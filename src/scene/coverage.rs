@@ -17,6 +17,7 @@ pub struct Coverage {
 
 /// The meaning of alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AlphaMode {
     /// A mask: where alpha is below the cutoff no ray hits the surface; for meshes only.
     Mask {

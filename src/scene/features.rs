@@ -198,7 +198,7 @@ impl SceneFeatures {
 }
 
 /// The images of some materials, each once.
-pub(in crate::scene) fn images_in<'a>(
+fn images_in<'a>(
     scene: &'a Scene,
     materials: impl Iterator<Item = &'a Material>,
 ) -> Vec<&'a Image> {

@@ -9,6 +9,7 @@ use crate::scene::Tone;
 /// The transfer function by which linear values are encoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Transfer {
     /// The sRGB curve (IEC 61966-2-1).
     #[default]
@@ -42,6 +43,7 @@ impl Transfer {
 /// The position in a pixel's square about which its samples are centred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum SamplePosition {
     /// The middle of the pixel, (x + ½, y + ½).
     #[default]

@@ -17,7 +17,7 @@ pub struct Image {
     pub height: u32,
     /// The `width · height` pixels.
     pub texels: Texels,
-    /// The mipmaps for colours encoded as sRGB, and for linear ones; built when first asked for.
+    /// The mipmaps by the encoding of colours, in the order of [`Transfer`]; built when first asked for.
     mipmaps: [OnceLock<Mipmap>; 2],
 }
 
@@ -61,12 +61,9 @@ impl Image {
     }
 
     /// The mipmap of the image, its colours encoded by `transfer`.
-    pub fn mipmap(&self, transfer: Transfer) -> &Mipmap {
-        let mipmap = match transfer {
-            Transfer::Srgb => &self.mipmaps[0],
-            Transfer::None => &self.mipmaps[1],
-        };
-        mipmap.get_or_init(|| Mipmap::new(&self.texels, [self.width, self.height], transfer))
+    pub(crate) fn mipmap(&self, transfer: Transfer) -> &Mipmap {
+        self.mipmaps[transfer as usize]
+            .get_or_init(|| Mipmap::new(&self.texels, [self.width, self.height], transfer))
     }
 }
 

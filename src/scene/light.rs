@@ -7,6 +7,7 @@ use serde::Deserialize;
 /// The falloff of a point light or spot with distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Falloff {
     /// Not at all, as in the tutorial.
     #[default]
@@ -17,6 +18,7 @@ pub enum Falloff {
 
 /// The kind of a light, with its position and direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LightKind {
     /// Light from all directions, the same at every point: Phong's ambient term.
     Ambient,
@@ -53,6 +55,7 @@ pub enum LightKind {
 
 /// The shadows that a light casts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Shadow {
     /// No shadows: every point that faces the light is lit.
     None,

@@ -63,6 +63,7 @@ pub struct Material {
 
 /// A texture that varies the shininess.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ShininessMap {
     /// The shininess is multiplied by the channel, and at least 1.
     Factor(Channel),
@@ -88,6 +89,41 @@ pub struct OcclusionMap {
     pub map: Channel,
     /// The strength, in \[0, 1\].
     pub strength: f32,
+}
+
+/// An iterator over references, shared or mutable, to the ids of a material's textures.
+macro_rules! texture_ids {
+    ($material:ident, $as_ref:ident, $as_deref:ident) => {{
+        let own = [
+            $material.diffuse_map.$as_ref(),
+            $material.specular_map.$as_ref(),
+            $material.shininess_map.$as_ref().map(|map| match map {
+                ShininessMap::Factor(Channel { texture, .. })
+                | ShininessMap::Gloss(Channel { texture, .. }, _) => texture,
+            }),
+            $material.emission_map.$as_ref(),
+            $material.normal_map.$as_ref().map(|NormalMap { texture, .. }| texture),
+            $material
+                .occlusion_map
+                .$as_ref()
+                .map(|OcclusionMap { map: Channel { texture, .. }, .. }| texture),
+            $material
+                .coverage
+                .$as_ref()
+                .and_then(|coverage| coverage.map.$as_ref().map(|Channel { texture, .. }| texture)),
+        ];
+        let metallic = $material.metallic.$as_deref().map(|maps| {
+            [
+                maps.base.$as_ref(),
+                maps.specular_color.$as_ref(),
+                maps.metallic.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.roughness.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.specular.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.transmission.$as_ref().map(|Channel { texture, .. }| texture),
+            ]
+        });
+        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+    }};
 }
 
 impl Default for Material {
@@ -220,56 +256,13 @@ impl Material {
     }
 
     /// The textures; one that is used twice is listed twice.
-    pub fn textures(&self) -> impl Iterator<Item = TextureId> + use<> {
-        let of_channel = |channel: Option<Channel>| channel.map(|c| c.texture);
-        let shininess = self.shininess_map.map(|map| match map {
-            ShininessMap::Factor(map) | ShininessMap::Gloss(map, _) => map.texture,
-        });
-        let own = [
-            self.diffuse_map,
-            self.specular_map,
-            shininess,
-            self.emission_map,
-            self.normal_map.map(|map| map.texture),
-            of_channel(self.occlusion_map.map(|o| o.map)),
-            of_channel(self.coverage.and_then(|c| c.map)),
-        ];
-        let metallic = self.metallic.as_deref().map(|m| {
-            let channels = [m.metallic, m.roughness, m.specular, m.transmission].map(of_channel);
-            let [a, b, c, d] = channels;
-            [m.base, m.specular_color, a, b, c, d]
-        });
-        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+    pub fn textures(&self) -> impl Iterator<Item = TextureId> {
+        texture_ids!(self, as_ref, as_deref).copied()
     }
 
     /// The ids of the textures, mutable.
     pub fn textures_mut(&mut self) -> impl Iterator<Item = &mut TextureId> {
-        fn of_channel(channel: &mut Option<Channel>) -> Option<&mut TextureId> {
-            channel.as_mut().map(|c| &mut c.texture)
-        }
-        let shininess = self.shininess_map.as_mut().map(|map| match map {
-            ShininessMap::Factor(map) | ShininessMap::Gloss(map, _) => &mut map.texture,
-        });
-        let own = [
-            self.diffuse_map.as_mut(),
-            self.specular_map.as_mut(),
-            shininess,
-            self.emission_map.as_mut(),
-            self.normal_map.as_mut().map(|map| &mut map.texture),
-            self.occlusion_map.as_mut().map(|o| &mut o.map.texture),
-            self.coverage.as_mut().and_then(|c| of_channel(&mut c.map)),
-        ];
-        let metallic = self.metallic.as_deref_mut().map(|m| {
-            [
-                m.base.as_mut(),
-                m.specular_color.as_mut(),
-                of_channel(&mut m.metallic),
-                of_channel(&mut m.roughness),
-                of_channel(&mut m.specular),
-                of_channel(&mut m.transmission),
-            ]
-        });
-        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+        texture_ids!(self, as_mut, as_deref_mut)
     }
 }
 

@@ -115,7 +115,7 @@ pub fn shininess(roughness: f32) -> f32 {
 
 /// The share of a surface's reflection that is as sharp as a mirror's: (1 − α/0.16)² with
 /// α = roughness², and 0 from roughness 0.4 on. The formula is ours; it is smooth at either end.
-pub fn mirror_share(roughness: f32) -> f32 {
+pub(crate) fn mirror_share(roughness: f32) -> f32 {
     let ratio = clamped_factor(roughness) / ROUGH;
     let rest = (1.0 - ratio * ratio).max(0.0);
     rest * rest

@@ -8,11 +8,11 @@ use crate::scene::Transfer;
 
 /// The smaller copies of an image, each half as large as the one before, down to one pixel.
 #[derive(Clone, Debug)]
-pub struct Mipmap(Vec<MipLevel>);
+pub(crate) struct Mipmap(Vec<MipLevel>);
 
 /// One level of a mipmap.
 #[derive(Clone, Debug)]
-pub struct MipLevel {
+pub(super) struct MipLevel {
     /// The width and height in pixels.
     pub size: [u32; 2],
     /// The pixels.
@@ -40,7 +40,7 @@ impl Mipmap {
     }
 
     /// The levels from the largest on; the first has half the image's size.
-    pub fn levels(&self) -> &[MipLevel] {
+    pub(super) fn levels(&self) -> &[MipLevel] {
         &self.0
     }
 }

@@ -19,7 +19,7 @@ use crate::scene::{GRAIN, Instance, Mesh, Scene};
 /// The greatest ratio of the longest side of the scene's box to the detail of a mesh that precision
 /// `fast` supports on Embree.
 ///
-/// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/frame.rs`
+/// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/f32_space.rs`
 /// derives it), so that finer detail could not be told apart at all; but already where triangles
 /// are larger some rays meet a neighbour instead. Measured on a ball at the end of its scene, the
 /// share of rays that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at

@@ -11,6 +11,7 @@ pub type Texel = [u8; 4];
 
 /// The pixels of an image, row by row from the upper left: red, green, blue, alpha.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Texels {
     /// Pixels of 8 bits per channel.
     Bytes(Vec<Texel>),
@@ -49,30 +50,22 @@ impl Texels {
     /// When there is no such pixel.
     #[inline]
     pub fn linear(&self, index: usize, transfer: Transfer) -> Vec4 {
-        match self {
-            Self::Bytes(texels) => {
-                let texel = texels[index];
-                let plain = Vec4::from(texel.map(f32::from)) / 255.0;
-                match transfer {
-                    Transfer::None => plain,
-                    Transfer::Srgb => {
-                        let [r, g, b, _] = texel.map(|x| BYTES[usize::from(x)]);
-                        Vec4::new(r, g, b, plain.w)
-                    }
-                }
+        match (self, transfer) {
+            (Self::Floats(texels), _) => Vec4::from(texels[index]),
+            (Self::Bytes(texels), Transfer::None) => {
+                Vec4::from(texels[index].map(f32::from)) / 255.0
             }
-            Self::Words(texels) => {
-                let texel = texels[index];
-                let plain = Vec4::from(texel.map(f32::from)) / 65535.0;
-                match transfer {
-                    Transfer::None => plain,
-                    Transfer::Srgb => {
-                        let [r, g, b, _] = texel.map(|x| WORDS[usize::from(x)]);
-                        Vec4::new(r, g, b, plain.w)
-                    }
-                }
+            (Self::Words(texels), Transfer::None) => {
+                Vec4::from(texels[index].map(f32::from)) / 65535.0
             }
-            Self::Floats(texels) => Vec4::from(texels[index]),
+            (Self::Bytes(texels), Transfer::Srgb) => {
+                let [r, g, b, a] = texels[index].map(usize::from);
+                Vec4::new(BYTES[r], BYTES[g], BYTES[b], a as f32 / 255.0)
+            }
+            (Self::Words(texels), Transfer::Srgb) => {
+                let [r, g, b, a] = texels[index].map(usize::from);
+                Vec4::new(WORDS[r], WORDS[g], WORDS[b], a as f32 / 65535.0)
+            }
         }
     }
 

@@ -23,6 +23,7 @@ pub struct Channel {
 
 /// The wrap mode: what lies beyond the edges of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Wrap {
     /// The image repeats.
     #[default]
@@ -35,6 +36,7 @@ pub enum Wrap {
 
 /// The filter by which the pixels around a point become its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Filter {
     /// The pixel that contains the point.
     Nearest,

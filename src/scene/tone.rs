@@ -8,6 +8,7 @@ use serde::Deserialize;
 /// It is applied to red, green and blue separately, never decreases, and is 0 at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Tone {
     /// The clamp min(x, 1).
     #[default]

@@ -27,6 +27,7 @@ pub use png::encode as png_bytes;
 
 /// The format of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
     /// PNG: 8 bits per channel, clamped.
     Png,

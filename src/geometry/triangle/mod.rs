@@ -49,6 +49,12 @@ pub struct EdgeFunctions {
 /// size of the triangle, and of t if the triangle is not nearer than it is large.
 const FLAT_SQUARED: f64 = 1.0 / (1u64 << 40) as f64;
 
+/// The edge functions d·(p × q) of a triangle whose vertices are relative to the line's origin.
+#[inline(always)]
+fn edge_functions([a, b, c]: [DVec3; 3], direction: DVec3) -> [f64; 3] {
+    [direction.dot(b.cross(c)), direction.dot(c.cross(a)), direction.dot(a.cross(b))]
+}
+
 impl EdgeFunctions {
     /// Evaluates the edge functions for the line `origin + t·direction`.
     #[inline(always)]
@@ -59,11 +65,7 @@ impl EdgeFunctions {
         let toward = normal.dot(direction);
         let sides = first.length_squared() * second.length_squared() * direction.length_squared();
         Self {
-            values: [
-                direction.dot(b.cross(c)),
-                direction.dot(c.cross(a)),
-                direction.dot(a.cross(b)),
-            ],
+            values: edge_functions([a, b, c], direction),
             t: normal.dot(a) / toward,
             is_flat: toward * toward <= FLAT_SQUARED * sides,
         }

@@ -14,7 +14,7 @@ impl Animation {
     /// Checks that frames, curves and indices into `scene` are valid; `Scene::check` calls it.
     ///
     /// # Errors
-    /// The first thing that is not valid.
+    /// The first condition that does not hold.
     pub(in crate::scene) fn check(&self, scene: &Scene) -> Result<()> {
         require((1..=MAX_FRAMES).contains(&self.frames), || {
             format!("an animation of {} frames cannot be made", self.frames)
@@ -39,8 +39,8 @@ fn require_that(holds: bool, message: &str) -> Result<()> {
 /// Checks node `index`.
 fn check_node(index: usize, node: &Node) -> Result<()> {
     let is_before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
-    require_that(is_before(&node.parent), "its parent does not stand before it")?;
-    require_that(node.base.is_finite(), "its place is not finite")?;
+    require_that(is_before(&node.parent), "its parent does not come before it")?;
+    require_that(node.base.is_finite(), "its base transform is not finite")?;
     match &node.motion {
         Motion::Keyframes(keys) => {
             keys.translation.check()?;
@@ -49,12 +49,12 @@ fn check_node(index: usize, node: &Node) -> Result<()> {
                 Rotation::Quaternions(curve) => curve.check()?,
             }
             keys.scale.check()?;
-            require_that(keys.period.is_none_or(|p| p > 0.0), "it repeats after no time")
+            require_that(keys.period.is_none_or(|p| p > 0.0), "its period must be above 0")
         }
         Motion::Orbit(orbit) => {
-            require_that(is_before(&orbit.around.node), "its centre does not stand before it")?;
+            require_that(is_before(&orbit.around.node), "its centre does not come before it")?;
             let is_root = node.parent.is_none() && node.base == DAffine3::IDENTITY;
-            require_that(is_root, "an orbit has neither parent nor place")?;
+            require_that(is_root, "an orbit must have neither a parent nor a base transform")?;
             let points = [orbit.around.point, orbit.center, orbit.start];
             require_that(points.iter().all(|p| p.is_finite()), "its centre is not finite")?;
             let has_unit_axis = (orbit.axis.length() - 1.0).abs() < 1e-6;
@@ -72,15 +72,15 @@ fn check_deformation(
 ) -> Result<()> {
     let Deformation { base, morph_targets, weights, period, skin } = deformation;
     let is_weighted = weights.len() == morph_targets.len();
-    require_that(is_weighted, "there must be a weight for each morph")?;
+    require_that(is_weighted, "there must be a weight for each morph target")?;
     weights.iter().try_for_each(Curve::check)?;
-    require_that(period.is_none_or(|p| p > 0.0), "it repeats after no time")?;
+    require_that(period.is_none_or(|p| p > 0.0), "its period must be above 0")?;
     let Some(skin) = skin else { return Ok(()) };
     check_node_id(&skin.space.node)?;
     skin.joints.iter().try_for_each(|joint| check_node_id(&joint.node))?;
     let count = base.positions.len() * skin.influences.per_vertex;
     let fits = [skin.influences.joints.len(), skin.influences.weights.len()] == [count; 2];
-    require_that(fits, "the joints are not as many for each vertex")
+    require_that(fits, "all vertices must have the same number of joints")
 }
 
 /// Checks the indices and the curves of an animated object.

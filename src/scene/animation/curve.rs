@@ -19,33 +19,25 @@ pub trait Interpolate: Copy + Debug + PartialEq {
     fn is_valid(self) -> bool;
 }
 
-impl Interpolate for f64 {
-    fn lerp(a: Self, b: Self, s: f64) -> Self {
-        a + (b - a) * s
-    }
+macro_rules! interpolate_componentwise {
+    ($($T:ty),*) => {$(
+        impl Interpolate for $T {
+            fn lerp(a: Self, b: Self, s: f64) -> Self {
+                a + (b - a) * s
+            }
 
-    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
-        terms.into_iter().map(|(weight, value)| weight * value).sum()
-    }
+            fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
+                terms.into_iter().map(|(weight, value)| value * weight).sum()
+            }
 
-    fn is_valid(self) -> bool {
-        self.is_finite()
-    }
+            fn is_valid(self) -> bool {
+                self.is_finite()
+            }
+        }
+    )*};
 }
 
-impl Interpolate for DVec3 {
-    fn lerp(a: Self, b: Self, s: f64) -> Self {
-        a + (b - a) * s
-    }
-
-    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
-        terms.into_iter().map(|(weight, value)| value * weight).sum()
-    }
-
-    fn is_valid(self) -> bool {
-        self.is_finite()
-    }
-}
+interpolate_componentwise!(f64, DVec3);
 
 /// Rotations have length 1 and are interpolated along the shorter arc (slerp). A spline's sum is
 /// normalised, as glTF prescribes.
@@ -69,6 +61,7 @@ impl Interpolate for DQuat {
 
 /// The interpolation between two keyframes, as of glTF's animation samplers.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Interpolation<T> {
     /// The value stays until the next keyframe (`STEP`).
     Step,

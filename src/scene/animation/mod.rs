@@ -62,6 +62,7 @@ pub struct Animation {
 
 /// An animated object of a scene.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Animated {
     /// A sphere that moves or grows.
     Sphere {
@@ -130,6 +131,7 @@ pub struct Aim {
 
 /// The target of a camera's aim.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum AimTarget {
     /// A point, which may be attached to a node.
     Anchor(Anchor),

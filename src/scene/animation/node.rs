@@ -23,6 +23,7 @@ pub struct Node {
 
 /// The motion of a node.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Motion {
     /// A transform by keyframes: scale, then rotation, then translation.
     Keyframes(Keyframes),
@@ -47,6 +48,7 @@ pub struct Keyframes {
 
 /// The curve of a rotation.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Rotation {
     /// Angles in radians about the fixed x axis, then y, then z, interpolated separately: 0 to 4π is
     /// two turns.

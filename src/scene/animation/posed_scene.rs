@@ -88,7 +88,7 @@ impl<'a> PosedScene<'a> {
     /// before.
     ///
     /// # Errors
-    /// The first thing that is not valid.
+    /// The first condition that does not hold.
     pub fn check(&mut self) -> Result<()> {
         let posed = &self.posed;
         for object in self.scene.animation.iter().flat_map(|animation| &animation.objects) {

@@ -157,11 +157,7 @@ impl QuadraticBound {
             & (far.abs() < f64::INFINITY)
             & (error < f64::INFINITY);
         let misses = !self.may_cross() | (sure & outside & !ahead);
-        // `Estimate::MISS`, `Estimate::UNKNOWN` or the root, without a branch.
-        Estimate {
-            t: if misses { f64::INFINITY } else { if sure { t } else { 0.0 } },
-            error: if misses { 0.0 } else { if sure { error } else { f64::INFINITY } },
-        }
+        Estimate::select(misses, sure, t, error)
     }
 
     /// The first root above 0, or with `inward` the far one, in f64 without a bound.

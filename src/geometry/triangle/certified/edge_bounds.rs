@@ -22,6 +22,7 @@ use glam::DVec3;
 use crate::geometry::Estimate;
 use crate::geometry::double_double::{U, in_range};
 use crate::geometry::triangle::certified::{greater, largest};
+use crate::geometry::triangle::edge_functions;
 
 /// The edge functions of a line and a triangle, and the distance to its plane, with bounds.
 ///
@@ -51,11 +52,7 @@ impl EdgeBounds {
         let area = largest(first) * largest(second);
         let ranges = in_range(size) & in_range(direction_size);
         Self {
-            functions: [
-                direction.dot(b.cross(c)),
-                direction.dot(c.cross(a)),
-                direction.dot(a.cross(b)),
-            ],
+            functions: edge_functions([a, b, c], direction),
             error: if ranges { 48.0 * U * direction_size * size * size } else { f64::INFINITY },
             numerator: normal.dot(a),
             numerator_error: 64.0 * U * area * size,
@@ -92,10 +89,7 @@ impl EdgeBounds {
             & (2.0 * self.denominator_error <= self.denominator.abs())
             & (error < f64::INFINITY);
         let misses = !self.may_cross();
-        Estimate {
-            t: if misses { f64::INFINITY } else { if sure { t } else { 0.0 } },
-            error: if misses { 0.0 } else { if sure { error } else { f64::INFINITY } },
-        }
+        Estimate::select(misses, sure, t, error)
     }
 }
 
