@@ -50,8 +50,8 @@ gallery: setup ## build, and render the scenes of docs/gallery.md into out/galle
 
 # One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
-	$(CARGO) fmt --check
-	$(CARGO) clippy --locked --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --locked --workspace --all-targets -- -D warnings
 	$(CARGO) clippy --locked --all-targets $(PURE_RUST) -- -D warnings
 	$(CARGO) clippy --locked --lib --no-default-features -- -D warnings
 	$(CARGO) test --locked
@@ -60,8 +60,8 @@ test: setup ## everything that CI checks: format, lints, tests, documentation, w
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps $(PURE_RUST)
 
 check: ## the inner loop: format, lints and unit tests, default features, no set-up
-	$(CARGO) fmt --check
-	$(CARGO) clippy --all-targets -- -D warnings
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets -- -D warnings
 	$(CARGO) test --lib --bins
 
 soak: setup ## what takes longer: sweeps, random cases, fuzzing, a corpus (SOAK=0.1 is a tenth)

@@ -1,4 +1,4 @@
-//! How long an OBJ file of a million triangles takes, from the path to a checked scene, beside
+//! The time that an OBJ file of a million triangles takes, from the path to a checked scene, beside
 //! what bare tobj takes for it: `cargo bench --bench obj`.
 //!
 //! Both read the same file in turn, and the ratio of the medians counts. tobj is asked for what
@@ -14,7 +14,7 @@ const ROUNDS: usize = 11;
 /// Squares along the ring and around it; two triangles each.
 const SQUARES: [usize; 2] = [1000, 500];
 
-/// What the faces of a file name beside positions.
+/// The attributes that the faces of a file name beside positions.
 #[derive(Clone, Copy, PartialEq)]
 enum With {
     Nothing,

@@ -1,4 +1,4 @@
-//! What certainty costs: ns per ray of the certified intersections beside the plain f64 ones.
+//! The cost of certainty: ns per ray of the certified intersections beside the plain f64 ones.
 //!
 //! `cargo bench --bench precision` runs criterion over every kernel and then prints the ratios:
 //! medians of runs taken in turn. `-- ratios` prints the ratios only. Packet kernels take 16 rays
@@ -8,6 +8,11 @@
 // To call what is compiled for an instruction set.
 #![allow(unsafe_code)]
 
+#[allow(dead_code, reason = "each bench uses its own part")]
+mod support {
+    pub mod arguments;
+}
+
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -15,6 +20,7 @@ use criterion::{Criterion, Throughput};
 use envers::geometry::sphere::{self, certified as sure_sphere};
 use envers::geometry::triangle::{self, certified as sure_triangle};
 use glam::DVec3;
+use support::arguments::Arguments;
 
 /// Origin, direction and 1 / |direction|².
 type Line = (DVec3, DVec3, f64);
@@ -59,7 +65,7 @@ fn sphere_may_cross(s: &Sphere, line: Line, any: &mut bool) -> bool {
 #[inline(always)]
 fn sphere_decision(s: &Sphere, line: Line, any: &mut bool) -> bool {
     let line = sure_line(s, line);
-    *any |= line.may_cross() & !line.crosses();
+    *any |= line.may_cross() & !line.certainly_crosses();
     line.may_cross()
 }
 
@@ -79,7 +85,7 @@ fn sphere_estimate(s: &Sphere, line: Line, _: &mut bool) -> f64 {
 #[inline(always)]
 fn sphere_round(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_sphere::round(s.center, s.radius, o, d, false);
-    if rounded.certain { rounded.t } else { f64::NAN }
+    if rounded.is_certain { rounded.t } else { f64::NAN }
 }
 
 #[inline(always)]
@@ -89,21 +95,21 @@ fn sphere_first_root(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
 
 #[inline(always)]
 fn triangle_crosses(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
-    let crosses = triangle::Edges::new(*triangle, o, d).crosses();
+    let crosses = triangle::EdgeFunctions::new(*triangle, o, d).crosses();
     *any |= crosses;
     crosses
 }
 
 #[inline(always)]
 fn triangle_may_cross(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
-    let may = sure_triangle::Edges::new(*triangle, o, d).may_cross();
+    let may = sure_triangle::EdgeBounds::new(*triangle, o, d).may_cross();
     *any |= may;
     may
 }
 
 #[inline(always)]
 fn triangle_plain(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
-    let edges = triangle::Edges::new(*triangle, o, d);
+    let edges = triangle::EdgeFunctions::new(*triangle, o, d);
     let (u, v) = edges.weights();
     if edges.crosses() { edges.t + u + v } else { f64::INFINITY }
 }
@@ -116,7 +122,7 @@ fn triangle_estimate(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 
 #[inline(always)]
 fn triangle_round(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_triangle::round(*triangle, o, d);
-    if rounded.certain { rounded.t + rounded.u + rounded.v } else { f64::NAN }
+    if rounded.is_certain { rounded.t + rounded.u + rounded.v } else { f64::NAN }
 }
 
 #[inline(always)]
@@ -156,7 +162,7 @@ impl Packet {
 /// Runs a kernel over all packets, by a function that is called once per packet.
 type Run<P, T> = fn(&[Packet], &P, &mut [T; 16]);
 
-/// What runs a kernel on packets of primitives `$p`, compiled for an instruction set.
+/// A function that runs a kernel on packets of primitives `$p`, compiled for an instruction set.
 macro_rules! run {
     ($kernel:ident, $p:ty, $t:ty $(, $features:literal)?) => {{
         #[inline(never)]
@@ -227,7 +233,7 @@ impl Random {
     }
 }
 
-/// How many rays a run takes: 28 KiB of packets, which stay in the first cache.
+/// The number of rays of a run: 28 KiB of packets, which stay in the first cache.
 const RAYS: usize = 512;
 
 /// Rays from near the origin toward a square of half-side `spread` at z = 10.
@@ -256,7 +262,7 @@ fn packets(mut ray: impl FnMut() -> (DVec3, DVec3)) -> Vec<Packet> {
     lines.chunks(16).map(Packet::new).collect()
 }
 
-/// How often a timed run repeats: what is timed takes some 100 µs at least.
+/// The repetitions in a timed run: it takes some 100 µs at least.
 const REPEAT: usize = 40;
 
 /// Two kernels in turn; medians and the median ratio.
@@ -381,11 +387,8 @@ fn criterion(c: &mut Criterion) {
 }
 
 fn main() {
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    if !std::env::args().any(|a| a == "--bench") {
-        return;
-    }
-    if !std::env::args().any(|a| a == "ratios") {
+    let Some(mut arguments) = Arguments::of_bench("precision [-- ratios]") else { return };
+    if !arguments.flag("ratios") {
         let mut c = Criterion::default().sample_size(20).configure_from_args();
         criterion(&mut c);
         c.final_summary();

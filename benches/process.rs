@@ -6,14 +6,13 @@
 //! of the scene is made. Both use all threads, take turns in one run, and are timed by the clock on
 //! the wall; what is printed are medians, and the median of the rounds' ratios.
 
-#[path = "intersect/bare.rs"]
-#[allow(dead_code)]
-mod bare;
-#[path = "frame/clock.rs"]
-#[allow(dead_code)]
-mod clock;
-#[path = "frame/record.rs"]
-mod record;
+#[allow(dead_code, reason = "each bench uses its own part")]
+mod support {
+    pub mod arguments;
+    pub mod bare;
+    pub mod clock;
+    pub mod record;
+}
 
 use std::ffi::CStr;
 use std::hint::black_box;
@@ -21,17 +20,18 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use bare::{Bare, Packet, Shapes, packets};
-use clock::median;
 use embree4_sys::RTCBuildQuality;
 use envers::intersect::{IntersectorBuilder, Precision};
 use envers::{RenderOptions, Renderer};
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use rayon::prelude::*;
-use record::{Batch, Recorder};
+use support::arguments::Arguments;
+use support::bare::{Bare, Packet, Shapes, packets};
+use support::clock::median;
+use support::record::{Batch, Recorder};
 
-/// As wide as is native nearly everywhere that times matter.
+/// The width of the packets: native on nearly every processor whose times matter.
 const WIDTH: usize = 16;
 
 /// The parts of the bare work, in seconds.
@@ -50,21 +50,12 @@ impl Parts {
 }
 
 fn main() {
-    // Only `cargo bench` passes this; `cargo test --benches` must not take long.
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|a| a != "--bench").collect();
-    if !std::env::args().any(|a| a == "--bench") {
+    let Some(mut arguments) = Arguments::of_bench("process -- SCENE MODEL [--rounds N]") else {
         return;
-    }
-    let (scene, model, rounds) = match &arguments[..] {
-        [scene, model] => (scene, model, 15),
-        [scene, model, flag, rounds] if flag == "--rounds" => {
-            (scene, model, rounds.parse().unwrap())
-        }
-        _ => {
-            eprintln!("cargo bench --bench process -- SCENE MODEL [--rounds N]");
-            std::process::exit(2);
-        }
     };
+    let rounds = arguments.value("--rounds").unwrap_or(15);
+    let files = arguments.rest(2);
+    let (scene, model) = (&files[0], &files[1]);
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out.png");
     let ours = || {
@@ -102,14 +93,14 @@ fn main() {
     println!("  ratio {:.2}", median(times.iter().map(|(ours, bare)| ours / bare.sum())));
 }
 
-/// What the bare library does for a picture of the scene, with what must lie ready for it.
+/// Returns a function that does the work of a picture with the bare library; all else lies ready for it.
 fn bare_work(
     scene: &Path,
     model: &Path,
     quality: RTCBuildQuality,
     picture: &image::RgbImage,
 ) -> impl Fn() -> Parts {
-    let scene = envers::load(scene).unwrap();
+    let scene = envers::load(scene).unwrap().scene;
     let options = RenderOptions::default();
     let intersector =
         IntersectorBuilder::new(Default::default(), Precision::Fast, 0).build(&scene).unwrap();

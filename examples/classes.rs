@@ -82,7 +82,7 @@ impl Vector {
     }
 }
 
-/// What a thing must be able to do to be in the picture.
+/// A thing in the picture.
 trait Object {
     /// The least t > 0 at which `from + t·u` is on it.
     fn intersection(&self, from: Vector, u: Vector) -> Option<f64>;

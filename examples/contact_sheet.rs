@@ -4,14 +4,14 @@
 //! `cargo run --release --example contact_sheet -- FOLDER [NAME …]` writes `out/contact/NAME.png` for
 //! each folder in FOLDER, or for those named: ours on the left of each pair, theirs on the right.
 
+use envers::Loaded;
 use std::error::Error;
 use std::path::Path;
 
+use envers::Renderer;
 use envers::film::Film;
-use envers::load;
 use envers::scene::{Camera, Light, LightKind, Projection, Shadow};
 use envers::write::Settings;
-use envers::{RenderOptions, Renderer};
 use glam::{DVec3, Vec3};
 use image::imageops::{FilterType, replace, resize};
 use image::{Rgba, RgbaImage};
@@ -63,8 +63,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Our picture of a model, from where the manifest says that the camera stands.
 fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
-    let mut scene = envers::load(file)?;
-    scene.warnings.iter().for_each(|warning| println!("{warning}"));
+    let Loaded { mut scene, report, .. } = envers::load(file)?;
+    report.warnings.iter().for_each(|warning| println!("{warning}"));
     let at = |i: usize| model["camera"]["translation"][i].as_f64().unwrap_or(0.0);
     let eye = DVec3::new(at(0), at(1), at(2));
     // Theirs are made by Babylon.js, whose cameras see 0.8 radians unless told otherwise.
@@ -77,7 +77,7 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     scene.film.size = [SIDE; 2];
     scene.film.background = Vec3::new(0.35, 0.34, 0.36);
     let film = Renderer::new(&scene).render()?.film;
-    Ok(bytes(&film, &Settings::of(&scene.film)))
+    Ok(bytes(&film, &Settings::from_film(&scene.film)))
 }
 
 fn light(kind: LightKind, intensity: f32) -> Light {

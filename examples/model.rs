@@ -2,22 +2,22 @@
 //!
 //! `cargo run --release --example model -- model.glb out.exr`
 
+use envers::Loaded;
 use std::path::PathBuf;
 
+use envers::Renderer;
 use envers::error::{Error, Result};
-use envers::load;
 use envers::write::{Settings, write};
-use envers::{RenderOptions, Renderer};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let (Some(model), Some(output)) = (arguments.next(), arguments.next()) else {
         return Err(Error::input("two files are needed").help("model MODEL OUTPUT"));
     };
-    let scene = envers::load(&model)?;
-    scene.warnings.iter().for_each(|warning| eprintln!("{warning}"));
+    let Loaded { scene, report, .. } = envers::load(&model)?;
+    report.warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let rendering = Renderer::new(&scene).render()?;
-    write(&rendering.film, &output, &Settings { half: true, ..Settings::of(&scene.film) })?;
+    write(&rendering.film, &output, &Settings { half: true, ..Settings::from_film(&scene.film) })?;
     println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
     Ok(())
 }

@@ -6,8 +6,8 @@ import pathlib
 NAME = "envers"
 RELEASE = pathlib.Path(__file__).resolve().parents[2] / "target/release"
 PROGRAM = RELEASE / "envers"
-GENERATOR = RELEASE / "examples/make_reference"
-HOW = "cargo build --release && cargo build --release --example make_reference"
+GENERATOR = RELEASE / "xtask"
+HOW = "cargo build --release && cargo build --release -p xtask"
 
 
 def found():

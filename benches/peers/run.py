@@ -72,7 +72,7 @@ def main():
             peers.append(peer)
         else:
             print(f"{peer.NAME} is left out, it is not installed: {peer.HOW}", file=sys.stderr)
-    run([str(envers.GENERATOR), str(out)])
+    run([str(envers.GENERATOR), "make-reference", str(out)])
     report = {
         "size": size,
         "threads": arguments.threads,

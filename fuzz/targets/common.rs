@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use envers::load::{Limit, Limits, Options, load_with};
+use envers::{Limit, LoadOptions, Limits};
 
-/// In memory where the system has a folder for that.
+/// The folder, in memory where the system has one for that.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
     let base = Some(PathBuf::from("/dev/shm")).filter(|path| path.is_dir());
     let base = base.unwrap_or_else(std::env::temp_dir);
@@ -32,7 +32,7 @@ pub fn load(file: &str, bytes: &[u8], entry: &str) {
         .with(Limit::Elements, 1 << 16)
         .with(Limit::Pixels, 1 << 18)
         .with(Limit::Keys, 1 << 12);
-    match load_with(&path(entry), &Options { limits, ..Options::default() }) {
+    match LoadOptions::default().limits(limits).load(path(entry)) {
         Ok(scene) => scene.check().expect("what loads is valid"),
         Err(error) => {
             assert!(!error.message().is_empty());

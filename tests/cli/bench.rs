@@ -4,7 +4,7 @@ use super::*;
 
 const FILES: [&str; 4] = ["bench.csv", "bench.json", "report.html", "time-vs-error.svg"];
 
-/// How many setups there are: Embree's with two kinds of trees.
+/// The number of setups: Embree's with two kinds of trees.
 const SETUPS: usize = if cfg!(feature = "embree") { 6 } else { 2 };
 
 /// A folder in which `bench` was run with these flags, with what it left in `out`.
@@ -161,10 +161,10 @@ fn bench_leaves_out_what_has_no_time_and_says_why() {
         assert!(mode["reason"].as_str().unwrap().contains("would take about"), "{mode}");
     }
     let html = String::from_utf8(folder.read("out/report.html")).unwrap();
-    assert!(html.contains("<h2>Left out</h2>"));
+    assert!(html.contains("<h2>Skipped modes</h2>"));
 }
 
-/// Of two floors in one plane Embree's f32 rays find either.
+/// Embree's f32 rays find either of two floors in one plane.
 #[test]
 #[cfg(feature = "embree")]
 fn bench_counts_hits_that_are_not_the_certified_ones() {

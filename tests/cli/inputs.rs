@@ -242,7 +242,7 @@ fn an_extension_that_is_not_read_is_refused_with_those_that_are() {
 #[test]
 fn a_truncated_glb_is_named() {
     let folder = Folder::new();
-    let glb = import_common::Model::triangle().glb();
+    let glb = envers_testing::Model::triangle().glb();
     for length in [0, 11, 12, 19, 40, glb.len() - 1] {
         folder.write("a.glb", &glb[..length]);
         let message = refused_run(&folder, "render a.glb -o old.png");

@@ -120,7 +120,7 @@ fn json_in_the_place_of_the_scene_is_refused() {
 #[test]
 fn an_output_in_the_place_of_a_texture_is_refused() {
     let folder = Folder::new();
-    let png = import_common::png(&[[1, 2, 3, 255]]);
+    let png = envers_testing::png(&[[1, 2, 3, 255]]);
     folder.write("cube.png", &png);
     folder.write("cube.mtl", "newmtl a\nmap_Kd cube.png\n");
     folder.write("cube.obj", format!("mtllib cube.mtl\nusemtl a\n{TETRAHEDRON}"));
@@ -135,7 +135,7 @@ fn an_output_in_the_place_of_a_texture_is_refused() {
 #[test]
 fn a_heat_map_in_the_place_of_a_picture_is_refused() {
     let folder = Folder::new();
-    let png = import_common::png(&[[1, 2, 3, 255]]);
+    let png = envers_testing::png(&[[1, 2, 3, 255]]);
     folder.write("a.png", &png);
     folder.write("b.png", &png);
     for name in ["a.png", "./b.png"] {

@@ -55,7 +55,7 @@ fn background_is_the_hex_colour_that_the_scene_names() {
 #[test]
 fn a_bare_model_is_framed_and_lit() {
     for (name, bytes) in [
-        ("model.glb", import_common::Model::triangle().glb()),
+        ("model.glb", envers_testing::Model::triangle().glb()),
         ("model.obj", TETRAHEDRON.as_bytes().to_vec()),
     ] {
         let folder = Folder::new();
@@ -83,7 +83,7 @@ fn a_certified_exr_is_the_same_bytes_at_any_bvh_quality() {
     assert!(low == medium && auto == medium);
 }
 
-/// What quality a run says that it built with.
+/// Returns the quality that a run says it built with.
 #[track_caller]
 fn bvh(folder: &Folder, flags: &str) -> Value {
     folder.run(&format!("render scene.toml {flags} --stats -")).good().json()["build"]["bvh"]

@@ -1,8 +1,8 @@
-//! What the command tells in JSON and in words.
+//! The reports of the command, in JSON and in words.
 
 use super::*;
 
-/// Whether a JSON value is of some kind.
+/// True if a JSON value is of some kind.
 type Kind = fn(&Value) -> bool;
 
 /// Asserts that a JSON object has these fields, of these kinds, and says which differ.
@@ -241,8 +241,8 @@ fn validate_in_a_build_without_embree_says_so() {
 /// A folder with `a.png` and `b.png`, which differ by 10 of 255 in one channel of one pixel.
 fn two_pictures() -> Folder {
     let folder = Folder::new();
-    folder.write("a.png", import_common::png(&[[0, 0, 0, 255], [9, 9, 9, 255]]));
-    folder.write("b.png", import_common::png(&[[10, 0, 0, 255], [9, 9, 9, 255]]));
+    folder.write("a.png", envers_testing::png(&[[0, 0, 0, 255], [9, 9, 9, 255]]));
+    folder.write("b.png", envers_testing::png(&[[10, 0, 0, 255], [9, 9, 9, 255]]));
     folder
 }
 
@@ -298,7 +298,7 @@ fn diff_psnr_of_equal_pictures_is_null() {
 fn diff_of_black_and_white_is_as_far_as_flip_puts_them() {
     let folder = Folder::new();
     for (name, byte) in [("black.png", 0), ("white.png", 255)] {
-        folder.write(name, import_common::png(&[[byte, byte, byte, 255]; 8]));
+        folder.write(name, envers_testing::png(&[[byte, byte, byte, 255]; 8]));
     }
     let run = folder.run("diff black.png white.png");
     assert!(run.stdout.contains(", FLIP 0.9673"), "{}", run.stdout);
@@ -332,7 +332,7 @@ fn diff_heat_map_is_white_where_the_difference_is_largest() {
 #[test]
 fn diff_refuses_sizes_that_differ() {
     let folder = two_pictures();
-    folder.write("c.png", import_common::png(&[[0; 4]; 3]));
+    folder.write("c.png", envers_testing::png(&[[0; 4]; 3]));
     let message = folder.run("diff a.png c.png").refused();
     assert!(message.contains("2x1") && message.contains("3x1"), "{message}");
 }

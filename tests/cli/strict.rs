@@ -1,7 +1,7 @@
 //! `--strict`, and what the command tells of what is lost.
 
 use super::*;
-use import_common::Model;
+use envers_testing::Model;
 use serde_json::json;
 
 /// A folder with a model of two triangles, of which one names a vertex that is not there.

@@ -1,7 +1,7 @@
 //! `--variant`.
 
 use super::*;
-use import_common::Model;
+use envers_testing::Model;
 use serde_json::json;
 
 /// A folder with a square that is white, or black as the variant `coal`.

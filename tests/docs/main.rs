@@ -1,0 +1,9 @@
+//! The claims of the documentation: the README, the tutorial's chapters and pictures, the committed
+//! models, and the reference scenes of the benches.
+
+mod assets;
+#[cfg(feature = "cli")]
+mod chapters;
+mod readme;
+mod reference_scenes;
+mod tutorial;

@@ -1,0 +1,9 @@
+//! Scenes that are loaded from scene files, glTF and OBJ: each feature, each mistake in a file, and
+//! each limit.
+
+mod corpus;
+mod gltf;
+mod limits;
+mod loading;
+mod obj;
+mod scene_file;

@@ -1,0 +1,148 @@
+//! Models in scene files.
+
+use envers::Loaded;
+use envers::scene::{LightKind, Scene};
+use glam::DVec3;
+
+use super::{CAMERA, File};
+
+/// Two triangles of two materials, the second of which is not there.
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nusemtl none\nf 1 2 4\n";
+
+/// A camera named "eye" at (0, 0, 2) and a light of 4 at (0, 3, 0).
+const GLTF: &str = r#"{
+    "asset": { "version": "2.0" },
+    "extensionsUsed": ["KHR_lights_punctual"],
+    "extensions": { "KHR_lights_punctual": { "lights": [
+        { "type": "point", "intensity": 4, "range": 9 }
+    ] } },
+    "cameras": [{
+        "name": "eye", "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 }
+    }],
+    "nodes": [
+        { "name": "eye", "camera": 0, "translation": [0, 0, 2] },
+        { "translation": [0, 3, 0], "extensions": { "KHR_lights_punctual": { "light": 0 } } }
+    ],
+    "scenes": [{ "nodes": [0, 1] }],
+    "scene": 0
+}"#;
+
+fn file(text: &str) -> File {
+    let file = File::new(text);
+    std::fs::write(file.beside("two.obj"), OBJ).unwrap();
+    std::fs::write(file.beside("eye.gltf"), GLTF).unwrap();
+    file
+}
+
+fn scene(text: &str) -> Scene {
+    file(text).load().unwrap_or_else(|e| panic!("{e}\n{text}")).scene
+}
+
+#[test]
+fn a_model_alone_is_a_scene_with_a_camera_that_frames_it() {
+    let scene = scene("[[model]]\nfile = \"two.obj\"\n");
+    assert_eq!((scene.meshes.len(), scene.instances.len(), scene.lights.len()), (2, 2, 0));
+    assert_eq!(scene.cameras[0].name, "framing");
+}
+
+#[test]
+fn a_model_is_placed_by_translate_rotate_scale() {
+    let scene = scene(
+        "[[model]]\nfile = \"two.obj\"\nscale = 2\nrotate = [0, 0, 90]\ntranslate = [5, 0, 0]\n",
+    );
+    // x is doubled, turned to y, moved.
+    let corner = scene.instances[0].to_world([1.0, 0.0, 0.0]);
+    assert_eq!(corner, DVec3::new(5.0, 2.0, 0.0));
+}
+
+#[test]
+fn a_file_named_twice_is_stored_once_however_it_is_written() {
+    let scene = scene("[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"./two.obj\"\n");
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 4));
+}
+
+#[test]
+fn warnings_of_a_model_name_it_and_come_once() {
+    let text = "[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"two.obj\"\n";
+    let warnings = file(text).load().unwrap().report.warnings;
+    assert!(!warnings.is_empty());
+    assert!(warnings.iter().all(|w| w.contains("two.obj: ")), "{warnings:?}");
+    let Loaded { report, .. } = envers::load(&file("").beside("two.obj")).unwrap();
+    assert_eq!(warnings.len(), report.warnings.len());
+}
+
+#[test]
+fn a_material_takes_the_place_of_all_of_a_models_own() {
+    let scene = scene(
+        "[[material]]\nname = \"gold\"\n[[model]]\nfile = \"two.obj\"\nmaterial = \"gold\"\n\
+         casts_shadow = false\n[[model]]\nfile = \"two.obj\"\n",
+    );
+    let gold = |i: usize| scene.materials[scene.instances[i].material.0 as usize].name == "gold";
+    assert_eq!([0, 1, 2, 3].map(gold), [true, true, false, false]);
+    let shadows: Vec<bool> = scene.instances.iter().map(|i| i.casts_shadow).collect();
+    assert_eq!(shadows, [false, false, true, true]);
+}
+
+#[test]
+fn a_models_own_camera_is_used_where_the_file_has_none() {
+    let scene = scene(
+        "[[model]]\nfile = \"two.obj\"\n[[model]]\nfile = \"eye.gltf\"\ntranslate = [7, 0, 0]\n",
+    );
+    assert_eq!(scene.cameras.len(), 1);
+    assert_eq!(
+        (&*scene.cameras[0].name, scene.cameras[0].position),
+        ("eye", DVec3::new(7., 0., 2.))
+    );
+}
+
+#[test]
+fn a_models_camera_comes_after_the_files_own() {
+    let scene = scene(&format!("{CAMERA}camera.name = \"mine\"\n[[model]]\nfile = \"eye.gltf\"\n"));
+    let names: Vec<&str> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["mine", "eye"]);
+}
+
+#[test]
+fn a_models_lights_shine_where_it_is_placed_as_strong_as_they_are() {
+    let alone = scene("[[model]]\nfile = \"eye.gltf\"\n");
+    let placed = scene("[[model]]\nfile = \"eye.gltf\"\nscale = 2\ntranslate = [0, 1, 0]\n");
+    let LightKind::Point { position, range, .. } = placed.lights[0].kind else { panic!("a point") };
+    assert_eq!((position, range), (DVec3::new(0.0, 7.0, 0.0), 9.0));
+    assert_eq!(placed.lights[0].intensity, alone.lights[0].intensity);
+}
+
+#[test]
+fn a_models_lights_can_be_left_out() {
+    assert!(scene("[[model]]\nfile = \"eye.gltf\"\nlights = false\n").lights.is_empty());
+}
+
+#[test]
+fn an_error_in_a_model_names_the_model() {
+    let file = file("[[model]]\nfile = \"eye.gltf\"\n");
+    let model = file.beside("eye.gltf");
+    std::fs::write(&model, &GLTF[..40]).unwrap();
+    let error = file.load().unwrap_err();
+    assert_eq!(error.path(), Some(&*model), "{error}");
+}
+
+#[test]
+fn a_model_placed_too_far_away_is_at_its_name() {
+    let far = "[[model]]\nfile = \"two.obj\"\nscale = 1e15\ntranslate = [1e15, 0, 0]\n";
+    let error = file(far).load().unwrap_err();
+    assert!(error.to_string().contains("scene.toml:2:8: the model reaches beyond"), "{error}");
+}
+
+#[test]
+fn a_model_of_a_material_that_is_not_there_is_refused() {
+    let text = "[[model]]\nfile = \"two.obj\"\nmaterial = \"gold\"\n";
+    let error = file(text).load().unwrap_err();
+    assert!(error.to_string().contains("scene.toml:3:12: there is no material `gold`"), "{error}");
+}
+
+#[test]
+fn defaults_of_a_model_are_what_missing_keys_mean() {
+    let [bare, full] = super::docs::written_out("[[model]]", "model", "file = \"eye.gltf\"")
+        .map(|text| scene(&text))
+        .map(|scene| format!("{scene:?}"));
+    assert_eq!(bare, full);
+}

@@ -1,0 +1,9 @@
+//! Mirrors and glass, held to what can be worked out by hand.
+
+mod depth;
+mod glass;
+mod invisible_surfaces;
+mod mirrors;
+mod nested_dielectrics;
+mod one_pixel;
+mod shadows;
