@@ -159,7 +159,9 @@ mod tests {
             let there = DielectricInterface::new(cosine, from, to);
             prop_assume!(there.reflected < 1.0);
             let back = DielectricInterface::new(there.cosines[1], to, from);
-            prop_assert!((there.reflected - back.reflected).abs() < 1e-12);
+            // The way back loses the digits of a small cosine: rounding its square by ε moves it by
+            // ε / cosine, and the share by a few times that.
+            prop_assert!((there.reflected - back.reflected).abs() < 1e-13 / cosine);
         }
 
         #[test]
