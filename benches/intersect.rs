@@ -47,7 +47,7 @@ impl Case {
                 let surface = Surface::new(&scene, ray, hit.as_ref()?);
                 let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
-                let arrival = IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+                let arrival = IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
                 lit.then(|| surface.shadow_ray(&arrival))
             })
             .collect();

@@ -77,7 +77,7 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     scene.film.size = [SIDE; 2];
     scene.film.background = Vec3::new(0.35, 0.34, 0.36);
     let film = Renderer::new(&scene).render()?.film;
-    Ok(bytes(&film, &Settings::of(&scene.film)))
+    Ok(bytes(&film, &Settings::from_film(&scene.film)))
 }
 
 fn light(kind: LightKind, intensity: f32) -> Light {

@@ -17,7 +17,7 @@ fn main() -> Result<()> {
     let Loaded { scene, report, .. } = envers::load(&model)?;
     report.warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let rendering = Renderer::new(&scene).render()?;
-    write(&rendering.film, &output, &Settings { half: true, ..Settings::of(&scene.film) })?;
+    write(&rendering.film, &output, &Settings { half: true, ..Settings::from_film(&scene.film) })?;
     println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
     Ok(())
 }

@@ -53,7 +53,7 @@ fn main() -> Result<()> {
     let rendering = Renderer::new(&scene).render()?;
     std::fs::create_dir_all("out").ok();
     for file in ["out/spheres.png", "out/spheres.exr"] {
-        write(&rendering.film, Path::new(file), &Settings::of(&scene.film))?;
+        write(&rendering.film, Path::new(file), &Settings::from_film(&scene.film))?;
         println!("{file}");
     }
     Ok(())

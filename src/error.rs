@@ -1,9 +1,20 @@
-//! The one error type: what went wrong, in which file, where in it, and the way out.
+//! The error type of the library: a message with its file, the place in the file, and advice.
+//!
+//! ```
+//! use envers::error::{Error, Place};
+//! use std::path::Path;
+//!
+//! let error = Error::input("unknown key `centre`")
+//!     .at(Path::new("scene.toml"))
+//!     .place(Place::Line(3))
+//!     .help("did you mean `center`?");
+//! assert_eq!(error.to_string(), "scene.toml:3: unknown key `centre` (did you mean `center`?)");
+//! ```
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What an [`Error`] is about; it decides the command's exit status.
+/// The kind of an [`Error`], which decides the command's exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The input or the request is wrong: a file, a key, a flag, an output that cannot be written.
@@ -32,16 +43,16 @@ pub enum Remedy {
     ReferenceSamples(u32),
 }
 
-/// Where in a file an error stands.
+/// The place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A place in a text file.
     Text {
-        /// Line, counted from 1.
+        /// The line, counted from 1.
         line: usize,
-        /// Column, counted from 1, in characters.
+        /// The column, counted from 1, in characters.
         column: usize,
-        /// How many characters are meant, at least 1.
+        /// The number of characters that the error is about, at least 1.
         length: usize,
         /// The line itself, without its line break.
         quote: String,
@@ -85,7 +96,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// What went wrong, in which file, where in it, and what would be right.
+/// An error: a message, with the file, the place in it and advice, as far as they are known.
 #[derive(Clone, Debug, thiserror::Error)]
 pub struct Error(Box<Details>);
 
@@ -103,17 +114,17 @@ struct Details {
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
-    /// The input is wrong; `message` says what was found.
+    /// An error in the input; `message` says what was found.
     pub fn input(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Input, message)
     }
 
-    /// The work failed although the input was fine.
+    /// A failure of the work although the input was valid.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Failed, message)
     }
 
-    /// A file that cannot be read or written; `doing` is "read", "write", "create" …
+    /// An error of reading or writing a file; `doing` is "read", "write", "create" …
     pub fn io(doing: &str, path: &Path, error: &std::io::Error) -> Self {
         Self::input(format!("cannot {doing} it: {error}")).at(path)
     }
@@ -143,7 +154,7 @@ impl Error {
         self
     }
 
-    /// Adds what would be right.
+    /// Adds advice, unless there is some already.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.0.help.get_or_insert(help.into());
@@ -157,27 +168,27 @@ impl Error {
         self
     }
 
-    /// Whether the input or the work is at fault.
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
-    /// The file, where there is one.
+    /// The file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.0.path.as_deref()
     }
 
-    /// The place in the file, where it is known.
+    /// The place in the file, if it is known.
     pub fn place_in_file(&self) -> Option<&Place> {
         self.0.place.as_ref()
     }
 
-    /// What was found, without file and place.
+    /// The message, without file and place.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// What would be right, where there is advice.
+    /// The advice, if there is some.
     pub fn advice(&self) -> Option<&str> {
         self.0.help.as_deref()
     }
@@ -188,7 +199,7 @@ impl Error {
     }
 }
 
-/// `FILE:line:column: message (advice)`, with whatever of it is known.
+/// Writes `FILE:line:column: message (advice)`, as far as these are known.
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(path) = &self.0.path {

@@ -72,9 +72,9 @@ pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersect
 pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, load};
 pub use render::{RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
-    Adaptive, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light, LightKind,
-    Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere, Texture,
-    TextureId, Tone,
+    AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
+    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,
+    Texture, TextureId, Tone,
 };
 pub use surface::Surface;
 

@@ -1,11 +1,10 @@
 //! The Whitted integrator: the radiance along camera rays, by direct lighting, mirrors and glass.
 //!
-//! The way of a tile through it stands in `tile_loop`: camera rays, closest hits, surfaces, for each
+//! The loop over a tile is in `tile_loop`: camera rays, closest hits, surfaces, for each
 //! light shadow rays and what they let through, secondary rays, samples, pixels. Each stage is one
 //! file. All rays of a tile that are at the same stage form a wave, which is traced by one call and
 //! shaded sixteen rays at a time.
 
-mod accumulate;
 mod adaptive_sampling;
 mod camera_rays;
 mod counts;
@@ -31,8 +30,7 @@ mod wave;
 use rayon::prelude::*;
 
 use crate::film::{Pixel, View};
-use crate::geometry::{HitBatch, RayBatch};
-use crate::intersect::{Coherence, Intersector};
+use crate::intersect::Intersector;
 use crate::scene::{Camera, Feature, FilmSettings, Material, RayGenerator, Scene, SceneFeatures};
 use adaptive_sampling::ContrastRow;
 pub use adaptive_sampling::PixelRecord;
@@ -130,8 +128,8 @@ impl<'a> Integrator<'a> {
             View::Beauty => scene.film.clone(),
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
-        let camera = camera.rays(scene.film.size);
-        let features = SceneFeatures::of(scene);
+        let camera = camera.ray_generator(scene.film.size);
+        let features = SceneFeatures::from_scene(scene);
         let has = |feature| features.uses(feature);
         let textures = [Feature::Uv, Feature::Checkers, Feature::VertexColors, Feature::NormalMaps];
         Self {
@@ -196,23 +194,5 @@ impl<'a> Integrator<'a> {
             }
         });
         refined
-    }
-
-    /// Finds the closest hits of rays.
-    fn closest_hits(
-        &self,
-        rays: &RayBatch,
-        coherence: Coherence,
-        hits: &mut HitBatch,
-        counts: &mut Counts,
-    ) {
-        self.intersector.closest_batch(rays, coherence, hits);
-        counts.work.add_extra_tests(self.intersector.closest_extras(rays), rays);
-    }
-
-    /// Finds which shadow rays are occluded.
-    fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
-        self.intersector.occluded_batch(rays, Coherence::Coherent, occluded);
-        counts.work.add_extra_tests(self.intersector.occluded_extras(), rays);
     }
 }

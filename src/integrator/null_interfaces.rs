@@ -41,25 +41,23 @@ pub(super) fn is_null_interface(
     media.is_hidden || (is_clear && ior(&media.incident) == ior_behind)
 }
 
-/// Gives each camera ray of a wave its path, and clears its sample, if the rays may start in a body
-/// or pass null interfaces.
+/// Gives each camera ray of a wave its path, and clears its sample.
 pub(super) fn begin_paths(
     integrator: &Integrator<'_>,
     wave: &mut Wave,
     samples: &mut Vec<Radiance16>,
 ) {
-    if integrator.media.may_alter_camera_rays {
-        wave.paths = (0..wave.rays.len()).map(|i| wave.path(i, integrator)).collect();
-        samples.clear();
-        samples.resize(wave.rays.blocks().len(), DARK);
-    }
+    wave.paths = (0..wave.rays.len()).map(|i| wave.path(i, integrator)).collect();
+    samples.clear();
+    samples.resize(wave.rays.blocks().len(), DARK);
 }
 
 /// Takes the rays of a wave through null interfaces, and multiplies their throughput with what is
 /// left of the light on their way. They stay in the wave, so that nothing tells that something was
 /// there.
 pub(super) fn pass(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut Counts) {
-    if !integrator.media.may_alter_rays || wave.paths.is_empty() {
+    // Camera rays without paths start in empty space, where they hit none.
+    if wave.paths.is_empty() {
         return;
     }
     let (scene, dielectrics) = (integrator.scene, &integrator.media.dielectrics);

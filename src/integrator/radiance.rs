@@ -1,9 +1,13 @@
-//! The radiance along the rays of a wave, sixteen rays side by side.
+//! The radiance along the rays of a wave, and its way to samples, sums of samples, and pixels.
 
 use glam::Vec3;
 
+use crate::film::Pixel;
 use crate::geometry::{LANES, Lanes};
+use crate::integrator::Counts;
 use crate::integrator::counts::NotFiniteCause;
+use crate::integrator::tiling::Tile;
+use crate::integrator::wave::Wave;
 
 /// The radiance along sixteen rays, channel by channel; also other colours of sixteen points.
 pub(super) type Radiance16 = [Lanes<f32>; 3];
@@ -110,4 +114,121 @@ impl WaveRadiance {
         }
         set_lane(&mut self.blocks[block], i, Vec3::NAN);
     }
+
+    /// Adds the radiance along the rays of the wave to their samples, by their throughput.
+    pub fn add_to_samples(
+        &mut self,
+        wave: &Wave,
+        samples: &mut Vec<Radiance16>,
+        counts: &mut Counts,
+    ) {
+        // Without paths each ray is a whole sample.
+        if wave.paths.is_empty() {
+            std::mem::swap(&mut self.blocks, samples);
+            self.not_finite.drain(..).for_each(|ray| ray.cause.count(counts));
+            return;
+        }
+        // A sample that is NaN stays so.
+        for (i, path) in wave.paths.iter().enumerate() {
+            let radiance = lane(&self.blocks[i / LANES], i % LANES);
+            let (sample, i) = path.sample_lane();
+            let sum = lane(&samples[sample], i);
+            if !sum.is_nan() && !radiance.is_nan() {
+                let weighted = (path.throughput * radiance.as_dvec3()).as_vec3();
+                set_lane(&mut samples[sample], i, sum + weighted);
+            }
+        }
+        // Each sample counts once, for the first of its rays that is not finite.
+        for not_finite in self.not_finite.drain(..) {
+            let (sample, i) = wave.paths[not_finite.ray as usize].sample_lane();
+            if !lane(&samples[sample], i).is_nan() {
+                not_finite.cause.count(counts);
+                set_lane(&mut samples[sample], i, Vec3::NAN);
+            }
+        }
+    }
+}
+
+/// Adds a sample of each pixel to the sums of its samples. A sample that is NaN, or would make a sum
+/// infinite, is left out; `overflows` counts the latter.
+pub(super) fn add_samples(
+    arch: pulp::Arch,
+    samples: &[Radiance16],
+    sums: &mut [Radiance16],
+    overflows: &mut u64,
+) {
+    arch.dispatch(
+        #[inline(always)]
+        || {
+            for (sums, samples) in sums.iter_mut().zip(samples) {
+                let mut total = *sums;
+                for channel in 0..3 {
+                    for i in 0..LANES {
+                        total[channel][i] += samples[channel][i];
+                    }
+                }
+                if all_finite(&total) {
+                    *sums = total;
+                } else {
+                    add_finite_samples(samples, sums, overflows);
+                }
+            }
+        },
+    );
+}
+
+/// Adds the samples of a block whose sums stay finite.
+#[cold]
+fn add_finite_samples(samples: &Radiance16, sums: &mut Radiance16, overflows: &mut u64) {
+    for i in 0..LANES {
+        let sample = lane(samples, i);
+        let sum = sample + lane(sums, i);
+        if sum.is_finite() {
+            set_lane(sums, i, sum);
+        } else {
+            // A sample that is NaN was counted where it arose.
+            *overflows += u64::from(!sample.is_nan());
+        }
+    }
+}
+
+/// Writes the sums of a tile, times `weight`, into the pixels of a strip; sums that are NaN become
+/// black.
+pub(super) fn write_pixels(
+    arch: pulp::Arch,
+    tile: &Tile,
+    sums: &[Radiance16],
+    weight: f32,
+    pixels: &mut [Pixel],
+    width: usize,
+) {
+    arch.dispatch(
+        #[inline(always)]
+        || {
+            let mut written = 0;
+            let mut values = [[0.0; 3]; LANES];
+            for run in &tile.runs {
+                for pixel in &mut pixels[tile.run_in_strip(run, width)] {
+                    if written % LANES == 0 {
+                        values = pixel_values(&sums[written / LANES], weight);
+                    }
+                    *pixel = values[written % LANES];
+                    written += 1;
+                }
+            }
+        },
+    );
+}
+
+/// Returns sixteen pixels: sums times `weight`, and black for those that are NaN.
+#[inline(always)]
+fn pixel_values(sums: &Radiance16, weight: f32) -> Lanes<Pixel> {
+    let mut values = DARK;
+    for i in 0..LANES {
+        let is_number = !(sums[0][i] + sums[1][i] + sums[2][i]).is_nan();
+        for channel in 0..3 {
+            values[channel][i] = if is_number { sums[channel][i] * weight } else { 0.0 };
+        }
+    }
+    std::array::from_fn(|i| [values[0][i], values[1][i], values[2][i]])
 }

@@ -75,7 +75,7 @@ fn trace_path(
     }
     let mut next = [None];
     integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut next);
-    let end = ray.at((ray.start_t() + next[0]?.t) * 0.5);
+    let end = ray.position((ray.start_t() + next[0]?.t) * 0.5);
     let direction = ray.direction.normalize();
     let (throughput, interior) = (path.throughput, path.interior);
     Some(LightPath { hits, throughput, position, direction, interior, end })

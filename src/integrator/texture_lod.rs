@@ -23,7 +23,7 @@ impl TextureLod {
     pub fn new(has_mipmaps: bool, camera: &RayGenerator, film: &FilmSettings) -> Self {
         let most_samples = film.adaptive.map_or(film.spp, |adaptive| adaptive.max);
         let share = 1.0 / f64::from(most_samples).sqrt();
-        let [spread, width] = camera.pixel().map(|width| width * share);
+        let [spread, width] = camera.pixel_size().map(|width| width * share);
         Self(has_mipmaps.then_some(CameraCone { spread, width }))
     }
 

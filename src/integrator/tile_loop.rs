@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use crate::film::{Pixel, View};
-use crate::geometry::LANES;
+use crate::geometry::{HitBatch, LANES, RayBatch};
 use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
 use crate::integrator::radiance::{DARK, Radiance16, WaveRadiance, lane, set_lane};
 use crate::integrator::shadow_rays::ShadowQueue;
@@ -12,10 +12,10 @@ use crate::integrator::tiling::Tile;
 use crate::integrator::transmissive_shadows::TransmissiveShadows;
 use crate::integrator::wave::{Wave, WaveQueue};
 use crate::integrator::{
-    Counts, Integrator, accumulate, camera_rays, debug_view, direct_lighting, null_interfaces,
+    Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, radiance,
     secondary_rays, surface_evaluation, transmissive_shadows,
 };
-use crate::intersect::Coherence;
+use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
 
 /// The number of pixels that are refined together.
@@ -58,7 +58,7 @@ pub struct RefineStrip<'a> {
 /// A pixel that gets more samples.
 #[derive(Clone, Copy)]
 struct ActivePixel {
-    /// Its index in the strip.
+    /// The index of the pixel in the strip.
     index: usize,
     record: PixelRecord,
 }
@@ -75,11 +75,12 @@ impl Integrator<'_> {
         scratch: &mut Scratch,
     ) -> Counts {
         let width = self.scene.film.size[0] as usize;
+        let rows = pixels.len() / width;
         let first_samples = self.samples.steps[0];
         let mut counts = Counts::default();
         for column in (0..width).step_by(self.tiling.columns) {
             // The first samples of each pixel of a tile.
-            self.set_tile([column, first_row], pixels.len() / width, scratch);
+            scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
             scratch.sums.clear();
             scratch.sums.resize(scratch.tile.pixels.len(), DARK);
             scratch.records.clear();
@@ -89,7 +90,7 @@ impl Integrator<'_> {
             // Their means, or, where more may follow, their sums and records.
             let Scratch { tile, sums, records: tile_records, .. } = &*scratch;
             let weight = if self.is_adaptive() { 1.0 } else { 1.0 / first_samples as f32 };
-            accumulate::write_pixels(self.arch, tile, sums, weight, pixels, width);
+            radiance::write_pixels(self.arch, tile, sums, weight, pixels, width);
             if self.is_adaptive() {
                 let mut read = tile_records.records.iter();
                 for run in &tile.runs {
@@ -99,13 +100,6 @@ impl Integrator<'_> {
             }
         }
         counts
-    }
-
-    /// Sets the tile whose upper left pixel is `origin`, of so many rows.
-    fn set_tile(&self, origin: [usize; 2], rows: usize, scratch: &mut Scratch) {
-        let width = self.scene.film.size[0] as usize;
-        let columns = self.tiling.columns.min(width - origin[0]);
-        scratch.tile.set_rectangle(origin, [columns, rows], self.tiling.block);
     }
 
     /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to their
@@ -130,17 +124,24 @@ impl Integrator<'_> {
             records.record_hits(self.arch, self.scene, wave);
         }
         // Camera rays may start in a transparent body.
-        null_interfaces::begin_paths(self, wave, samples);
+        if self.media.may_alter_camera_rays {
+            null_interfaces::begin_paths(self, wave, samples);
+        }
         loop {
-            // Rays go straight on through null interfaces, and are absorbed on their way.
-            null_interfaces::pass(self, wave, counts);
+            // Rays may go straight on through null interfaces, and be absorbed on their way.
+            if self.media.may_alter_rays {
+                null_interfaces::pass(self, wave, counts);
+            }
             // Surfaces, with what they emit.
             surface_evaluation::evaluate(self, wave, surfaces, radiance, &mut counts.work);
             // For each light: contributions, shadow rays, and what they let through.
             self.light_surfaces(wave, surfaces, radiance, &mut scratch.shadows, counts);
             // The radiance that comes back along the rays joins the samples of the pixels.
-            accumulate::add_to_samples(wave, radiance, samples, counts);
+            radiance.add_to_samples(wave, samples, counts);
             // Secondary rays form the next wave.
+            if !self.features.secondary_rays {
+                break;
+            }
             secondary_rays::spawn(self, wave, &surfaces.specular, &mut waves.next, counts);
             if !waves.advance() {
                 break;
@@ -158,7 +159,7 @@ impl Integrator<'_> {
             std::mem::swap(sums, samples);
             return;
         }
-        accumulate::add_samples(self.arch, samples, sums, &mut counts.not_finite.sum);
+        radiance::add_samples(self.arch, samples, sums, &mut counts.not_finite.sum);
     }
 
     /// Adds the light of each source that the surfaces of the current wave reflect.
@@ -192,10 +193,31 @@ impl Integrator<'_> {
         }
     }
 
+    /// Finds the closest hits of rays.
+    pub(super) fn closest_hits(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        hits: &mut HitBatch,
+        counts: &mut Counts,
+    ) {
+        self.intersector.closest_batch(rays, coherence, hits);
+        let has_filter = self.intersector.uses_filter(Query::Closest, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
+    }
+
+    /// Finds which shadow rays are occluded.
+    fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
+        self.intersector.occluded_batch(rays, Coherence::Coherent, occluded);
+        let has_filter = self.intersector.uses_filter(Query::Occluded, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
+    }
+
     /// Takes more samples of the pixels of a strip that need them, and makes all sums means.
     pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
         let RefineStrip { first_row, pixels, records, refined } = strip;
         let width = self.scene.film.size[0] as usize;
+        let rows = pixels.len() / width;
         let steps = &self.samples.steps;
         let weights: Vec<f32> = steps.iter().map(|&samples| 1.0 / samples as f32).collect();
         let mut counts = Counts::default();
@@ -206,7 +228,7 @@ impl Integrator<'_> {
         // The others are taken in the order in which tiles order their rays.
         let mut active: Vec<ActivePixel> = Vec::new();
         for column in (0..width).step_by(self.tiling.columns) {
-            self.set_tile([column, first_row], pixels.len() / width, scratch);
+            scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
             for run in &scratch.tile.runs {
                 let run = scratch.tile.run_in_strip(run, width).filter(|&i| refined[i]);
                 active.extend(run.map(|index| ActivePixel { index, record: records[index] }));

@@ -50,7 +50,7 @@ pub(super) struct Pixels16 {
     pub rows: Lanes<f64>,
 }
 
-/// Neighbouring pixels of a row of a tile.
+/// A run of neighbouring pixels in a row of a tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelRun {
     /// The column of the first one, in the tile.
@@ -62,8 +62,10 @@ pub(super) struct PixelRun {
 }
 
 impl Tile {
-    /// Sets the tile to the rectangle of a size at an origin in the picture.
-    pub fn set_rectangle(&mut self, origin: [usize; 2], size: [usize; 2], block: usize) {
+    /// Sets the tile to the one at `origin`, in the picture, of a strip of this width and height.
+    pub fn set(&mut self, tiling: &Tiling, origin: [usize; 2], [width, rows]: [usize; 2]) {
+        let (columns, block) = (tiling.columns.min(width - origin[0]), tiling.block);
+        let size = [columns, rows];
         self.origin = origin;
         // Most tiles have the size of the one before.
         if (self.size, self.block) == (size, block) {
@@ -71,7 +73,6 @@ impl Tile {
         }
         (self.size, self.block) = (size, block);
         self.clear();
-        let [columns, rows] = size;
         for y in (0..rows).step_by(block) {
             for x in (0..columns).step_by(block) {
                 let end = (x + block).min(columns);

@@ -109,7 +109,7 @@ impl LoadOptions {
         }
         defaults::complete(&mut scene);
         scene.check().map_err(|e| e.at(path))?;
-        report.warnings.extend(watertight::warn_of_open_dielectrics(&scene));
+        report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })
     }
 }

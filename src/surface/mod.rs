@@ -81,7 +81,7 @@ impl Surface {
         Ray {
             origin: self.position,
             direction: incident.toward,
-            tmax: if incident.bounded { 1.0 } else { f64::INFINITY },
+            tmax: if incident.is_bounded { 1.0 } else { f64::INFINITY },
             departure: Some(Departure { id: self.id, side }),
             continuation: None,
         }
@@ -95,7 +95,7 @@ fn flat_surface(id: PrimitiveId, position: DVec3, normal: DVec3, material: Mater
 
 fn sphere_surface(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let sphere = &scene.spheres[hit.id.primitive as usize];
-    let normal = sphere_normal(sphere.center, ray.at(hit.t));
+    let normal = sphere_normal(sphere.center, ray.position(hit.t));
     // Put back on the sphere: the point along the ray is off by rounding of the whole distance.
     let position = sphere.center + normal * sphere.radius;
     flat_surface(hit.id, position, normal, sphere.material)
@@ -109,7 +109,7 @@ fn sphere_normal(center: DVec3, point: DVec3) -> DVec3 {
 
 fn plane_surface(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
     let plane = &scene.planes[hit.id.primitive as usize];
-    let position = project_to_plane(plane.point, plane.normal, ray.at(hit.t));
+    let position = project_to_plane(plane.point, plane.normal, ray.position(hit.t));
     flat_surface(hit.id, position, plane.normal, plane.material)
 }
 

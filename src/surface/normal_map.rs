@@ -17,7 +17,7 @@ pub fn mapped_normal(scene: &Scene, surface: &Surface, hit: &Hit, point: &Textur
         return surface.normal;
     };
     let texture = &scene.textures[map.texture.0 as usize];
-    let color = texture.at(point).truncate();
+    let color = texture.sample(point).truncate();
     let [x, y, z] = decode_normal(color, map.scale).to_array().map(f64::from);
     if x == 0.0 && y == 0.0 {
         return surface.normal;
@@ -90,7 +90,7 @@ impl TangentSpace {
         let normal = if mesh.normals.is_empty() {
             surface.geometric_normal * handedness
         } else {
-            let local = mesh.at(&mesh.normals, hit.id.primitive, weights).map(f64::from);
+            let local = mesh.interpolate(&mesh.normals, hit.id.primitive, weights).map(f64::from);
             (cofactor(m) * DVec3::from(local) * handedness).try_normalize()?
         };
         let orthogonalize = |v: DVec3| (v - normal * normal.dot(v)).try_normalize();
@@ -98,7 +98,8 @@ impl TangentSpace {
         if !mesh.tangents.is_empty() {
             let corners = mesh.triangles[hit.id.primitive as usize];
             let sign = f64::from(mesh.tangents[corners[0] as usize][3]);
-            let [x, y, z, _] = mesh.at(&mesh.tangents, hit.id.primitive, weights).map(f64::from);
+            let [x, y, z, _] =
+                mesh.interpolate(&mesh.tangents, hit.id.primitive, weights).map(f64::from);
             let tangent = orthogonalize(*m * DVec3::new(x, y, z))?;
             let bitangent = normal.cross(tangent) * (sign * handedness);
             return Some(Self { tangent, bitangent, normal });

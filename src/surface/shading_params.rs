@@ -4,8 +4,8 @@ use glam::Vec3;
 
 use super::TextureContext;
 use crate::scene::{
-    AlphaMode, Channel, Material, Metallic, MetallicMaps, Scene, ShadingParams, ShininessMap,
-    TextureId, shininess,
+    AlphaMode, Channel, Material, MetallicRoughness, MetallicRoughnessMaps, Scene, ShadingParams,
+    ShininessMap, TextureId, shininess,
 };
 
 /// Evaluates the shading parameters of a material at a point with this texture context.
@@ -19,7 +19,7 @@ pub fn shading_params(
 ) -> ShadingParams {
     let maps = Maps { scene, context };
     let mut params = match &material.metallic {
-        Some(metallic) => maps.metallic(metallic).finish(),
+        Some(metallic) => maps.metallic(metallic).shading_params(),
         None => maps.phong(material),
     };
     if material.emission != Vec3::ZERO {
@@ -30,7 +30,7 @@ pub fn shading_params(
     }
     match &material.coverage {
         Some(coverage) if coverage.mode == AlphaMode::Blend => {
-            params.covering(coverage.at(&scene.textures, &context.point, context.alpha))
+            params.with_alpha(coverage.evaluate(&scene.textures, &context.point, context.alpha))
         }
         _ => params,
     }
@@ -54,14 +54,14 @@ impl Maps<'_> {
     /// Looks up a colour; white without a map.
     fn color(&self, map: Option<TextureId>) -> Vec3 {
         map.map_or(Vec3::ONE, |id| {
-            self.scene.textures[id.0 as usize].at(&self.context.point).truncate()
+            self.scene.textures[id.0 as usize].sample(&self.context.point).truncate()
         })
     }
 
     /// Looks up a channel; 1 without a map.
     fn channel(&self, map: Option<Channel>) -> f32 {
         map.map_or(1.0, |map| {
-            let color = self.scene.textures[map.texture.0 as usize].at(&self.context.point);
+            let color = self.scene.textures[map.texture.0 as usize].sample(&self.context.point);
             color[usize::from(map.channel & 3)]
         })
     }
@@ -88,11 +88,11 @@ impl Maps<'_> {
     }
 
     /// Evaluates a metallic-roughness material. Shares are at most 1, also from a float texture.
-    fn metallic(&self, maps: &MetallicMaps) -> Metallic {
+    fn metallic(&self, maps: &MetallicRoughnessMaps) -> MetallicRoughness {
         let share = |factor: f32, map| (factor * self.channel(map)).min(1.0);
         let factors = &maps.factors;
         let base = self.context.checker.unwrap_or(factors.base);
-        Metallic {
+        MetallicRoughness {
             base: base * self.color(maps.base) * self.context.tint,
             metallic: share(factors.metallic, maps.metallic),
             roughness: share(factors.roughness, maps.roughness),

@@ -1,4 +1,4 @@
-//! Sixteen surfaces side by side; each is, to the bit, what [`Surface::new`] gives.
+//! The surfaces that sixteen rays hit, side by side; each is, to the bit, what [`Surface::new`] gives.
 
 use glam::DVec3;
 
@@ -129,10 +129,12 @@ impl Surface16 {
     #[inline(always)]
     fn set_triangles<const SMOOTH_NORMALS: bool>(&mut self, scene: &Scene, hits: &Hit16) {
         let PrimitiveId16 { geometry, primitive, instance } = &hits.id;
-        let Some(triangles) = Triangles::of(scene, geometry, primitive, instance) else { return };
+        let Some(triangles) = Triangles::from_ids(scene, geometry, primitive, instance) else {
+            return;
+        };
         let is_triangle = |i: usize| geometry[i] >= PrimitiveId16::MESHES;
         for i in 0..LANES {
-            let (position, normal) = triangle_point(triangles.corners(i), hits.u[i], hits.v[i]);
+            let (position, normal) = triangle_point(triangles.vertices(i), hits.u[i], hits.v[i]);
             if is_triangle(i) {
                 self.set_lane(i, position, normal);
             }

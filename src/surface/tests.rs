@@ -23,7 +23,7 @@ fn scene() -> Scene {
 
 /// Gives the material a texture, so that texture coordinates are computed.
 fn add_texture(scene: &mut Scene) {
-    let image = Image::bytes("", [1, 1], vec![[255; 4]]);
+    let image = Image::from_bytes("", [1, 1], vec![[255; 4]]);
     let texture = scene.add_texture(Texture::new(image.into()));
     scene.materials[0].diffuse_map = Some(texture);
 }
@@ -123,7 +123,7 @@ fn normal_of_a_stretched_mesh_stays_perpendicular_to_its_surface() {
 fn shadow_ray_leaves_on_the_lights_side() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
     let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-    let toward = |toward: DVec3| IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+    let toward = |toward: DVec3| IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
     let side = |d: DVec3| surface.shadow_ray(&toward(d)).departure.unwrap().side;
     assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
 }

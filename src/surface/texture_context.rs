@@ -91,7 +91,7 @@ impl TextureContext {
             self.point.uv = mesh.uv(triangle, weights);
         }
         if !mesh.colors.is_empty() {
-            self.tint = mesh.at(&mesh.colors, triangle, weights).into();
+            self.tint = mesh.interpolate(&mesh.colors, triangle, weights).into();
         }
         self.alpha = mesh.alpha(triangle, weights);
     }

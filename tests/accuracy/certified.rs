@@ -331,7 +331,7 @@ fn pixel_aligned_grid_is_crossed_once_by_every_ray() {
     assert_eq!(all_agree("grid", &scene, &rays, BUDGET), rays.len(), "holes in the grid");
     let brute = BruteForce::new(&scene, Precision::Certified);
     for ray in &rays {
-        assert_eq!(brute.all(ray).count(), 1, "{ray:?}");
+        assert_eq!(brute.all_hits(ray).count(), 1, "{ray:?}");
     }
 }
 
@@ -353,7 +353,7 @@ fn demo_scenes() -> Vec<PathBuf> {
 fn primary(scene: &Scene, width: u32) -> Vec<Ray> {
     let [w, h] = scene.film.size;
     let size = [width, (width * h / w).max(1)];
-    let maker = scene.cameras[0].rays(size);
+    let maker = scene.cameras[0].ray_generator(size);
     (0..size[1])
         .flat_map(|y| (0..size[0]).map(move |x| (x, y)))
         .map(|(x, y)| maker.ray(f64::from(x) + 0.5, f64::from(y) + 0.5))

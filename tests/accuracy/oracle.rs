@@ -104,7 +104,7 @@ fn sphere_from_farther_than_f64_can_square() {
 #[test]
 fn height_is_the_distance_from_the_sphere_in_radii() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-    let height = |t| oracle::height(v(0.0, 0.0, 10.0), 2.0, &ray, t);
+    let height = |t| oracle::signed_distance(v(0.0, 0.0, 10.0), 2.0, &ray, t);
     assert_eq!([8.0, 12.0, 7.0, 9.0, 10.0].map(height), [0.0, 0.0, 0.5, -0.5, -1.0]);
 }
 
@@ -407,8 +407,8 @@ proptest! {
         let (origin, direction) = (DVec3::from(origin), DVec3::from(target) - DVec3::from(origin));
         let normal = triangle::area_normal(triangle);
         let sine = normal.normalize_or_zero().dot(direction.normalize_or_zero()).abs();
-        let edges = triangle::Edges::new(triangle, origin, direction);
-        let least = edges.functions.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
+        let edges = triangle::EdgeFunctions::new(triangle, origin, direction);
+        let least = edges.values.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
         prop_assume!(normal.length() > 0.1 && sine > 0.1 && least > 1e-9 && edges.t.abs() > 1e-3);
         let fast = triangle::intersect(triangle, origin, direction).filter(|hit| hit.t > 0.0);
         let exact = oracle::triangle(triangle, &Ray::new(origin, direction));

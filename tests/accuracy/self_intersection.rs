@@ -219,7 +219,7 @@ fn first_of_coincident_surfaces_is_seen_in_certified() {
     let mut scene = scene(DVec3::new(0.3, 2.0, 3.0), DVec3::ZERO);
     add(&mut scene, floor(50.0, 7), DAffine3::IDENTITY);
     scene.instances.push(scene.instances[0].clone());
-    let rays = scene.cameras[0].rays(scene.film.size);
+    let rays = scene.cameras[0].ray_generator(scene.film.size);
     let rays: Vec<_> =
         (0..48 * 48).map(|i| rays.ray(f64::from(i % 48), f64::from(i / 48))).collect();
     for options in backends().filter(|o| o.precision == Precision::Certified) {

@@ -157,7 +157,7 @@ fn compare(name: &str, part: Part) {
     let Loaded { scene, report, .. } = load(&path).expect("the scene loads");
     assert_eq!(report.warnings, [""; 0]);
     let film = Renderer::new(&scene).render().expect("the scene renders").film;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     let ours = png_bytes(&film, &settings);
     let theirs = coloration(part);
     assert_eq!(ours.len(), theirs.len());

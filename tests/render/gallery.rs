@@ -48,7 +48,7 @@ fn picture(
     scene.film.max_depth = depth.unwrap_or(scene.film.max_depth);
     (
         Renderer::new(&scene).options(options.clone()).render().expect(name).film,
-        Settings::of(&scene.film),
+        Settings::from_film(&scene.film),
     )
 }
 

@@ -158,7 +158,7 @@ fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).colors = vec![[0.5; 3]; 4];
-    let image = Image::bytes("", [1, 1], vec![[51; 4]]);
+    let image = Image::from_bytes("", [1, 1], vec![[51; 4]]);
     let texture = Texture { transfer: Transfer::None, ..Texture::new(image.into()) };
     let texture = scene.add_texture(texture);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).uvs = vec![[0.0; 2]; 4];
@@ -187,7 +187,7 @@ fn a_picture_on_a_wall_has_its_upper_left_corner_at_the_planes_point() {
     plane.texture_size = 8.0;
     scene.planes.push(plane);
     let texels = (0..16).map(|i| [i * 16; 4]).collect();
-    let image = Image::bytes("", [4, 4], texels);
+    let image = Image::from_bytes("", [4, 4], texels);
     let texture = scene.add_texture(Texture {
         transfer: Transfer::None,
         filter: Filter::Nearest,

@@ -30,7 +30,7 @@ fn dot(scene: &mut Scene, texel: [u8; 4]) -> TextureId {
 }
 
 fn picture(scene: &mut Scene, size: [u32; 2], texels: Vec<[u8; 4]>) -> TextureId {
-    let image = Image::bytes("", size, texels);
+    let image = Image::from_bytes("", size, texels);
     scene.add_texture(Texture {
         transfer: Transfer::None,
         filter: Filter::Nearest,
@@ -346,7 +346,7 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
     let texel = |i: usize| {
         if (i / 8 + i / 512).is_multiple_of(2) { [230, 200, 160, 255] } else { [30, 40, 60, 255] }
     };
-    let image = Image::bytes("", [64, 64], (0..64 * 64).map(texel).collect());
+    let image = Image::from_bytes("", [64, 64], (0..64 * 64).map(texel).collect());
     let texture = scene.add_texture(Texture { mipmap, ..Texture::new(image.into()) });
     let material =
         Material { diffuse: Vec3::ONE, diffuse_map: Some(texture), ..Material::default() };

@@ -19,7 +19,7 @@ pub fn remove_opaque_coverage(scene: &mut Scene) {
         coverage.map = coverage.map.filter(|map| {
             let image = scene.textures.get(map.texture.0 as usize).map(|texture| &texture.image);
             image.is_some_and(|image| {
-                !(image.is_read() && image.is_full(usize::from(map.channel & 3)))
+                !(image.is_read() && image.is_channel_full(usize::from(map.channel & 3)))
             })
         });
         let is_opaque = match coverage.mode {

@@ -179,14 +179,14 @@ mod tests {
         scene.film.size = [300, 300];
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         // Away from the camera: the box of its way has corners far from all that is seen.
-        let mut keys = Keyframes::still();
+        let mut keys = Keyframes::identity();
         keys.translation =
             Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW_DIRECTION * 8.0]);
         let mut animation = Animation::new(24, 24.0);
-        let motion = Motion::Keys(keys);
-        let node = animation.add_node(Node { parent: None, place: DAffine3::IDENTITY, motion });
+        let motion = Motion::Keyframes(keys);
+        let node = animation.add_node(Node { parent: None, base: DAffine3::IDENTITY, motion });
         let (center, radius) = (DVec3::ZERO, None);
-        animation.movers.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
+        animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
         add_camera(&mut scene);
         let to = -scene.cameras[0].position;

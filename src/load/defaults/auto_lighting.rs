@@ -2,7 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::scene::{Camera, Light, LightKind, Material, Metallic, Scene, Shadow, sharpness};
+use crate::scene::{
+    Camera, Light, LightKind, Material, MetallicRoughness, Scene, Shadow, mirror_share,
+};
 
 /// The radiance of the background, linear: a PNG shows it as #808080, on which white and black things
 /// both stand out, and which metals have to mirror.
@@ -59,8 +61,8 @@ fn add_blurred_reflection(material: &mut Material, background: Vec3) {
     if maps.metallic.is_some() || maps.roughness.is_some() || material.emission != Vec3::ZERO {
         return;
     }
-    let Metallic { base, metallic, roughness, .. } = maps.factors;
-    let share = metallic * (1.0 - sharpness(roughness));
+    let MetallicRoughness { base, metallic, roughness, .. } = maps.factors;
+    let share = metallic * (1.0 - mirror_share(roughness));
     if share > 0.0 {
         material.emission = base.min(Vec3::ONE) * share * background;
         material.emission_map = maps.base;
@@ -111,7 +113,7 @@ fn key_and_fill(camera: &Camera) -> [Light; 2] {
 mod tests {
     use super::*;
     use crate::load::defaults::auto_camera::add_camera;
-    use crate::scene::{MaterialId, MetallicMaps, Sphere};
+    use crate::scene::{MaterialId, MetallicRoughnessMaps, Sphere};
 
     fn ball() -> Scene {
         let mut scene = Scene::default();
@@ -171,7 +173,7 @@ mod tests {
     fn rough_metals_have_the_light_of_the_background_and_smooth_ones_mirror_it() {
         let emission = |metallic: f32, roughness: f32| {
             let mut scene = ball();
-            let factors = Metallic {
+            let factors = MetallicRoughness {
                 base: Vec3::new(1.0, 0.5, 0.0),
                 metallic,
                 roughness,
@@ -181,7 +183,7 @@ mod tests {
                 ior: 1.5,
             };
             let mut material = Material::default();
-            material.set_metallic(MetallicMaps::new(factors));
+            material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
             let id = scene.add_material(material);
             add_lights(&mut scene);
             scene.materials[id.0 as usize].emission / BACKGROUND

@@ -13,7 +13,9 @@ use crate::scene::{GRAIN, Instance, Mesh, Scene, Sphere};
 pub fn extents<const N: usize>(scene: &Scene, bounds: &Bounds, directions: [DVec3; N]) -> [f64; N] {
     let mut extents = [f64::NEG_INFINITY; N];
     if scene.animation.is_some() {
-        scene.over_time(|poses| extents = max(extents, still_extents(poses.scene(), directions)));
+        scene.sample_over_time(|poses| {
+            extents = max(extents, still_extents(poses.scene(), directions))
+        });
     } else {
         extents = still_extents(scene, directions);
     }

@@ -14,7 +14,7 @@ pub fn build_mipmaps(scene: &Scene) {
     }
     scene.textures.par_iter().zip(is_used).for_each(|(texture, is_used)| {
         if is_used && texture.mipmap && texture.image.is_read() {
-            texture.image.reduced(texture.transfer);
+            texture.image.mipmap(texture.transfer);
         }
     });
 }

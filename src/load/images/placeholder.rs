@@ -52,10 +52,10 @@ pub fn set_image_or_placeholder(
 /// A checker of magenta and black.
 fn checker(name: &str) -> Image {
     let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
-    Image::bytes(format!("{name} (missing)"), [2, 2], vec![magenta, black, black, magenta])
+    Image::from_bytes(format!("{name} (missing)"), [2, 2], vec![magenta, black, black, magenta])
 }
 
 /// One white pixel.
-pub fn white(name: &str) -> Image {
-    Image::bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
+fn white(name: &str) -> Image {
+    Image::from_bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
 }

@@ -41,14 +41,14 @@ impl InstanceAnimation<'_> {
                 }
                 None => Node {
                     parent: self.instance.node,
-                    place: self.instance.transform * node.place,
+                    base: self.instance.transform * node.base,
                     motion: node.motion.clone(),
                 },
             }));
             // The objects that move with these nodes.
-            for mover in &own.movers {
-                let mover = self.own_mover(mover.clone(), first_node, &mut animated);
-                self.animation.movers.extend(mover);
+            for object in &own.objects {
+                let object = self.own_object(object.clone(), first_node, &mut animated);
+                self.animation.objects.extend(object);
             }
         }
         // All other objects move with the instance.
@@ -57,16 +57,16 @@ impl InstanceAnimation<'_> {
         }
     }
 
-    /// Returns one of the model's movers with the indices of the scene, and marks its object as
-    /// animated; none if the object is left out of the scene, or has this mover already.
-    fn own_mover(
+    /// Returns one of the animated objects of the model with the indices of the scene, and marks its object as
+    /// animated; none if the object is left out of the scene, or is animated already.
+    fn own_object(
         &self,
-        mut mover: Animated,
+        mut object: Animated,
         first_node: u32,
         animated: &mut AnimatedObjects,
     ) -> Option<Animated> {
         let shift = |node: &mut NodeId| node.0 += first_node;
-        match &mut mover {
+        match &mut object {
             Animated::Sphere { sphere, node, .. } => {
                 animated.spheres.insert(*sphere);
                 *sphere += self.indices.first_sphere;
@@ -95,7 +95,7 @@ impl InstanceAnimation<'_> {
                 // Another instance has the same mesh, and so the same shape.
                 let is_same =
                     |m: &Animated| matches!(m, Animated::Mesh { mesh: m, .. } if m == mesh);
-                if self.animation.movers.iter().any(is_same) {
+                if self.animation.objects.iter().any(is_same) {
                     return None;
                 }
                 let skin = deformation.skin.iter_mut();
@@ -103,14 +103,14 @@ impl InstanceAnimation<'_> {
                     match &mut joint.node {
                         Some(node) => shift(node),
                         None => {
-                            joint.place = self.instance.transform * joint.place;
+                            joint.transform = self.instance.transform * joint.transform;
                             joint.node = self.instance.node;
                         }
                     }
                 }
             }
         }
-        Some(mover)
+        Some(object)
     }
 
     /// Makes the objects that the model's own animation leaves where they are move with the node of
@@ -119,7 +119,7 @@ impl InstanceAnimation<'_> {
         let Self { model, indices, animation, .. } = self;
         let transform = self.instance.transform;
         for (i, instance) in still(&model.instances, &animated.instances) {
-            animation.movers.push(Animated::Instance {
+            animation.objects.push(Animated::Instance {
                 instance: indices.first_instance + i,
                 node,
                 transform: transform * instance.transform,
@@ -127,7 +127,7 @@ impl InstanceAnimation<'_> {
         }
         let node = Some(node);
         for (i, sphere) in still(&model.spheres, &animated.spheres) {
-            animation.movers.push(Animated::Sphere {
+            animation.objects.push(Animated::Sphere {
                 sphere: indices.first_sphere + i,
                 node,
                 center: transform.transform_point3(sphere.center),
@@ -136,19 +136,19 @@ impl InstanceAnimation<'_> {
         }
         if self.instance.has_lights {
             for (i, light) in still(&model.lights, &animated.lights) {
-                animation.movers.push(Animated::Light {
+                animation.objects.push(Animated::Light {
                     light: indices.first_light + i,
                     node,
-                    rest: light.placed(&transform),
+                    rest: light.transformed(&transform),
                     direction: None,
                     intensity: None,
                 });
             }
         }
         for (i, camera) in still(&model.cameras, &animated.cameras) {
-            if let Some((camera, rest)) = indices.cameras[i].zip(camera.placed(&transform)) {
+            if let Some((camera, rest)) = indices.cameras[i].zip(camera.transformed(&transform)) {
                 let (aim, lens) = (None, None);
-                animation.movers.push(Animated::Camera { camera, node, rest, aim, lens });
+                animation.objects.push(Animated::Camera { camera, node, rest, aim, lens });
             }
         }
     }

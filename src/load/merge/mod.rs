@@ -75,7 +75,7 @@ impl MergedModel {
 
     /// Returns the number of objects that each instance adds to a scene.
     pub fn object_count(&self) -> u64 {
-        let moving = self.animation.as_ref().map_or(0, |a| a.nodes.len() + a.movers.len());
+        let moving = self.animation.as_ref().map_or(0, |a| a.nodes.len() + a.objects.len());
         (self.instances.len() + self.lights.len() + self.cameras.len() + moving) as u64
     }
 
@@ -109,10 +109,10 @@ impl MergedModel {
             mesh: own.mesh,
         }));
         if instance.has_lights {
-            scene.lights.extend(self.lights.iter().map(|light| light.placed(transform)));
+            scene.lights.extend(self.lights.iter().map(|light| light.transformed(transform)));
         }
         for camera in &self.cameras {
-            let placed = camera.placed(transform);
+            let placed = camera.transformed(transform);
             indices.cameras.push(placed.is_some().then_some(scene.cameras.len()));
             if placed.is_none() {
                 warnings.push(format!(
@@ -181,7 +181,7 @@ fn bounds(model: &Scene) -> Bounds {
         LightKind::Ambient | LightKind::Directional { .. } => None,
     });
     let cameras = model.cameras.iter().map(|camera| camera.position);
-    model.bounds().union(Bounds::of(lights.chain(cameras)))
+    model.bounds().union(Bounds::from_points(lights.chain(cameras)))
 }
 
 #[cfg(test)]
@@ -194,7 +194,7 @@ mod tests {
     /// One triangle with a textured material, a spot light and a camera.
     fn model() -> Scene {
         let mut model = Scene::default();
-        let image = Image::bytes("", [1, 1], vec![[9; 4]]);
+        let image = Image::from_bytes("", [1, 1], vec![[9; 4]]);
         let texture = model.add_texture(Texture::new(Arc::new(image)));
         let material = Material { diffuse_map: Some(texture), ..Material::default() };
         let material = model.add_material(material);
@@ -342,7 +342,7 @@ mod tests {
         let camera = &scene.cameras[0];
         assert_eq!(camera.position, DVec3::new(10.0, 0.0, 2.0));
         assert_eq!((camera.forward, camera.up), (-DVec3::Z, -DVec3::X));
-        assert_eq!(camera.lens, Projection::OrthoHeight(4.0));
+        assert_eq!(camera.projection, Projection::OrthoHeight(4.0));
     }
 
     #[test]

@@ -9,8 +9,8 @@ use super::texture_map::TextureMap;
 use super::textures::Textures;
 use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
-    AlphaMode, Channel, Coverage, Material, MaterialId, Metallic, MetallicMaps, NormalMap, Scene,
-    ShininessMap, TextureId, Transfer,
+    AlphaMode, Channel, Coverage, Material, MaterialId, MetallicRoughness, MetallicRoughnessMaps,
+    NormalMap, Scene, ShininessMap, TextureId, Transfer,
 };
 
 /// The range of shininess that is supported.
@@ -97,7 +97,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         if let Some(maps) = metallic {
             material.specular_map = None;
             material.shininess_map = None;
-            material.set_metallic(maps);
+            material.set_metallic_roughness(maps);
         }
         let map = self.channel(opacity_map);
         if map.is_none() && illumination.opacity == 1.0 {
@@ -113,7 +113,7 @@ impl<'a> MaterialBuilder<'a, '_> {
 
     /// Returns roughness and metalness, where a statement is about them; a map counts in place of its
     /// value, since programs write any value beside it.
-    fn metallic(&mut self, material: &Material) -> Option<MetallicMaps> {
+    fn metallic(&mut self, material: &Material) -> Option<MetallicRoughnessMaps> {
         let [pr, pm, map_pr, map_pm] =
             ["Pr", "Pm", "map_Pr", "map_Pm"].map(|key| self.statement(key));
         if [pr, pm, map_pr, map_pm].iter().all(Option::is_none) {
@@ -127,7 +127,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         };
         // The roughness whose highlight is as wide as that of Ns: 2/α² − 2 with α = roughness².
         let default_roughness = (2.0 / (material.shininess + 2.0)).powf(0.25);
-        let factors = Metallic {
+        let factors = MetallicRoughness {
             base: material.diffuse,
             metallic: factor(metallic, pm, 0.0),
             roughness: factor(roughness, pr, default_roughness),
@@ -141,7 +141,12 @@ impl<'a> MaterialBuilder<'a, '_> {
                 .unwrap_or(DEFAULT_IOR),
         };
         let base = material.diffuse_map;
-        Some(MetallicMaps { base, metallic, roughness, ..MetallicMaps::new(factors) })
+        Some(MetallicRoughnessMaps {
+            base,
+            metallic,
+            roughness,
+            ..MetallicRoughnessMaps::new(factors)
+        })
     }
 
     /// Sets the normal map: `norm`, or a `bump` that turns out to be a normal map.

@@ -110,7 +110,7 @@ impl<'a> Textures<'a> {
             let coverage = materials[material.0 as usize].coverage.as_mut();
             if let Some(Channel { texture, channel }) = coverage.and_then(|c| c.map.as_mut()) {
                 let image = &textures[texture.0 as usize].image;
-                if image.is_read() && !image.is_full(3) {
+                if image.is_read() && !image.is_channel_full(3) {
                     *channel = 3;
                 }
             }
@@ -163,7 +163,7 @@ mod tests {
     fn greys_are_heights_and_blues_are_normals() {
         let image = |texel: [u8; 3]| {
             let [r, g, b] = texel;
-            Image::bytes("", [1, 1], vec![[r, g, b, 255]])
+            Image::from_bytes("", [1, 1], vec![[r, g, b, 255]])
         };
         let blues = [[128, 128, 255], [180, 128, 240], [128, 60, 230]];
         assert!(blues.iter().all(|&texel| is_normal_map(&image(texel))));

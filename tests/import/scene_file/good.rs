@@ -1,7 +1,7 @@
 //! The meaning of scene files.
 
 use envers::scene::{
-    Adaptive, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,
+    AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,
     Projection, SamplePosition, Shadow, Sphere, Tone, Transfer,
 };
 use glam::{DVec3, Vec3};
@@ -44,9 +44,9 @@ fn every_key_of_the_film_is_read() {
 #[test]
 fn adaptive_samples_are_read_with_their_threshold() {
     let film = seen("film.adaptive = [4, 36]\nfilm.threshold = 0.25\n").film;
-    assert_eq!((film.spp, film.adaptive), (4, Some(Adaptive { max: 36, threshold: 0.25 })));
+    assert_eq!((film.spp, film.adaptive), (4, Some(AdaptiveSampling { max: 36, threshold: 0.25 })));
     let film = seen("film.adaptive = [1, 25]\n").film;
-    assert_eq!(film.adaptive.map(|a| a.threshold), Some(Adaptive::THRESHOLD));
+    assert_eq!(film.adaptive.map(|a| a.threshold), Some(AdaptiveSampling::THRESHOLD));
 }
 
 #[test]
@@ -95,12 +95,12 @@ fn the_tutorials_camera_is_read() {
 
 #[test]
 fn a_camera_sees_45_degrees_from_bottom_to_top_by_default() {
-    assert_eq!(seen("").cameras[0].lens, Projection::FovY(45f64.to_radians()));
+    assert_eq!(seen("").cameras[0].projection, Projection::FovY(45f64.to_radians()));
 }
 
 #[test]
 fn each_lens_is_read() {
-    let lens = |key: &str| seen(&format!("camera.{key}")).cameras[0].lens;
+    let lens = |key: &str| seen(&format!("camera.{key}")).cameras[0].projection;
     assert_eq!(lens("fov_y = 30"), Projection::FovY(30f64.to_radians()));
     assert_eq!(lens("fov_x = 30"), Projection::FovX(30f64.to_radians()));
     assert_eq!(lens("focal_px = 30"), Projection::FocalPx { focal: 30.0, width: 1280 });

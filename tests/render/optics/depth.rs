@@ -87,7 +87,7 @@ fn the_picture_does_not_depend_on_tiles_where_waves_are_cut() {
     scene.film.size = [24, 16];
     scene.film.max_depth = 12;
     scene.film.background = Vec3::new(0.1, 0.5, 0.9);
-    scene.cameras[0].lens = envers::scene::Projection::FovY(0.4);
+    scene.cameras[0].projection = envers::scene::Projection::FovY(0.4);
     for (i, radius) in [2.0, 1.6, 1.2, 0.8].into_iter().enumerate() {
         let ior = if i % 2 == 0 { 1.5 } else { 1.1 };
         sphere(&mut scene, DVec3::ZERO, radius, glass(ior));

@@ -193,17 +193,17 @@ impl MotionBuilder<'_, '_> {
 
     /// Adds the node of an object's orbit, and within it that of its keyframes.
     fn build_nodes(&mut self, object: usize) -> Result<()> {
-        let place = DAffine3::IDENTITY;
+        let base = DAffine3::IDENTITY;
         let mut node = None;
         if let Some(orbit) = self.orbit(object)? {
             let motion = Motion::Orbit(orbit);
-            node = Some(self.animation.add_node(Node { parent: None, place, motion }));
+            node = Some(self.animation.add_node(Node { parent: None, base, motion }));
         }
         let keyframes = self.keyframes(object);
         let is_keyed = keyframes.is_some();
         if let Some(keyframes) = keyframes {
-            let motion = Motion::Keys(keyframes);
-            node = Some(self.animation.add_node(Node { parent: node, place, motion }));
+            let motion = Motion::Keyframes(keyframes);
+            node = Some(self.animation.add_node(Node { parent: node, base, motion }));
         }
         let motion = &mut self.motions.0[object];
         (motion.node, motion.is_keyed) = (node, is_keyed);
@@ -227,11 +227,11 @@ impl MotionBuilder<'_, '_> {
         let center_curve = center_object.and_then(|i| self.motions.0[i].curves.position.as_ref());
         Ok(Some(Orbit {
             around: anchor,
-            center: center_curve.map_or(*center, |curve| curve.value.at(0.0)),
+            center: center_curve.map_or(*center, |curve| curve.value.sample(0.0)),
             start,
             axis: table.axis.map_or(DVec3::Y, |axis| axis.0),
             period: table.period.map_or(f64::INFINITY, |period| period.0),
-            turn: table.turn.unwrap_or(false),
+            turns_with_orbit: table.turn.unwrap_or(false),
         }))
     }
 
@@ -245,7 +245,7 @@ impl MotionBuilder<'_, '_> {
             Some(curve) => curve.value.clone(),
             None => Curve::constant(still),
         };
-        let mut keyframes = Keyframes::still();
+        let mut keyframes = Keyframes::identity();
         let still = self.objects.objects[object].position.unwrap_or_default();
         keyframes.translation = curve(position, still);
         if let Some(table) = self.models[object] {

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::load::scene_file::schema::tables::CameraTable;
 use crate::load::scene_file::schema::values::normalize;
 use crate::load::scene_file::source::{Source, Span};
-use crate::scene::animation::{Aim, Anchor, Animated, Toward};
+use crate::scene::animation::{Aim, AimTarget, Anchor, Animated};
 use crate::scene::{Camera, Projection};
 
 /// The default vertical field of view, in degrees.
@@ -77,22 +77,22 @@ impl SceneBuilder<'_> {
             None => None,
         };
         let curves = &motion.curves;
-        let toward = match (&curves.look_at, &curves.direction, target) {
-            (Some(points), ..) => Some(Toward::Points(points.value.clone())),
-            (None, Some(directions), _) => Some(Toward::Directions(directions.value.clone())),
-            (None, None, target) => target.map(Toward::Anchor),
+        let target = match (&curves.look_at, &curves.direction, target) {
+            (Some(points), ..) => Some(AimTarget::Points(points.value.clone())),
+            (None, Some(directions), _) => Some(AimTarget::Directions(directions.value.clone())),
+            (None, None, target) => target.map(AimTarget::Anchor),
         };
         let lens = curves.projection.as_ref().map(|(make, curve)| {
-            rest.lens = make(curve.value.at(0.0), self.scene.film.size[0]);
+            rest.projection = make(curve.value.sample(0.0), self.scene.film.size[0]);
             curve.value.clone()
         });
         let has_fixed_aim =
-            matches!(toward, None | Some(Toward::Anchor(Anchor { node: None, .. })));
+            matches!(target, None | Some(AimTarget::Anchor(Anchor { node: None, .. })));
         if has_fixed_aim && lens.is_none() && motion.node.is_none() {
             return Ok(None);
         }
         let up = table.up.as_ref().map_or(DVec3::Y, |up| up.value.0);
-        let aim = toward.map(|toward| Aim { toward, up });
+        let aim = target.map(|target| Aim { target, up });
         let camera = self.scene.cameras.len();
         Ok(Some(Animated::Camera { camera, node: motion.node, rest, aim, lens }))
     }

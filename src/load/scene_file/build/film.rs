@@ -6,7 +6,7 @@ use crate::load::scene_file::schema::tables::FilmTable;
 use crate::load::scene_file::schema::values::SampleRange;
 use crate::load::scene_file::source::Source;
 use crate::scene::check;
-use crate::scene::{Adaptive, FilmSettings};
+use crate::scene::{AdaptiveSampling, FilmSettings};
 
 /// Returns the settings that a table describes.
 ///
@@ -34,7 +34,10 @@ pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSetti
 }
 
 /// Returns the samples of every pixel, and the settings of adaptive sampling, if it is asked for.
-fn samples_per_pixel(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Option<Adaptive>)> {
+fn samples_per_pixel(
+    source: &Source<'_>,
+    table: &FilmTable,
+) -> Result<(u32, Option<AdaptiveSampling>)> {
     let threshold = table.threshold.as_ref();
     let Some(At { span, value: SampleRange([min, max]) }) = &table.adaptive else {
         return match threshold {
@@ -50,6 +53,6 @@ fn samples_per_pixel(source: &Source<'_>, table: &FilmTable) -> Result<(u32, Opt
             .help("leave one of them out"));
     }
     check::check_samples(*min, *max).map_err(|e| source.locate(span, e))?;
-    let threshold = threshold.map_or(Adaptive::THRESHOLD, |share| share.value.0 as f32);
-    Ok((*min, Some(Adaptive { max: *max, threshold })))
+    let threshold = threshold.map_or(AdaptiveSampling::THRESHOLD, |share| share.value.0 as f32);
+    Ok((*min, Some(AdaptiveSampling { max: *max, threshold })))
 }

@@ -113,7 +113,7 @@ impl SceneBuilder<'_> {
 
     fn add_animated(&mut self, animated: Option<Animated>) {
         if let (Some(animation), Some(animated)) = (&mut self.scene.animation, animated) {
-            animation.movers.push(animated);
+            animation.objects.push(animated);
         }
     }
 }

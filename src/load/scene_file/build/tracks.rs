@@ -10,7 +10,7 @@ use crate::load::scene_file::schema::tables::Kind;
 use crate::load::scene_file::source::Source;
 use crate::load::spelling;
 use crate::scene::Projection;
-use crate::scene::animation::{Curve, Interpolation, Value};
+use crate::scene::animation::{Curve, Interpolate, Interpolation};
 
 /// The curves of an object's animated keys, each with the place of its values.
 #[derive(Debug, Default)]
@@ -132,7 +132,7 @@ struct TrackReader<'a> {
 impl TrackReader<'_> {
     /// Reads the curve of a key, where it is given, into a slot that must be empty. `smooth` makes the
     /// curve without corners.
-    fn read<T, V: Value>(
+    fn read<T, V: Interpolate>(
         &mut self,
         key: &str,
         list: &Option<At<List<T>>>,
@@ -172,7 +172,7 @@ impl TrackReader<'_> {
 
     /// Returns the curve of a key, where it is given: checks that the object has the key, and that
     /// there are as many values as times.
-    fn curve<T, V: Value>(
+    fn curve<T, V: Interpolate>(
         &mut self,
         key: &str,
         list: &Option<At<List<T>>>,
