@@ -61,54 +61,36 @@ impl Limit {
 
     /// Returns its name in options and messages.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bytes => "bytes",
-            Self::Json => "json",
-            Self::Nodes => "nodes",
-            Self::Depth => "depth",
-            Self::Instances => "instances",
-            Self::Vertices => "vertices",
-            Self::Triangles => "triangles",
-            Self::Deformed => "deformed",
-            Self::Elements => "elements",
-            Self::Keys => "keys",
-            Self::Pictures => "pictures",
-            Self::Pixels => "pixels",
-        }
+        self.properties().0
     }
 
     /// Returns its default. With the defaults a small file takes less than 1 GiB of memory, whatever it
     /// asks for.
     pub const fn default(self) -> u64 {
-        match self {
-            Self::Bytes => 1 << 30,
-            Self::Json => 1 << 29,
-            Self::Nodes | Self::Instances => 1 << 20,
-            Self::Depth => 1 << 12,
-            Self::Vertices | Self::Triangles => 1 << 27,
-            Self::Deformed => 1 << 22,
-            Self::Elements => 1 << 25,
-            Self::Keys => 1 << 22,
-            Self::Pictures => 1 << 14,
-            Self::Pixels => 1 << 26,
-        }
+        self.properties().1
     }
 
-    /// Returns the plural of what is counted, for messages.
-    const fn noun(self) -> &'static str {
+    /// Returns its name, its default, and the plural of what is counted, for messages.
+    const fn properties(self) -> (&'static str, u64, &'static str) {
         match self {
-            Self::Bytes => "bytes to read",
-            Self::Json => "bytes that the JSON is estimated to take",
-            Self::Nodes => "nodes",
-            Self::Depth => "nodes one below the other",
-            Self::Instances => "instances",
-            Self::Vertices => "vertices",
-            Self::Triangles => "triangles",
-            Self::Deformed => "vertices of copies that are skinned or morphed",
-            Self::Elements => "elements of accessors beyond the bytes of the buffers",
-            Self::Keys => "keys of an animation",
-            Self::Pictures => "images",
-            Self::Pixels => "pixels beyond 16 for each byte of the images' files",
+            Self::Bytes => ("bytes", 1 << 30, "bytes to read"),
+            Self::Json => ("json", 1 << 29, "bytes that the JSON is estimated to take"),
+            Self::Nodes => ("nodes", 1 << 20, "nodes"),
+            Self::Depth => ("depth", 1 << 12, "nodes one below the other"),
+            Self::Instances => ("instances", 1 << 20, "instances"),
+            Self::Vertices => ("vertices", 1 << 27, "vertices"),
+            Self::Triangles => ("triangles", 1 << 27, "triangles"),
+            Self::Deformed => {
+                ("deformed", 1 << 22, "vertices of copies that are skinned or morphed")
+            }
+            Self::Elements => {
+                ("elements", 1 << 25, "elements of accessors beyond the bytes of the buffers")
+            }
+            Self::Keys => ("keys", 1 << 22, "keys of an animation"),
+            Self::Pictures => ("pictures", 1 << 14, "images"),
+            Self::Pixels => {
+                ("pixels", 1 << 26, "pixels beyond 16 for each byte of the images' files")
+            }
         }
     }
 }
@@ -142,11 +124,12 @@ impl Limits {
     /// # Errors
     /// When it is more.
     pub fn check(&self, limit: Limit, found: u64) -> Result<()> {
-        let (max, name) = (self.get(limit), limit.name());
+        let max = self.get(limit);
         if found <= max {
             return Ok(());
         }
-        Err(Error::input(format!("{found} {} are more than the limit of {max}", limit.noun()))
+        let (name, _, noun) = limit.properties();
+        Err(Error::input(format!("{found} {noun} are more than the limit of {max}"))
             .help(format!("raise the limit `{name}` to {found} if you trust the file"))
             .remedied_by(Remedy::RaiseLimit { name, least: Some(found) }))
     }

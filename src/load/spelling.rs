@@ -1,132 +1,77 @@
 //! The suggestions for misspelt names: "did you mean …?"
 
-/// Words that people write, and the names that they may mean; the first name that can stand there is
-/// meant.
-const SYNONYMS: &[(&str, &[&str])] = &[
-    ("albedo", &["diffuse"]),
-    ("alpha", &["shininess"]),
-    ("ambient", &["emission"]),
-    ("angle", &["outer_angle", "fov_y"]),
-    ("antialiasing", &["spp"]),
-    ("at", &["look_at"]),
-    ("basecolor", &["diffuse"]),
-    ("bg", &["background"]),
-    ("brightness", &["intensity"]),
-    ("color", &["color", "diffuse", "background", "colors"]),
-    ("colour", &["color", "diffuse", "background", "colors"]),
-    ("colours", &["colors"]),
-    ("centre", &["center"]),
-    ("curve", &["tone"]),
-    ("dimensions", &["size"]),
-    ("dir", &["direction", "directional"]),
-    ("distance", &["directional"]),
-    ("distant", &["directional"]),
-    ("emissive", &["emission"]),
-    ("eye", &["position", "camera"]),
-    ("filmic", &["aces"]),
-    ("ev", &["exposure"]),
-    ("exponent", &["shininess"]),
-    ("floor", &["plane"]),
-    ("fov", &["fov_y"]),
-    ("focal", &["focal_px"]),
-    ("focallength", &["focal_px"]),
-    ("forward", &["direction"]),
-    ("from", &["position"]),
-    ("gamma", &["transfer"]),
-    ("ground", &["plane"]),
-    ("height", &["size", "ortho_height"]),
-    ("image", &["film", "diffuse_map"]),
-    ("kd", &["diffuse"]),
-    ("ke", &["emission"]),
-    ("transparency", &["transmit"]),
-    ("transparent", &["transmit"]),
-    ("transmission", &["transmit"]),
-    ("transmittance", &["transmit"]),
-    ("glass", &["transmit"]),
-    ("opacity", &["transmit"]),
-    ("refraction", &["ior"]),
-    ("refractionindex", &["ior"]),
-    ("refractiveindex", &["ior"]),
-    ("indexofrefraction", &["ior"]),
-    ("eta", &["ior"]),
-    ("n", &["ior"]),
-    ("attenuation", &["absorption"]),
-    ("extinction", &["absorption"]),
-    ("metal", &["reflect"]),
-    ("metallic", &["reflect"]),
-    ("mirror", &["reflect"]),
-    ("reflection", &["reflect"]),
-    ("reflective", &["reflect"]),
-    ("reflectivity", &["reflect"]),
-    ("depth", &["max_depth"]),
-    ("bounces", &["max_depth"]),
-    ("maxbounces", &["max_depth"]),
-    ("keyframe", &["track"]),
-    ("keyframes", &["track"]),
-    ("framerate", &["fps"]),
-    ("rate", &["fps"]),
-    ("duration", &["frames", "period"]),
-    ("easing", &["interpolation"]),
-    ("keytimes", &["times"]),
-    ("id", &["name"]),
-    ("ks", &["specular"]),
-    ("linear", &["none"]),
-    ("location", &["position", "center", "translate"]),
-    ("lookingat", &["look_at"]),
-    ("mesh", &["model"]),
-    ("mode", &["kind"]),
-    ("ns", &["shininess"]),
-    ("object", &["model"]),
-    ("omni", &["point"]),
-    ("origin", &["position", "center", "point"]),
-    ("orthographic", &["ortho_height"]),
-    ("path", &["file"]),
-    ("point", &["position", "center"]),
-    ("pos", &["position", "center", "point", "translate"]),
-    ("position", &["center", "point", "translate"]),
-    ("power", &["intensity"]),
-    ("quadratic", &["inverse_square"]),
-    ("r", &["radius"]),
-    ("render", &["film"]),
-    ("resolution", &["size"]),
-    ("rotation", &["rotate"]),
-    ("roughness", &["shininess"]),
-    ("samples", &["spp"]),
-    ("shadow", &["casts_shadow", "shadow"]),
-    ("shadows", &["casts_shadow", "shadow"]),
-    ("castsshadow", &["shadow"]),
-    ("castshadow", &["casts_shadow", "shadow"]),
-    ("size", &["radius", "scale"]),
-    ("source", &["file"]),
-    ("src", &["file"]),
-    ("sun", &["directional"]),
-    ("target", &["look_at", "object"]),
-    ("texture", &["diffuse_map"]),
-    ("bump", &["normal_map"]),
-    ("bumpmap", &["normal_map"]),
-    ("normal", &["normal", "normal_map"]),
-    ("blend", &["alpha_mode"]),
-    ("cutoff", &["cutoff", "alpha_cutoff"]),
-    ("mipmaps", &["filter", "mipmap"]),
-    ("trilinear", &["mipmap"]),
-    ("bilinear", &["linear"]),
-    ("to", &["look_at"]),
-    ("tonemap", &["tone"]),
-    ("tonemapping", &["tone"]),
-    ("translation", &["translate"]),
-    ("type", &["kind"]),
-    ("url", &["file"]),
-    ("view", &["camera", "direction"]),
-    ("width", &["size"]),
+/// The names of keys and values, each with the words that people write for it. Of several names for a
+/// word the first counts that can stand there.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("absorption", "attenuation extinction"),
+    ("aces", "filmic"),
+    ("alpha_mode", "blend"),
+    ("casts_shadow", "shadow shadows castshadow"),
+    ("color", "color colour"),
+    ("cutoff", "cutoff"),
+    ("alpha_cutoff", "cutoff"),
+    ("diffuse", "albedo basecolor color colour kd"),
+    ("background", "bg color colour"),
+    ("colors", "color colour colours"),
+    ("emission", "ambient emissive ke"),
+    ("exposure", "ev"),
+    ("file", "path source src url"),
+    ("film", "image render"),
+    ("diffuse_map", "image texture"),
+    ("filter", "mipmaps"),
+    ("focal_px", "focal focallength"),
+    ("fps", "framerate rate"),
+    ("frames", "duration"),
+    ("intensity", "brightness power"),
+    ("interpolation", "easing"),
+    ("inverse_square", "quadratic"),
+    ("ior", "refraction refractionindex refractiveindex indexofrefraction eta n"),
+    ("kind", "mode type"),
+    ("linear", "bilinear"),
+    ("look_at", "at lookingat target to"),
+    ("max_depth", "depth bounces maxbounces"),
+    ("mipmap", "mipmaps trilinear"),
+    ("model", "mesh object"),
+    ("name", "id"),
+    ("none", "linear"),
+    ("normal", "normal"),
+    ("normal_map", "bump bumpmap normal"),
+    ("object", "target"),
+    ("outer_angle", "angle"),
+    ("fov_y", "angle fov"),
+    ("period", "duration"),
+    ("plane", "floor ground"),
+    ("position", "eye from location origin point pos"),
+    ("camera", "eye view"),
+    ("center", "centre location origin point pos position"),
+    ("direction", "dir forward view"),
+    ("directional", "dir distance distant sun"),
+    ("point", "omni origin pos position"),
+    ("radius", "r size"),
+    ("reflect", "metal metallic mirror reflection reflective reflectivity"),
+    ("rotate", "rotation"),
+    ("scale", "size"),
+    ("shadow", "shadow shadows castsshadow castshadow"),
+    ("shininess", "alpha exponent ns roughness"),
+    ("size", "dimensions height resolution width"),
+    ("ortho_height", "height orthographic"),
+    ("specular", "ks"),
+    ("spp", "antialiasing samples"),
+    ("times", "keytimes"),
+    ("tone", "curve tonemap tonemapping"),
+    ("track", "keyframe keyframes"),
+    ("transfer", "gamma"),
+    ("translate", "location pos position translation"),
+    ("transmit", "transparency transparent transmission transmittance glass opacity"),
 ];
 
 /// Returns the one of `candidates` that `found` was probably meant to be.
 pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let folded = fold(found);
     // A word that means one of them.
-    if let Some((_, names)) = SYNONYMS.iter().find(|(word, _)| *word == folded)
-        && let Some(name) = names.iter().find_map(|name| candidates.iter().find(|c| *c == name))
-    {
+    let means = |words: &str| words.split(' ').any(|word| word == folded);
+    let mut meant = SYNONYMS.iter().filter(|(_, words)| means(words));
+    if let Some(name) = meant.find_map(|(name, _)| candidates.iter().find(|c| *c == name)) {
         return Some(name);
     }
     // The nearest by typing errors, if these are few.
@@ -145,8 +90,8 @@ pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     }
 }
 
-/// Returns the names to choose from, and before them "did you mean `x`?", where that is likely: for names
-/// that somebody gave.
+/// Returns the names to choose from, and before them "did you mean `x`?", where that is likely: for
+/// names that somebody gave.
 pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
     let all = list(candidates);
     match closest(found, candidates) {
@@ -202,8 +147,8 @@ mod tests {
 
     #[test]
     fn synonyms_are_folded() {
-        for (word, _) in SYNONYMS {
-            assert_eq!(*word, fold(word));
+        for word in SYNONYMS.iter().flat_map(|(_, words)| words.split(' ')) {
+            assert_eq!(word, fold(word));
         }
     }
 }

@@ -1,6 +1,8 @@
 //! The animation of an instance of a model: the model's own, within the space that the instance moves
 //! with.
 
+use std::collections::HashSet;
+
 use super::{MergedModel, ModelInstance, SceneIndices};
 use crate::scene::animation::{Animated, Animation, Node, NodeId};
 
@@ -16,24 +18,20 @@ pub(super) struct InstanceAnimation<'a> {
     pub animation: &'a mut Animation,
 }
 
-/// The objects of a model that its own animation moves: a flag for each.
+/// The indices of a model's objects that its own animation moves.
+#[derive(Default)]
 struct AnimatedObjects {
-    instances: Vec<bool>,
-    spheres: Vec<bool>,
-    lights: Vec<bool>,
-    cameras: Vec<bool>,
+    instances: HashSet<usize>,
+    spheres: HashSet<usize>,
+    lights: HashSet<usize>,
+    cameras: HashSet<usize>,
 }
 
 impl InstanceAnimation<'_> {
     /// Adds the animation of the instance.
     pub fn add(mut self) {
         let model = self.model;
-        let mut animated = AnimatedObjects {
-            instances: vec![false; model.instances.len()],
-            spheres: vec![false; model.spheres.len()],
-            lights: vec![false; model.lights.len()],
-            cameras: vec![false; model.cameras.len()],
-        };
+        let mut animated = AnimatedObjects::default();
         if let Some(own) = &model.animation {
             // The model's nodes, of which the outermost stand in the instance's space.
             let first_node = self.animation.nodes.len() as u32;
@@ -70,17 +68,17 @@ impl InstanceAnimation<'_> {
         let shift = |node: &mut NodeId| node.0 += first_node;
         match &mut object {
             Animated::Sphere { sphere, node, .. } => {
-                animated.spheres[*sphere] = true;
+                animated.spheres.insert(*sphere);
                 *sphere += self.indices.first_sphere;
                 node.iter_mut().for_each(shift);
             }
             Animated::Instance { instance, node, .. } => {
-                animated.instances[*instance] = true;
+                animated.instances.insert(*instance);
                 *instance += self.indices.first_instance;
                 shift(node);
             }
             Animated::Light { light, node, .. } => {
-                animated.lights[*light] = true;
+                animated.lights.insert(*light);
                 *light += self.indices.first_light;
                 node.iter_mut().for_each(shift);
                 if !self.instance.has_lights {
@@ -88,7 +86,7 @@ impl InstanceAnimation<'_> {
                 }
             }
             Animated::Camera { camera, node, .. } => {
-                animated.cameras[*camera] = true;
+                animated.cameras.insert(*camera);
                 *camera = self.indices.cameras[*camera]?;
                 node.iter_mut().for_each(shift);
             }
@@ -157,6 +155,9 @@ impl InstanceAnimation<'_> {
 }
 
 /// Returns the objects that are not animated, with their indices.
-fn still<'a, T>(objects: &'a [T], animated: &'a [bool]) -> impl Iterator<Item = (usize, &'a T)> {
-    objects.iter().enumerate().filter(|(i, _)| !animated[*i])
+fn still<'a, T>(
+    objects: &'a [T],
+    animated: &'a HashSet<usize>,
+) -> impl Iterator<Item = (usize, &'a T)> {
+    objects.iter().enumerate().filter(|(i, _)| !animated.contains(i))
 }

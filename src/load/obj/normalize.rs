@@ -13,6 +13,7 @@ use super::lexer::{ends_in_backslash, line_length, lines};
 use super::parse::ChunkParser;
 use super::state::State;
 use super::tobj_input::{FileInfo, TobjInput};
+use super::vertex_data::KINDS;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 
@@ -96,15 +97,11 @@ fn scan_chunk(chunk: &str) -> State {
             [b'v', b'n', b' ' | b'\t', ..] => 2,
             _ => {
                 let statement = line.statement();
-                match statement.keyword.as_ref() {
-                    "v" => 0,
-                    "vt" => 1,
-                    "vn" => 2,
-                    _ => {
-                        state.settings.apply(&statement);
-                        continue;
-                    }
-                }
+                let Some(kind) = KINDS.iter().position(|kind| *kind == statement.keyword) else {
+                    state.settings.apply(&statement);
+                    continue;
+                };
+                kind
             }
         };
         state.vertices.add(kind, line.text);

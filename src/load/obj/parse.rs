@@ -191,7 +191,7 @@ impl<'a> ChunkParser<'a> {
                 diagnostics.drop(DropReason::UnsupportedMode, 1, place);
             }
             "call" => diagnostics.unsupported("{} other files (`call`) are not read", 1, place),
-            keyword if IGNORED.contains(&keyword) => {}
+            keyword if keyword.is_empty() || IGNORED.split(' ').any(|word| word == keyword) => {}
             keyword => {
                 let reason = "{} lines are ignored: their first word is none of Wavefront OBJ";
                 diagnostics.add(reason, 1, || format!("line {number} (`{keyword}`)"));
@@ -232,31 +232,5 @@ impl<'a> ChunkParser<'a> {
 
 /// The statements that change nothing here: those of free-form geometry, which is warned of where it
 /// would be drawn, and those about display.
-const IGNORED: &[&str] = &[
-    "",
-    "vp",
-    "cstype",
-    "deg",
-    "bmat",
-    "step",
-    "parm",
-    "trim",
-    "hole",
-    "scrv",
-    "sp",
-    "end",
-    "con",
-    "mg",
-    "bevel",
-    "c_interp",
-    "d_interp",
-    "lod",
-    "maplib",
-    "usemap",
-    "mtllib",
-    "shadow_obj",
-    "trace_obj",
-    "ctech",
-    "stech",
-    "csh",
-];
+const IGNORED: &str = "vp cstype deg bmat step parm trim hole scrv sp end con mg bevel c_interp \
+     d_interp lod maplib usemap mtllib shadow_obj trace_obj ctech stech csh";

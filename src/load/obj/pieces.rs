@@ -23,7 +23,7 @@ impl Piece {
 
 /// The pieces of a text; each consists of whole lines.
 #[derive(Debug, Default)]
-pub struct Pieces(Vec<Piece>);
+pub struct Pieces(pub Vec<Piece>);
 
 impl Pieces {
     /// Adds a range of the original; if it continues the last piece, that one is extended.
@@ -51,15 +51,6 @@ impl Pieces {
     }
 }
 
-impl IntoIterator for Pieces {
-    type Item = Piece;
-    type IntoIter = std::vec::IntoIter<Piece>;
-
-    fn into_iter(self) -> Self::IntoIter {
-        self.0.into_iter()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -73,7 +64,7 @@ mod tests {
         pieces.add_rewritten(|text| text.push_str("x\n"));
         pieces.add_rewritten(|text| text.push_str("y\n"));
         pieces.add_original(8..9, false);
-        let texts: Vec<_> = pieces.into_iter().map(|s| s.text(original).to_owned()).collect();
+        let texts: Vec<_> = pieces.0.into_iter().map(|s| s.text(original).to_owned()).collect();
         assert_eq!(texts, ["a\nb\n", "x\ny\n", "d"]);
     }
 }

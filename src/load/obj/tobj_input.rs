@@ -48,7 +48,7 @@ impl<'a> TobjInput<'a> {
         Self {
             original,
             chunks: chunks.into_iter(),
-            pieces: Pieces::default().into_iter(),
+            pieces: Vec::new().into_iter(),
             piece: Piece::Original(0..0),
             position: 0,
             indices: HashMap::new(),
@@ -111,12 +111,12 @@ impl<'a> TobjInput<'a> {
                 return Some(piece);
             }
             if let Some(chunk) = self.next_chunk() {
-                self.pieces = self.store(chunk).into_iter();
+                self.pieces = self.store(chunk).0.into_iter();
                 continue;
             }
             // All chunks are there: now the faces.
             let faces = std::mem::take(self.faces.get_mut(self.begun)?);
-            self.pieces = faces.into_iter();
+            self.pieces = faces.0.into_iter();
             self.begun += 1;
             return Some(Piece::Rewritten(format!("g {}\n", self.begun - 1)));
         }

@@ -76,8 +76,7 @@ pub fn build_animation(
         states: vec![BuildState::Pending; count],
     };
     // The curves first: an orbit has to know whether its centre has keys.
-    for track in &table.track.0 {
-        let track = &track.value.0;
+    for track in table.track.iter() {
         let object = objects.index(source, &track.object)?;
         let curves = &mut builder.motions.0[object].curves;
         add_track(source, &objects.objects[object], track, curves)?;
@@ -88,7 +87,7 @@ pub fn build_animation(
 
 /// Returns the tables of named models, by their index among the names.
 fn named_models<'t>(tables: &'t SceneTable, objects: &NamedObjects) -> Vec<Option<&'t ModelTable>> {
-    let mut models = tables.model.0.iter().map(|t| &t.value.0).filter(|table| table.name.is_some());
+    let mut models = tables.model.iter().filter(|table| table.name.is_some());
     let table = |kind| if kind == ObjectKind::Model { models.next() } else { None };
     objects.objects.iter().map(|object| object.kind).map(table).collect()
 }
@@ -109,8 +108,7 @@ fn orbits<'t>(
     objects: &NamedObjects,
 ) -> Result<Vec<Option<ResolvedOrbit<'t>>>> {
     let mut orbits: Vec<_> = objects.objects.iter().map(|_| None).collect();
-    for orbit in &table.orbit.0 {
-        let table = &orbit.value.0;
+    for table in table.orbit.iter() {
         let At { span, value: name } = &table.object;
         let object = objects.index(source, &table.object)?;
         if objects.objects[object].position.is_none() {

@@ -5,7 +5,6 @@ use glam::DVec3;
 use super::SceneBuilder;
 use super::animation::ObjectMotion;
 use crate::error::Result;
-use crate::load::scene_file::schema::spanned::{At, Table};
 use crate::load::scene_file::schema::tables::CameraTable;
 use crate::load::scene_file::schema::values::normalize;
 use crate::load::scene_file::source::{Source, Span};
@@ -16,12 +15,11 @@ use crate::scene::{Camera, Projection};
 const DEFAULT_FOV_Y: f64 = 45.0;
 
 impl SceneBuilder<'_> {
-    /// Adds a camera.
+    /// Adds a camera, whose table is at a place.
     ///
     /// # Errors
     /// When its keys do not fit each other, or it looks at an object that there is not.
-    pub fn add_camera(&mut self, table: &At<Table<CameraTable>>) -> Result<()> {
-        let At { span, value: Table(table) } = table;
+    pub fn add_camera(&mut self, table: &CameraTable, span: &Span) -> Result<()> {
         let camera = self.camera(table, span)?;
         let animated = self.animated_camera(table, &camera)?;
         self.add_animated(animated);

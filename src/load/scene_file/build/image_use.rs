@@ -17,12 +17,12 @@ pub struct ImageUse {
 impl ImageUse {
     /// Collects what the tables of a scene file use.
     pub fn from_tables(source: &Source<'_>, tables: &SceneTable) -> Self {
-        let spheres = tables.sphere.0.iter().map(|s| &s.value.0.material);
-        let planes = tables.plane.0.iter().map(|p| &p.value.0.material);
-        let models = || tables.model.0.iter().map(|m| &m.value.0);
-        let names = spheres.chain(planes).chain(models().map(|m| &m.material)).flatten();
+        let spheres = tables.sphere.iter().map(|sphere| &sphere.material);
+        let planes = tables.plane.iter().map(|plane| &plane.material);
+        let models = tables.model.iter().map(|model| &model.material);
+        let names = spheres.chain(planes).chain(models).flatten();
         let materials = names.map(|name| name.value.clone()).collect();
-        let own = models().filter(|model| model.material.is_none());
+        let own = tables.model.iter().filter(|model| model.material.is_none());
         let models = own.map(|model| canonical(&source.resolve_path(&model.file.value))).collect();
         Self { materials, models }
     }

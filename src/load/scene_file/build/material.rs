@@ -4,7 +4,7 @@ use super::SceneBuilder;
 use super::textures::Sampling;
 use crate::error::Result;
 use crate::load::scene_file::schema::color::Color;
-use crate::load::scene_file::schema::spanned::{At, Table};
+use crate::load::scene_file::schema::spanned::At;
 use crate::load::scene_file::schema::tables::{MapAlpha, MaterialTable};
 use crate::load::spelling;
 use crate::scene::{
@@ -19,8 +19,7 @@ impl SceneBuilder<'_> {
     ///
     /// # Errors
     /// When its keys do not fit each other, an image is not there, or the name is taken.
-    pub fn add_material(&mut self, table: &At<Table<MaterialTable>>) -> Result<()> {
-        let table = &table.value.0;
+    pub fn add_material(&mut self, table: &MaterialTable) -> Result<()> {
         let At { span, value: name } = &table.name;
         let material = self.material(table)?;
         self.check_energy(table, &material)?;

@@ -67,12 +67,12 @@ pub fn build_scene(
         too_bright: 0,
     };
     // The objects, materials before those that name them.
-    tables.camera.0.iter().try_for_each(|c| builder.add_camera(c))?;
-    tables.material.0.iter().try_for_each(|m| builder.add_material(m))?;
-    tables.sphere.0.iter().try_for_each(|s| builder.add_sphere(&s.value.0))?;
-    tables.plane.0.iter().try_for_each(|p| builder.add_plane(&p.value.0))?;
-    tables.light.0.iter().try_for_each(|l| builder.add_light(&l.value.0))?;
-    tables.model.0.iter().try_for_each(|m| builder.add_model(&m.value.0))?;
+    tables.camera.0.iter().try_for_each(|c| builder.add_camera(&c.value.0, &c.span))?;
+    tables.material.iter().try_for_each(|m| builder.add_material(m))?;
+    tables.sphere.iter().try_for_each(|s| builder.add_sphere(s))?;
+    tables.plane.iter().try_for_each(|p| builder.add_plane(p))?;
+    tables.light.iter().try_for_each(|l| builder.add_light(l))?;
+    tables.model.iter().try_for_each(|m| builder.add_model(m))?;
     builder.warn_of_bright_materials();
     let SceneBuilder { mut scene, report, textures, .. } = builder;
     textures::decode_images(textures, source, sandbox, &mut scene)?;

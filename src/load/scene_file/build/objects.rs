@@ -74,45 +74,32 @@ impl NamedObjects {
     /// # Errors
     /// When two objects have the same.
     pub fn from_tables(source: &Source<'_>, tables: &SceneTable) -> Result<Self> {
+        let cameras = tables.camera.iter();
+        let cameras = cameras.map(|t| (&t.name, ObjectKind::Camera, Some(t.position.0)));
+        let spheres = tables.sphere.iter();
+        let spheres = spheres.map(|t| (&t.name, ObjectKind::Sphere, Some(t.center.0)));
+        let models = tables
+            .model
+            .iter()
+            .map(|t| (&t.name, ObjectKind::Model, Some(t.translate.map_or(DVec3::ZERO, |t| t.0))));
+        let lights = tables.light.iter().map(|t| {
+            let position = t.position.as_ref().map(|p| p.value.0);
+            (&t.name, ObjectKind::Light(t.kind.value), position)
+        });
         let mut objects = Self::default();
-        for table in tables.camera.0.iter().map(|t| &t.value.0) {
-            let position = Some(table.position.0);
-            objects.add(source, &table.name, ObjectKind::Camera, position)?;
-        }
-        for table in tables.sphere.0.iter().map(|t| &t.value.0) {
-            let position = Some(table.center.0);
-            objects.add(source, &table.name, ObjectKind::Sphere, position)?;
-        }
-        for table in tables.model.0.iter().map(|t| &t.value.0) {
-            let position = Some(table.translate.map_or(DVec3::ZERO, |t| t.0));
-            objects.add(source, &table.name, ObjectKind::Model, position)?;
-        }
-        for table in tables.light.0.iter().map(|t| &t.value.0) {
-            let position = table.position.as_ref().map(|p| p.value.0);
-            objects.add(source, &table.name, ObjectKind::Light(table.kind.value), position)?;
+        for (name, kind, position) in cameras.chain(spheres).chain(models).chain(lights) {
+            let Some(At { span, value: name }) = name else { continue };
+            if let Some(first) = objects.by_name.insert(name.clone(), objects.objects.len()) {
+                let first = &objects.objects[first];
+                let message = format!("there is {} `{name}` already", first.kind.noun());
+                let line = source.line(&first.span);
+                let help = format!("it is in line {line}; give each a name of its own");
+                return Err(source.error(span, message).help(help));
+            }
+            let (name, span) = (name.clone(), span.clone());
+            objects.objects.push(NamedObject { name, span, kind, position });
         }
         Ok(objects)
-    }
-
-    fn add(
-        &mut self,
-        source: &Source<'_>,
-        name: &Option<At<String>>,
-        kind: ObjectKind,
-        position: Option<DVec3>,
-    ) -> Result<()> {
-        let Some(At { span, value: name }) = name else { return Ok(()) };
-        if let Some(&first) = self.by_name.get(name) {
-            let first = &self.objects[first];
-            let message = format!("there is {} `{name}` already", first.kind.noun());
-            let line = source.line(&first.span);
-            let help = format!("it is in line {line}; give each a name of its own");
-            return Err(source.error(span, message).help(help));
-        }
-        self.by_name.insert(name.clone(), self.objects.len());
-        let (name, span) = (name.clone(), span.clone());
-        self.objects.push(NamedObject { name, span, kind, position });
-        Ok(())
     }
 
     /// Returns the index of an object by its name.

@@ -1,14 +1,11 @@
 //! The tables of a scene file that describe motion: `[animation]` and those in it.
 
 use std::borrow::Cow;
-use std::fmt;
-use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::spanned::{At, Tables};
+use super::spanned::{At, ListVisitor, Tables};
 use super::values::{
     Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
     Rotation, Scale, Seconds,
@@ -109,21 +106,8 @@ pub struct List<T>(pub Vec<T>);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct ListVisitor<T>(PhantomData<T>);
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for ListVisitor<T> {
-            type Value = List<T>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a list with a value for each time")
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<List<T>, A::Error> {
-                let mut values = Vec::new();
-                while let Some(value) = seq.next_element()? {
-                    values.push(value);
-                }
-                Ok(List(values))
-            }
-        }
-        deserializer.deserialize_seq(ListVisitor(PhantomData))
+        let visitor = ListVisitor::new("a list with a value for each time");
+        deserializer.deserialize_seq(visitor).map(Self)
     }
 }
 

@@ -47,29 +47,55 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
     }
 }
 
+/// Implements what lists of tables have in common.
+macro_rules! list_of_tables {
+    ($name:ident) => {
+        impl<T> Default for $name<T> {
+            fn default() -> Self {
+                Self(Vec::new())
+            }
+        }
+
+        impl<T> $name<T> {
+            /// Returns the tables, without their places.
+            pub fn iter(&self) -> impl Iterator<Item = &T> {
+                self.0.iter().map(|table| &table.value.0)
+            }
+        }
+    };
+}
+
 /// A list of tables under headers in double brackets, such as `[[sphere]]`.
 #[derive(Debug)]
 pub struct Tables<T>(pub Vec<At<Table<T>>>);
 
-impl<T> Default for Tables<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
-}
+list_of_tables!(Tables);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Tables<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct TablesVisitor<T>(PhantomData<T>);
-        impl<'de, T: Deserialize<'de>> Visitor<'de> for TablesVisitor<T> {
-            type Value = Tables<T>;
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a list of tables")
-            }
-            fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Tables<T>, A::Error> {
-                read_elements(seq).map(Tables)
-            }
-        }
-        deserializer.deserialize_seq(TablesVisitor(PhantomData))
+        deserializer.deserialize_seq(ListVisitor::new("a list of tables")).map(Self)
+    }
+}
+
+/// A visitor of a list of any length; errors say what was expected.
+pub struct ListVisitor<T>(&'static str, PhantomData<T>);
+
+impl<T> ListVisitor<T> {
+    /// Returns the visitor of a list that messages call by this name.
+    pub fn new(expected: &'static str) -> Self {
+        Self(expected, PhantomData)
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ListVisitor<T> {
+    type Value = Vec<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.0)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Vec<T>, A::Error> {
+        read_elements(seq)
     }
 }
 
@@ -77,11 +103,7 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Tables<T> {
 #[derive(Debug)]
 pub struct OneOrMore<T>(pub Vec<At<Table<T>>>);
 
-impl<T> Default for OneOrMore<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
-}
+list_of_tables!(OneOrMore);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
