@@ -1,4 +1,4 @@
-//! Which extensions are read, and what to do about the others.
+//! The extensions that are read, and the refusal of files that require others.
 
 use gltf::json;
 
@@ -26,7 +26,7 @@ const UNSEEN: [&str; 15] = [
     "KHR_interactivity", "KHR_node_hoverability", "KHR_node_selectability",
     "KHR_physics_rigid_bodies", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_lod", "MSFT_physics",
 ];
-/// How the names of further such extensions begin.
+/// The beginnings of the names of further such extensions.
 const UNSEEN_FAMILIES: [&str; 6] =
     ["OMI_collider", "OMI_physics_", "OMI_seat", "OMI_spawn_point", "OMI_vehicle_", "OMI_link"];
 
@@ -51,14 +51,14 @@ pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
     Ok(())
 }
 
-/// What a user can do about an extension.
+/// The advice on a file that requires an extension.
 fn remedy(name: &str) -> &'static str {
     match name {
         "KHR_meshopt_compression" => {
             "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"
         }
         "EXT_texture_avif" => {
-            "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its pictures into PNG"
+            "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its images into PNG"
         }
         "KHR_techniques_webgl" | "KHR_technique_webgl" => "export it with glTF's own materials",
         _ => {

@@ -50,8 +50,8 @@ struct EncodedImage<'a> {
 /// The limits are charged in the order of the images, so that the first that is too much does not
 /// depend on threads.
 ///
-/// Each result is an error where the image cannot be opened or read, is of none of these formats, is
-/// damaged, is larger than 32768 pixels on a side, or exceeds a limit.
+/// Each result is an error where the image cannot be opened or read, is of none of these formats,
+/// is damaged, is larger than 32768 pixels on a side, or exceeds a limit.
 pub fn decode_all<'a, T: Sync>(
     images: &[T],
     sandbox: &Sandbox,

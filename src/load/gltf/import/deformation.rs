@@ -22,7 +22,8 @@ pub(super) struct MeshAtNode {
 }
 
 impl Importer<'_> {
-    /// Returns the mesh of a primitive as it is at a node, which is added to the scene if it is new.
+    /// Returns the mesh of a primitive as it is at a node, which is added to the scene if it is
+    /// new.
     pub(super) fn mesh_at_node(
         &mut self,
         primitive: &ImportedPrimitive,

@@ -1,7 +1,8 @@
 //! KHR_implicit_shapes: spheres and planes as what they are, boxes, cylinders and capsules as
 //! meshes.
 //!
-//! The extension lists shapes, for any use. A node shows the shape that its own `extensions.KHR_implicit_shapes.shape` names, of the `material` beside it.
+//! The extension lists shapes, for any use. A node shows the shape that its own
+//! `extensions.KHR_implicit_shapes.shape` names, of the `material` beside it.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 

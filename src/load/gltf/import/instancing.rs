@@ -11,8 +11,8 @@ use crate::load::gltf::json::{as_index, at_path, error_at};
 use crate::load::limits::Limit;
 use crate::load::sandbox::Sandbox;
 
-/// Returns the transforms of the instances of a node's mesh, in the node's space; `None` if the node
-/// does not use the extension.
+/// Returns the transforms of the instances of a node's mesh, in the node's space; `None` if the
+/// node does not use the extension.
 ///
 /// # Errors
 /// When the extension's accessors cannot be read, or are not equally long.

@@ -62,8 +62,9 @@ struct Parent {
     depth: u64,
 }
 
-/// Returns the nodes of the scene that is shown (the default one, else the first, else all nodes) in
-/// the order of the file, and those that may be joints. Nodes that move are added to the animation.
+/// Returns the nodes of the scene that is shown (the default one, else the first, else all nodes)
+/// in the order of the file, and those that may be joints. Nodes that move are added to the
+/// animation.
 ///
 /// # Errors
 /// When a node refers to a missing one, is its own ancestor, or has numbers that are not finite.

@@ -29,7 +29,7 @@ pub struct Textures<'a> {
     cache: TextureCache<ImageKey<'a>, ImageSource<'a>, TextureKey>,
 }
 
-/// What makes two images the same.
+/// The identity of an image: two with the same key are decoded once.
 #[derive(PartialEq, Eq, Hash)]
 enum ImageKey<'a> {
     DataUri(&'a str),

@@ -36,8 +36,9 @@ impl Default for Transform {
 impl Transform {
     /// Returns the transform: scale, then rotate, then offset.
     ///
-    /// Positive angles turn counter-clockwise as one sees the image, whose v runs down: so do Khronos' viewer and its TextureTransformTest, while the
-    /// GLSL in the extension's text has the sign the other way.
+    /// Positive angles turn counter-clockwise as one sees the image, whose v runs down: so do
+    /// Khronos' viewer and its TextureTransformTest, while the GLSL in the extension's text has the
+    /// sign the other way.
     fn affine(&self) -> Affine2 {
         let (sin, cos) = self.rotation.sin_cos();
         let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));

@@ -1,5 +1,5 @@
-//! The parser of a file's JSON, more lenient than the types of the `gltf` crate where these refuse a
-//! file for no reason, and stricter where they let pass what would mean something else.
+//! The parser of a file's JSON, more lenient than the types of the `gltf` crate where these refuse
+//! a file for no reason, and stricter where they let pass what would mean something else.
 
 use gltf::json;
 use gltf::json::Value;

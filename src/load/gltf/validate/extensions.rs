@@ -2,14 +2,16 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::schema::Kind::{Attributes, Flag, Index, Integer, List, Number, Object, Set, Text, Vector};
+use super::schema::Kind::{
+    Attributes, Flag, Index, Integer, List, Number, Object, Set, Text, Vector,
+};
 use super::schema::{
     ABOVE_0, ALL, NOT_NEGATIVE, NumberRange, Property, SHARE, Schema, TEXTURE_INFO, optional,
     required, schema,
 };
 
-/// An extension's name, the object that it belongs to, and its properties. Extensions that no object
-/// of theirs may have are not listed.
+/// An extension's name, the object that it belongs to, and its properties. Extensions that no
+/// object of theirs may have are not listed.
 pub const EXTENSIONS: &[(&str, &str, &[Property])] = &[
     ("EXT_mesh_gpu_instancing", "node", &[required("attributes", Attributes)]),
     ("EXT_meshopt_compression", "buffer", &[]),

@@ -1,8 +1,8 @@
 //! The validation of a file against the standard.
 //!
-//! An error stops a load only where something is used that cannot be read; the validation covers the
-//! whole file, used or not, and warns. docs/formats.md lists what it checks, and what not, beside
-//! the verdicts of Khronos' validator.
+//! An error stops a load only where something is used that cannot be read; the validation covers
+//! the whole file, used or not, and warns. docs/formats.md lists what it checks, and what not,
+//! beside the verdicts of Khronos' validator.
 
 mod attributes;
 mod buffers;

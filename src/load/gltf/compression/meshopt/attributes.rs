@@ -31,8 +31,8 @@ pub fn decode(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
     data.is_empty().then_some(decoded)
 }
 
-/// Decodes 16 deltas: all 0, of 2 bits, of 4 bits, or bytes. A delta with all bits set is followed by
-/// a whole byte, which comes after the others.
+/// Decodes 16 deltas: all 0, of 2 bits, of 4 bits, or bytes. A delta of 2
+/// or 4 bits that are all set stands for a whole byte, which is stored after the group's bits.
 fn decode_group(data: &mut &[u8], mode: u8, group: &mut [u8]) -> Option<()> {
     let bits = match mode {
         0 => {

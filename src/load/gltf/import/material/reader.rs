@@ -71,7 +71,7 @@ impl MaterialReader<'_, '_> {
     /// Returns a texture of colours, if there is a reference to one.
     ///
     /// # Errors
-    /// As [`MaterialReader::texture`].
+    /// When the reference, or one that it leads to, leads nowhere.
     pub fn color_texture(
         &mut self,
         info: Option<&Info>,
@@ -84,7 +84,7 @@ impl MaterialReader<'_, '_> {
     /// Returns a channel of a texture of data, if there is a reference to one.
     ///
     /// # Errors
-    /// As [`MaterialReader::texture`].
+    /// When the reference, or one that it leads to, leads nowhere.
     pub fn channel(
         &mut self,
         info: Option<&Info>,

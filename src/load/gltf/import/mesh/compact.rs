@@ -1,10 +1,10 @@
-//! The removal of unused vertices. Some exporters let all primitives of a model share one large array
-//! of vertices; the mesh of each must not keep all of them.
+//! The removal of unused vertices. Some exporters let all primitives of a model share one large
+//! array of vertices; the mesh of each must not keep all of them.
 
 use crate::scene::Mesh;
 
-/// Drops the vertices that no triangle uses, if they are more than half of all, and then returns the
-/// former indices of the others.
+/// Drops the vertices that no triangle uses, if they are more than half of all, and then returns
+/// the former indices of the others.
 pub fn compact(mesh: &mut Mesh) -> Option<Vec<usize>> {
     if uses_half(mesh) {
         return None;
