@@ -17,8 +17,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput};
-use envers::geometry::sphere::{self, certified as sure_sphere};
-use envers::geometry::triangle::{self, certified as sure_triangle};
+use envers::internals::sphere::certified as sure_sphere;
+use envers::internals::triangle::certified as sure_triangle;
+use envers::internals::{sphere, triangle};
 use glam::DVec3;
 use support::arguments::Arguments;
 

@@ -2,12 +2,9 @@
 //!
 //! `cargo run --release --example model -- model.glb out.exr`
 
-use envers::Loaded;
+use envers::internals::{Settings, write};
+use envers::{Error, Loaded, Renderer, Result};
 use std::path::PathBuf;
-
-use envers::Renderer;
-use envers::error::{Error, Result};
-use envers::write::{Settings, write};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);

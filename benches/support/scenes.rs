@@ -1,8 +1,9 @@
 //! The two scenes of the benches, made by formula, and the rays of their pictures.
 
-use envers::geometry::Ray;
-use envers::scene::{Camera, Falloff, Instance, Light, LightKind, Projection, Shadow};
-use envers::scene::{Material, Mesh, Scene, Sphere};
+use envers::{
+    Camera, Falloff, Instance, Light, LightKind, Material, Mesh, Projection, Ray, Scene, Shadow,
+    Sphere,
+};
 use glam::{DAffine3, DVec3, Vec3};
 use xtask::reference::knot;
 

@@ -34,4 +34,4 @@ pub use estimate::Estimate;
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use hit16::{Hit16, HitBatch, PrimitiveId16};
 pub use ray::{Continuation, Departure, Ray, Side};
-pub use ray16::{Departure16, LANES, Lanes, Ray16, RayBatch};
+pub use ray16::{LANES, Lanes, Ray16, RayBatch};

@@ -1,8 +1,6 @@
 //! The intersectors against each other: brute force, BVH and Embree.
 
-use envers::geometry::{Hit, Ray};
-use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::Scene;
+use envers::{BruteForce, Bvh, Coherence, Hit, Intersector, Precision, Ray, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -67,8 +65,8 @@ fn bvh_occlusion_equals_brute_force() {
 #[cfg(all(feature = "embree", feature = "measure"))]
 mod embree {
     use super::*;
-    use envers::geometry::Geometry;
-    use envers::intersect::Embree;
+    use envers::Embree;
+    use envers::Geometry;
     use envers::measure::MismatchClassifier;
 
     /// Compares with brute force; returns how many rays differ for a reason that f32 explains.

@@ -1,6 +1,6 @@
 //! The sweeps of `envers stress`, with few rays of each kind; and that a sweep can fail.
 
-use envers::geometry::Ray;
+use envers::Ray;
 use envers::measure::stress::{self, Goal, Method, Row, StressOptions, Table, plot};
 use glam::DVec3;
 
@@ -70,7 +70,9 @@ fn seed_decides_the_rows() {
 
 /// Haines's formula: some ulp off, and now and then wrong at a tangent.
 fn rounded(center: DVec3, radius: f64, ray: &Ray) -> Option<f64> {
-    use envers::geometry::sphere::{first_root, inverse_length_squared, roots};
+    use envers::internals::sphere::first_root;
+    use envers::internals::sphere::inverse_length_squared;
+    use envers::internals::sphere::roots;
     let inverse = inverse_length_squared(ray.direction);
     first_root(roots(center, radius, ray.origin, ray.direction, inverse)?, ray.tmax, false)
 }

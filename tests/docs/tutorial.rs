@@ -6,13 +6,10 @@
 //! numpy is cut to a whole number when it is stored as `uint8`. Ours rounds instead, so the bytes
 //! may differ by 1; before that last step the two agree to within a thousandth.
 
-use envers::Loaded;
+use envers::internals::{Settings, png_bytes};
+use envers::{Loaded, Renderer, load};
 use std::ops::{Add, Mul, Sub};
 use std::path::Path;
-
-use envers::Renderer;
-use envers::load;
-use envers::write::{Settings, png_bytes};
 
 const LONGUEUR: usize = 1000;
 const HAUTEUR: usize = 500;

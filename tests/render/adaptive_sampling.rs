@@ -1,10 +1,7 @@
 //! Adaptive samples: more where neighbouring ones disagree, wherever tiles and strips begin.
 
-use envers::film::Film;
-use envers::integrator::{Counts, FeatureCounts, Tiling, sample_steps};
-use envers::intersect::{Backend, Precision};
-use envers::scene::{AdaptiveSampling, Scene};
-use envers::{RenderOptions, Renderer};
+use envers::internals::{Counts, FeatureCounts, Tiling, sample_steps};
+use envers::{AdaptiveSampling, Backend, Film, Precision, RenderOptions, Renderer, Scene};
 
 /// The scene with a camera that sees one unit of length for each pixel, 0 in the middle.
 fn scene(size: [u32; 2], objects: &str) -> Scene {

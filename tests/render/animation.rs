@@ -2,17 +2,14 @@
 
 use std::path::Path;
 
-use envers::geometry::{Bounds, Ray};
-use envers::intersect::{
-    Backend, BuildStats, Coherence, Intersector, IntersectorBuilder, Precision,
-};
+use envers::internals::{BuildStats, IntersectorBuilder};
 use envers::scene::animation::{
     Anchor, Animated, Animation, Curve, Interpolation, Keyframes, Motion, Node, Orbit,
 };
-use envers::scene::{
-    Camera, Instance, Light, LightKind, MaterialId, Mesh, Projection, Scene, Shadow, Sphere,
+use envers::{
+    Backend, Bounds, Camera, Coherence, Instance, Intersector, Light, LightKind, MaterialId, Mesh,
+    Precision, Projection, Ray, RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
-use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// The spheres of the tutorial's scene.
@@ -457,7 +454,7 @@ fn a_frame_that_cannot_be_written_ends_the_rendering() {
     let mut count = 0;
     let result = Renderer::new(&scene).render_frames(&times(&scene), |_, _| {
         count += 1;
-        Err(envers::error::Error::failed("the disk is full"))
+        Err(envers::Error::failed("the disk is full"))
     });
     assert!(result.is_err() && count == 1);
 }

@@ -7,10 +7,8 @@
 
 use std::path::{Path, PathBuf};
 
-use envers::LoadOptions;
-use envers::intersect::Backend;
-use envers::write::{Settings, png_bytes};
-use envers::{RenderOptions, Renderer};
+use envers::internals::{Settings, png_bytes};
+use envers::{Backend, LoadOptions, RenderOptions, Renderer};
 use image::{Rgb, RgbImage};
 
 /// The most that a channel may differ, of 255.

@@ -1,8 +1,7 @@
 //! A file's own animation: rigid nodes, and what is said where its data is damaged.
 
 use super::*;
-use envers::Loaded;
-use envers::scene::LightKind;
+use envers::{LightKind, Loaded};
 use glam::DVec3;
 use serde_json::Value;
 

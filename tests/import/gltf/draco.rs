@@ -1,8 +1,7 @@
 //! KHR_draco_mesh_compression.
 
 use draco_core::{DataType, GeometryAttributeType as Kind};
-use envers::Loaded;
-use envers::{DropReason, Limit, Limits, LoadOptions};
+use envers::{DropReason, Limit, Limits, LoadOptions, Loaded};
 
 use super::*;
 use envers_testing::packed::{DRACO, bytes, draco, packed};

@@ -1,9 +1,8 @@
 //! Lights, cameras, and what stands still.
 
-use envers::Loaded;
+use envers::{LightKind, Loaded, Projection};
 use std::f32::consts::PI;
 
-use envers::scene::{LightKind, Projection};
 use glam::DVec3;
 
 use super::*;

@@ -1,9 +1,7 @@
 //! The tree of nodes.
 
-use envers::Loaded;
+use envers::{Limit, Limits, LoadOptions, Loaded};
 use glam::DVec3;
-
-use envers::{Limit, Limits, LoadOptions};
 
 use super::*;
 

@@ -1,6 +1,6 @@
 //! The mistakes in scene files, and the place at which the message points: the mark `¦`.
 
-use envers::error::{Error, ErrorKind};
+use envers::{Error, ErrorKind};
 
 use super::{CAMERA, File, refused, refused_seen};
 

@@ -1,8 +1,9 @@
 //! The meaning of scene files.
 
-use envers::scene::{
-    AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,
-    Projection, SamplePosition, Shadow, Sphere, Tone, Transfer,
+use envers::scene::{Filter, SamplePosition, Transfer};
+use envers::{
+    AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Light, LightKind, Material,
+    Projection, Shadow, Sphere, Tone,
 };
 use glam::{DVec3, Vec3};
 
@@ -157,7 +158,7 @@ fn a_picture_that_nothing_shows_is_named_and_not_read() {
     let mut scene = file.load().unwrap().scene;
     let image = scene.textures[0].image.clone();
     assert!(!image.is_read() && image.name.ends_with("dot.png"), "{image:?}");
-    let ball = envers::scene::Sphere::new(glam::DVec3::ZERO, 1.0, envers::scene::MaterialId(0));
+    let ball = envers::Sphere::new(glam::DVec3::ZERO, 1.0, envers::MaterialId(0));
     scene.spheres.push(ball);
     let error = scene.check().unwrap_err();
     assert!(error.message().contains("the picture was not read"), "{error}");
@@ -195,7 +196,7 @@ fn a_normal_map_is_linear_and_other_maps_are_srgb() {
     let scene =
         with_dot("normal_map = \"dot.png\"\nspecular_map = \"dot.png\"\n").load().unwrap().scene;
     let material = &scene.materials[0];
-    let transfer = |id: envers::scene::TextureId| scene.textures[id.0 as usize].transfer;
+    let transfer = |id: envers::TextureId| scene.textures[id.0 as usize].transfer;
     assert_eq!(transfer(material.normal_map.unwrap().texture), Transfer::None);
     assert_eq!(transfer(material.specular_map.unwrap()), Transfer::Srgb);
     // One file, decoded once.

@@ -1,8 +1,7 @@
 //! `[animation]`: what it makes of a scene, and what it refuses.
 
 use super::{CAMERA, File, refused, scene, seen};
-use envers::error::Error;
-use envers::scene::{LightKind, Projection, Scene};
+use envers::{Error, LightKind, Projection, Scene};
 use glam::{DVec3, Vec3};
 
 /// Two seconds in four frames a second.
