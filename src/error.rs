@@ -23,6 +23,26 @@ pub enum ErrorKind {
     Failed,
 }
 
+/// A way out of an [`Error`] that is an option of the library, for which a command has a flag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Reading files outside the folder of the one that was named, by
+    /// `load::LoadOptions::allow_outside`.
+    AllowOutside,
+    /// Raising a limit, by `load::LoadOptions::limits`.
+    RaiseLimit {
+        /// The limit's name, as `load::Limit::name` gives it.
+        name: &'static str,
+        /// The lowest limit that allows what was found, where that is known.
+        least: Option<u64>,
+    },
+    /// Tracing with the pure-Rust BVH, by `intersect::Backend::Rust`.
+    RustBackend,
+    /// Rendering the reference of a benchmark with this many samples per pixel.
+    ReferenceSamples(u32),
+}
+
 /// The place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
@@ -87,6 +107,7 @@ struct Details {
     place: Option<Place>,
     message: String,
     help: Option<String>,
+    remedy: Option<Remedy>,
 }
 
 /// A result whose error is [`Error`].
@@ -115,6 +136,7 @@ impl Error {
             place: None,
             message: message.into(),
             help: None,
+            remedy: None,
         }))
     }
 
@@ -136,6 +158,13 @@ impl Error {
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.0.help.get_or_insert(help.into());
+        self
+    }
+
+    /// Adds the option that is a way out.
+    #[must_use]
+    pub fn remedied_by(mut self, remedy: Remedy) -> Self {
+        self.0.remedy.get_or_insert(remedy);
         self
     }
 
@@ -162,6 +191,11 @@ impl Error {
     /// The advice, if there is some.
     pub fn advice(&self) -> Option<&str> {
         self.0.help.as_deref()
+    }
+
+    /// The option that is a way out, where there is one.
+    pub fn remedy(&self) -> Option<Remedy> {
+        self.0.remedy
     }
 }
 

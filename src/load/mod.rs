@@ -23,7 +23,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::scene::watertight;
 
-pub use defaults::auto_lighting::add_ground;
+pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits, NamedLimit};
 pub use report::{DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
@@ -102,12 +102,12 @@ impl LoadOptions {
             scene.film.size = size;
         }
         // Defaults for what the file leaves out.
-        defaults::auto_camera::frame(&mut scene);
+        defaults::auto_camera::add_camera(&mut scene);
         if !is_scene_file {
             scene.film.spp = BARE_MODEL_SPP;
-            defaults::auto_lighting::light(&mut scene);
+            defaults::auto_lighting::add_lights(&mut scene);
         }
-        defaults::materials::settle(&mut scene);
+        defaults::complete(&mut scene);
         scene.check().map_err(|e| e.at(path))?;
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })

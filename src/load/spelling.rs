@@ -1,7 +1,8 @@
-//! "Did you mean …?"
+//! The suggestions for misspelt names: "did you mean …?"
 
-/// What people write, and what they may mean by it; the first that can stand there is meant.
-const HABITS: &[(&str, &[&str])] = &[
+/// Words that people write, and the names that they may mean; the first name that can stand there is
+/// meant.
+const SYNONYMS: &[(&str, &[&str])] = &[
     ("albedo", &["diffuse"]),
     ("alpha", &["shininess"]),
     ("ambient", &["emission"]),
@@ -119,15 +120,16 @@ const HABITS: &[(&str, &[&str])] = &[
     ("width", &["size"]),
 ];
 
-/// The one of `candidates` that `found` was probably meant to be.
+/// Returns the one of `candidates` that `found` was probably meant to be.
 pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let folded = fold(found);
-    let habit = HABITS.iter().find(|(habit, _)| *habit == folded);
-    let meant =
-        habit.and_then(|(_, meant)| meant.iter().find_map(|m| candidates.iter().find(|c| *c == m)));
-    if let Some(meant) = meant {
-        return Some(meant);
+    // A word that means one of them.
+    if let Some((_, names)) = SYNONYMS.iter().find(|(word, _)| *word == folded)
+        && let Some(name) = names.iter().find_map(|name| candidates.iter().find(|c| *c == name))
+    {
+        return Some(name);
     }
+    // The nearest by typing errors, if these are few.
     let distance = |candidate: &str| strsim::damerau_levenshtein(&folded, &fold(candidate));
     let (nearest, distance) =
         candidates.iter().map(|c| (*c, distance(c))).min_by_key(|(_, distance)| *distance)?;
@@ -135,7 +137,7 @@ pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
         .then_some(nearest)
 }
 
-/// "did you mean `x`?", or what there is to choose from.
+/// Returns "did you mean `x`?", or the names to choose from.
 pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     match closest(found, candidates) {
         Some(meant) => format!("did you mean `{meant}`?"),
@@ -143,7 +145,8 @@ pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     }
 }
 
-/// As [`advice`], with what there is to choose from in either case: of names that somebody gave.
+/// Returns the names to choose from, and before them "did you mean `x`?", where that is likely: for names
+/// that somebody gave.
 pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
     let all = list(candidates);
     match closest(found, candidates) {
@@ -152,19 +155,19 @@ pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
     }
 }
 
-/// `a`, `b` and `c`; the first of many.
+/// Returns "`a`, `b` and `c`"; of many names the first.
 pub fn list(names: &[&str]) -> String {
-    const MOST: usize = 20;
-    let quoted: Vec<String> = names.iter().take(MOST).map(|n| format!("`{n}`")).collect();
+    const MAX_NAMES: usize = 20;
+    let quoted: Vec<String> = names.iter().take(MAX_NAMES).map(|n| format!("`{n}`")).collect();
     match &quoted[..] {
         [] => String::new(),
         [only] => only.clone(),
-        all if names.len() > MOST => format!("{} …", all.join(", ")),
+        all if names.len() > MAX_NAMES => format!("{} …", all.join(", ")),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
-/// Case and separators are where most misspellings differ.
+/// Folds a name: without case and separators, by which most misspellings differ.
 fn fold(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
 }
@@ -181,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn a_habit_means_what_can_stand_there() {
+    fn a_synonym_means_what_can_stand_there() {
         assert_eq!(closest("colour", &["kind", "color"]), Some("color"));
         assert_eq!(closest("colour", &["name", "diffuse"]), Some("diffuse"));
     }
@@ -198,9 +201,9 @@ mod tests {
     }
 
     #[test]
-    fn habits_are_folded() {
-        for (habit, _) in HABITS {
-            assert_eq!(*habit, fold(habit));
+    fn synonyms_are_folded() {
+        for (word, _) in SYNONYMS {
+            assert_eq!(*word, fold(word));
         }
     }
 }

@@ -73,12 +73,12 @@ mod embree {
 
     /// Compares with brute force; returns how many rays differ for a reason that f32 explains.
     fn explained(seed: u64, scene: &Scene, embree: &Embree<'_>, rays: &[Ray]) -> usize {
-        let disputes = MismatchClassifier { scene, margin: embree.margin() };
+        let classifier = MismatchClassifier { scene, margin: embree.margin() };
         let (expected, found) =
             (closest(&BruteForce::new(scene, Precision::Fast), rays), closest(embree, rays));
         let mut count = 0;
         for (i, (a, b)) in expected.iter().zip(&found).enumerate().filter(|(_, (a, b))| a != b) {
-            let cause = disputes.primary(&rays[i], a.as_ref(), b.as_ref());
+            let cause = classifier.classify_hits(&rays[i], a.as_ref(), b.as_ref());
             let same = a.zip(*b).is_some_and(|(a, b)| a.id == b.id);
             assert!(cause.is_some() && !same, "scene {seed}, ray {i}: {a:?}, Embree {b:?}");
             count += 1;
@@ -108,13 +108,13 @@ mod embree {
     fn embree_occlusion_equals_brute_force_up_to_explained_mismatches() {
         each_scene(|seed, scene, rays| {
             let embree = Embree::build(scene, Precision::Fast, 1).unwrap();
-            let disputes = MismatchClassifier { scene, margin: embree.margin() };
+            let classifier = MismatchClassifier { scene, margin: embree.margin() };
             let rays: Vec<Ray> =
                 rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
             let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
             let found = occluded(&embree, &rays);
             for (i, truth) in expected.iter().enumerate().filter(|(i, b)| found[*i] != **b) {
-                let cause = disputes.shadow(&rays[i], *truth);
+                let cause = classifier.classify_occlusion(&rays[i], *truth);
                 assert!(cause.is_some(), "scene {seed}, ray {i}: blocked is {truth}");
             }
         });

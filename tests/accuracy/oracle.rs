@@ -104,7 +104,7 @@ fn sphere_from_farther_than_f64_can_square() {
 #[test]
 fn height_is_the_distance_from_the_sphere_in_radii() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-    let height = |t| oracle::height(v(0.0, 0.0, 10.0), 2.0, &ray, t);
+    let height = |t| oracle::signed_distance(v(0.0, 0.0, 10.0), 2.0, &ray, t);
     assert_eq!([8.0, 12.0, 7.0, 9.0, 10.0].map(height), [0.0, 0.0, 0.5, -0.5, -1.0]);
 }
 

@@ -137,7 +137,7 @@ fn an_attribute_that_is_not_there_is_an_error_that_names_it() {
 fn more_triangles_than_the_limit_are_an_error_that_names_it() {
     let folder = Folder::new();
     let path = folder.write("model.glb", square().glb());
-    let limits = Limits::default().with(Limit::Triangles, 1);
+    let limits = Limits::default().with_limit(Limit::Triangles, 1);
     let options = LoadOptions::default().limits(limits);
     let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("larger than the limits allow"), "{error}");
@@ -150,7 +150,7 @@ fn each_attribute_that_is_unpacked_counts_towards_the_elements() {
     named.extend((0..200).map(|i| (format!("_{i}"), 0.into())));
     let folder = Folder::new();
     let path = folder.write("model.glb", model.glb());
-    let limits = Limits::default().with(Limit::Elements, 100);
+    let limits = Limits::default().with_limit(Limit::Elements, 100);
     let options = LoadOptions::default().limits(limits);
     let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("elements"), "{error}");
