@@ -120,7 +120,9 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
         // Positions, normals and materials.
         lit.surface.set::<SMOOTH_NORMALS>(scene, &wave.rays, block, hits);
         // Rays that hit nothing see the background.
-        radiance.blocks[block] = background.to_array().map(|channel| [channel; LANES]);
+        for channel in 0..3 {
+            radiance.blocks[block][channel] = [background[channel]; LANES];
+        }
         if !lit.surface.has_hits() {
             continue;
         }
