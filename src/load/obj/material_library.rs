@@ -58,7 +58,7 @@ impl<'a> MaterialLibrary<'a> {
                 match (open_file(sandbox, folder, &name), own()) {
                     (Ok(file), _) => library.add_file(file, diagnostics),
                     (Err(error), Ok(own)) => {
-                        diagnostics.say(format!(
+                        diagnostics.note(format!(
                             "the materials `{name}` are missing ({error}); those of {} take their \
                              place",
                             own.path.display()
@@ -107,7 +107,7 @@ impl<'a> MaterialLibrary<'a> {
                 });
                 self.sources.extend(named);
             }
-            Err(error) => diagnostics.say(error.at(path).to_string()),
+            Err(error) => diagnostics.note(error.at(path).to_string()),
         }
     }
 
@@ -141,10 +141,15 @@ impl<'a> MaterialLibrary<'a> {
         id
     }
 
-    /// Decodes the images of the materials' textures, if they are `wanted`; otherwise they are only
+    /// Decodes the images of the materials' textures, if the scene `needs_images`; otherwise they are only
     /// named.
-    pub fn decode_images(self, wanted: bool, scene: &mut Scene, diagnostics: &mut Diagnostics) {
-        self.textures.decode(wanted, scene, diagnostics);
+    pub fn decode_images(
+        self,
+        needs_images: bool,
+        scene: &mut Scene,
+        diagnostics: &mut Diagnostics,
+    ) {
+        self.textures.decode(needs_images, scene, diagnostics);
     }
 }
 

@@ -221,7 +221,7 @@ impl SamplerReader<'_> {
     fn times(&self, curves: u64) -> Result<Vec<f64>> {
         // A small file can name the same ones any number of times.
         let index = self.sampler.input.value();
-        self.sandbox.take(Limit::Keys, self.accessors.count(index).saturating_mul(curves))?;
+        self.sandbox.consume(Limit::Keys, self.accessors.count(index).saturating_mul(curves))?;
         let times = self.accessors.floats(index, &format!("{}.samplers.input", self.path))?;
         Ok(times.into_iter().map(|[t]| f64::from(t)).collect())
     }
