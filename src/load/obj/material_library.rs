@@ -47,6 +47,7 @@ impl<'a> MaterialLibrary<'a> {
         let own = path.with_extension("mtl");
         let own =
             || open_file(sandbox, folder, &own.file_name().unwrap_or_default().to_string_lossy());
+        // The files that the lines name.
         for name in names {
             // A name may stand in quotes or hold spaces, and a line have several names.
             let name = unquote(name);
@@ -71,6 +72,7 @@ impl<'a> MaterialLibrary<'a> {
                 }
             }
         }
+        // The file of the OBJ file's own name.
         if names.is_empty()
             && let Ok(own) = own()
         {

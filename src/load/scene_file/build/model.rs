@@ -73,6 +73,7 @@ impl SceneBuilder<'_> {
         if self.models.contains_key(&key) {
             return Ok(key);
         }
+        // The model, in a scene of its own.
         let path = file.path.clone();
         let options = ModelOptions {
             animation: key.animation.as_deref(),
