@@ -67,7 +67,7 @@ impl Diagnostics {
     }
 
     /// Adds a warning that is not counted: it is given once, however often it is added.
-    pub fn say(&mut self, sentence: impl Into<String>) {
+    pub fn note(&mut self, sentence: impl Into<String>) {
         self.count(Kind::Note, &sentence.into(), 1, String::new);
     }
 
@@ -77,7 +77,7 @@ impl Diagnostics {
         self.count(Kind::Placeholder, reason, count, place);
     }
 
-    /// Adds a warning about an image or materials that have a placeholder, as [`Diagnostics::say`].
+    /// Adds a warning about an image or materials that have a placeholder, as [`Diagnostics::note`].
     pub fn placeholder(&mut self, sentence: impl Into<String>) {
         self.count(Kind::Placeholder, &sentence.into(), 1, String::new);
     }
@@ -112,7 +112,7 @@ impl Diagnostics {
 
     /// Returns the load report of a file that was imported as `scene`, with one warning for each reason,
     /// which begins with the file's name. Meshes without an instance are counted as dropped.
-    pub fn finish(mut self, file: &Path, scene: &Scene) -> LoadReport {
+    pub fn into_report(mut self, file: &Path, scene: &Scene) -> LoadReport {
         // The faces of meshes with and without an instance.
         let mut has_instance = vec![false; scene.meshes.len()];
         for instance in &scene.instances {
@@ -152,7 +152,7 @@ impl Diagnostics {
     /// Returns the warnings, for a file without a scene.
     #[cfg(test)]
     pub fn warnings(self, file: &Path) -> Vec<String> {
-        self.finish(file, &Scene::default()).warnings
+        self.into_report(file, &Scene::default()).warnings
     }
 }
 
@@ -189,15 +189,15 @@ mod tests {
     #[test]
     fn a_note_is_given_once() {
         let mut diagnostics = Diagnostics::default();
-        diagnostics.say("animations are not played");
-        diagnostics.say("animations are not played");
+        diagnostics.note("animations are not played");
+        diagnostics.note("animations are not played");
         assert_eq!(diagnostics.warnings(Path::new("a")), ["a: animations are not played"]);
     }
 
     #[test]
     fn notes_beyond_the_most_are_counted() {
         let mut diagnostics = Diagnostics::default();
-        (0..MAX_WARNINGS + 7).for_each(|i| diagnostics.say(format!("picture {i} is missing")));
+        (0..MAX_WARNINGS + 7).for_each(|i| diagnostics.note(format!("picture {i} is missing")));
         let said = diagnostics.warnings(Path::new("a"));
         assert_eq!(said.len() as u64, MAX_WARNINGS + 1);
         assert_eq!(said.last().unwrap(), "a: 7 more warnings like these are left out");
@@ -219,7 +219,7 @@ mod tests {
         diagnostics.add("{} normals mended", 1, || "meshes[0]".into());
         diagnostics.unsupported("{} meshes are knitted", 1, || "meshes[1]".into());
         diagnostics.placeholder("images[0] is not there");
-        let report = diagnostics.finish(Path::new("a"), &Scene::default());
+        let report = diagnostics.into_report(Path::new("a"), &Scene::default());
         assert_eq!(report.warnings.len(), 4);
         assert_eq!(report.unsupported, ["a: meshes are knitted, at meshes[1]"]);
         assert_eq!(report.placeholders, ["a: images[0] is not there"]);
@@ -236,7 +236,7 @@ mod tests {
             triangles: vec![[0; 3]],
             ..Mesh::default()
         });
-        let report = diagnostics.finish(Path::new("a"), &scene);
+        let report = diagnostics.into_report(Path::new("a"), &scene);
         assert_eq!(report.dropped, [(DropReason::Flat, 1)].into());
     }
 }

@@ -118,7 +118,7 @@ impl Sandbox {
     }
 
     /// Returns a limit.
-    pub fn most(&self, limit: Limit) -> u64 {
+    pub fn limit(&self, limit: Limit) -> u64 {
         self.limits.get(limit)
     }
 
@@ -134,7 +134,7 @@ impl Sandbox {
     ///
     /// # Errors
     /// When that is more than the limit, together with what was used before.
-    pub fn take(&self, limit: Limit, more: u64) -> Result<()> {
+    pub fn consume(&self, limit: Limit, more: u64) -> Result<()> {
         let add = |used: u64| Some(used.saturating_add(more));
         let (set, get) = (Ordering::Relaxed, Ordering::Relaxed);
         let before = self.used[limit as usize].fetch_update(set, get, add);
@@ -150,7 +150,7 @@ impl OpenedFile {
     /// When it cannot be read, or is larger than the limit allows.
     pub fn read(self, sandbox: &Sandbox) -> Result<Vec<u8>> {
         let path = self.path;
-        sandbox.take(Limit::Bytes, self.length).map_err(|e| e.at(&path))?;
+        sandbox.consume(Limit::Bytes, self.length).map_err(|e| e.at(&path))?;
         let mut bytes = Vec::new();
         let fail = |error: io::Error| Error::io("read", &path, &error);
         bytes.try_reserve_exact(self.length as usize).map_err(|e| fail(e.into()))?;

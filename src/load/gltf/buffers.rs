@@ -113,7 +113,7 @@ impl<'a> Buffers<'a> {
             error_at(path, message)
         })?;
         // The size is limited before memory is taken.
-        self.sandbox.take(Limit::Bytes, view.decompressed_size()).map_err(at_path(path))?;
+        self.sandbox.consume(Limit::Bytes, view.decompressed_size()).map_err(at_path(path))?;
         let decompressed = view.decompress(bytes).map_err(at_path(path))?;
         self.add_loaded(decompressed.len());
         Ok(cell.get_or_init(|| decompressed))

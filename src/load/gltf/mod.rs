@@ -17,14 +17,14 @@ use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::load::{Choice, Loaded};
+use crate::load::{Loaded, ModelOptions};
 
 /// Loads a `.gltf` or `.glb` file.
 ///
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error has a
 /// JSON path. When it has no animation of the chosen name.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &Choice) -> Result<Loaded> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &ModelOptions) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(sandbox)?;
     let load = || {
@@ -34,7 +34,7 @@ pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &Choice) -> Result<Load
         let mut diagnostics = Diagnostics::default();
         match &document.value {
             Some(value) => validate::validate(value, bin.map(<[u8]>::len), &mut diagnostics),
-            None => diagnostics.say("the JSON is too large to be held against the standard"),
+            None => diagnostics.note("the JSON is too large to be held against the standard"),
         }
         extensions::check(&document.root, &mut diagnostics)?;
         import::import(&path, &document, bin, sandbox, choice, diagnostics)

@@ -118,7 +118,7 @@ impl EncodedImage<'_> {
     /// Charges the limits for an image, and returns how many pixels of 8-bit numbers take as much
     /// memory.
     fn charge_limits(&self, sandbox: &Sandbox) -> Result<u64> {
-        sandbox.take(Limit::Pictures, 1)?;
+        sandbox.consume(Limit::Pictures, 1)?;
         let ([width, height], depth) = if ktx2::is_ktx(&self.bytes) {
             let ktx2::Header { size, is_float } = ktx2::header(&self.bytes)?;
             if size.into_iter().any(|side| side > MAX_SIDE) {
@@ -131,7 +131,7 @@ impl EncodedImage<'_> {
         };
         let pixels = u64::from(width) * u64::from(height) * depth;
         let free = FREE_PIXELS_PER_BYTE * self.bytes.len() as u64;
-        sandbox.take(Limit::Pixels, pixels.saturating_sub(free))?;
+        sandbox.consume(Limit::Pixels, pixels.saturating_sub(free))?;
         Ok(pixels)
     }
 

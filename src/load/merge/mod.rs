@@ -102,6 +102,7 @@ impl MergedModel {
         };
         self.add_spheres(scene, instance, warnings);
         self.add_planes(scene, instance, warnings);
+        // Meshes, lights and cameras.
         scene.instances.extend(self.instances.iter().map(|own| Instance {
             transform: *transform * own.transform,
             material: instance.material.unwrap_or(own.material),
@@ -122,6 +123,7 @@ impl MergedModel {
             }
             scene.cameras.extend(placed);
         }
+        // The animation of all of them.
         if let Some(animation) = &mut scene.animation {
             InstanceAnimation { model: self, instance, indices: &indices, animation }.add();
         }

@@ -119,6 +119,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         if [pr, pm, map_pr, map_pm].iter().all(Option::is_none) {
             return None;
         }
+        // Maps, and factors beside them.
         let [roughness, metallic] = [map_pr, map_pm].map(|map| self.channel(map));
         let value = |text: Option<&str>| text.and_then(|t| t.parse().ok()).map(|x: f32| x.min(1.0));
         let factor = |map: Option<Channel>, text, missing| match map {

@@ -47,6 +47,7 @@ impl<'a> MaterialLibrary<'a> {
         let own = path.with_extension("mtl");
         let own =
             || open_file(sandbox, folder, &own.file_name().unwrap_or_default().to_string_lossy());
+        // The files that the lines name.
         for name in names {
             // A name may stand in quotes or hold spaces, and a line have several names.
             let name = unquote(name);
@@ -58,7 +59,7 @@ impl<'a> MaterialLibrary<'a> {
                 match (open_file(sandbox, folder, &name), own()) {
                     (Ok(file), _) => library.add_file(file, diagnostics),
                     (Err(error), Ok(own)) => {
-                        diagnostics.say(format!(
+                        diagnostics.note(format!(
                             "the materials `{name}` are missing ({error}); those of {} take their \
                              place",
                             own.path.display()
@@ -71,6 +72,7 @@ impl<'a> MaterialLibrary<'a> {
                 }
             }
         }
+        // The file of the OBJ file's own name.
         if names.is_empty()
             && let Ok(own) = own()
         {
@@ -107,7 +109,7 @@ impl<'a> MaterialLibrary<'a> {
                 });
                 self.sources.extend(named);
             }
-            Err(error) => diagnostics.say(error.at(path).to_string()),
+            Err(error) => diagnostics.note(error.at(path).to_string()),
         }
     }
 
@@ -141,10 +143,15 @@ impl<'a> MaterialLibrary<'a> {
         id
     }
 
-    /// Decodes the images of the materials' textures, if they are `wanted`; otherwise they are only
+    /// Decodes the images of the materials' textures, if the scene `needs_images`; otherwise they are only
     /// named.
-    pub fn decode_images(self, wanted: bool, scene: &mut Scene, diagnostics: &mut Diagnostics) {
-        self.textures.decode(wanted, scene, diagnostics);
+    pub fn decode_images(
+        self,
+        needs_images: bool,
+        scene: &mut Scene,
+        diagnostics: &mut Diagnostics,
+    ) {
+        self.textures.decode(needs_images, scene, diagnostics);
     }
 }
 

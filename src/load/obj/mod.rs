@@ -50,18 +50,18 @@ use crate::load::report::DropReason;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Instance, Mesh, Scene, Transfer};
 
-/// Loads an `.obj` file; its images are read if they are `wanted`.
+/// Loads an `.obj` file; its images are read if the scene `needs_images`.
 ///
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, wanted: bool) -> Result<Loaded> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, needs_images: bool) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(sandbox)?;
-    import(&path, &bytes, sandbox, wanted).map_err(|e| e.at(&path))
+    import(&path, &bytes, sandbox, needs_images).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, wanted: bool) -> Result<Loaded> {
+fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> Result<Loaded> {
     let mut diagnostics = Diagnostics::default();
     // Vertices and faces, by tobj.
     let text = lexer::decode_text(bytes)?;
@@ -83,18 +83,18 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, wanted: bool) -> Result<
         };
         let name = group.settings.material.as_deref().unwrap_or_default();
         let material = library.material(name, &mut scene, &mut diagnostics);
-        sandbox.take(Limit::Vertices, mesh.positions.len() as u64)?;
-        sandbox.take(Limit::Triangles, mesh.triangles.len() as u64)?;
+        sandbox.consume(Limit::Vertices, mesh.positions.len() as u64)?;
+        sandbox.consume(Limit::Triangles, mesh.triangles.len() as u64)?;
         sandbox.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }
     // The images of the materials in use.
-    library.decode_images(wanted, &mut scene, &mut diagnostics);
+    library.decode_images(needs_images, &mut scene, &mut diagnostics);
     if scene.instances.is_empty() {
-        diagnostics.say("there is no face in the file");
+        diagnostics.note("there is no face in the file");
     }
-    let report = diagnostics.finish(path, &scene);
+    let report = diagnostics.into_report(path, &scene);
     Ok(Loaded { scene, report })
 }
 

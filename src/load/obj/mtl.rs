@@ -80,6 +80,7 @@ pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> Stri
         if keyword.is_empty() {
             continue;
         }
+        // A new material.
         if keyword.eq_ignore_ascii_case("newmtl") {
             let name = if rest.is_empty() { UNNAMED } else { rest };
             let is_repeated = !names.insert(name.to_owned());
@@ -91,6 +92,7 @@ pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> Stri
             let _ = writeln!(out, "newmtl {name}");
             continue;
         }
+        // A statement about the present one.
         let Some((key, kind)) = statement_kind(keyword) else {
             diagnostics.add("{} lines are ignored: their first word is none of MTL", 1, place);
             continue;
@@ -99,6 +101,7 @@ pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> Stri
             diagnostics.add("{} lines are ignored: they stand before the first `newmtl`", 1, place);
             continue;
         }
+        // Its value, where tobj is to read it.
         match kind.read(rest) {
             Ok(Some(value)) => {
                 let _ = writeln!(out, "{key} {value}");

@@ -75,7 +75,7 @@ impl<'a> ChunkParser<'a> {
     /// When a line's numbers are no numbers; the error names the line.
     pub fn parse(mut self) -> Result<ParsedChunk> {
         for line in lines(self.chunk) {
-            if self.keep_plain(&line) {
+            if self.add_plain(&line) {
                 continue;
             }
             self.last = None;
@@ -85,9 +85,9 @@ impl<'a> ChunkParser<'a> {
         Ok(self.parsed)
     }
 
-    /// Keeps a line that tobj reads as it stands, or skips an empty one or a comment; returns true if
+    /// Adds a line that tobj reads as it stands, or skips an empty one or a comment; returns true if
     /// the line was one of these.
-    fn keep_plain(&mut self, line: &Line) -> bool {
+    fn add_plain(&mut self, line: &Line) -> bool {
         let start = self.start.offset + line.start;
         let range = start..start + line.text.len();
         let bytes = line.text.as_bytes();
@@ -100,7 +100,7 @@ impl<'a> ChunkParser<'a> {
                 };
                 self.parsed.diagnostics.read(corners - 2);
                 let group = self.group(attributes);
-                self.keep(Section::Group(group), range);
+                self.add_original(Section::Group(group), range);
                 return true;
             }
             // With colours, each position must have one.
@@ -123,12 +123,12 @@ impl<'a> ChunkParser<'a> {
             return false;
         }
         self.so_far[kind] += 1;
-        self.keep(Section::Vertices, range);
+        self.add_original(Section::Vertices, range);
         true
     }
 
     /// Adds a line as it stands to a section.
-    fn keep(&mut self, section: Section, range: Range<usize>) {
+    fn add_original(&mut self, section: Section, range: Range<usize>) {
         let is_continuation = self.last == Some((section, range.start));
         self.last = Some((section, range.end));
         self.pieces(section).add_original(range, is_continuation);
@@ -169,6 +169,7 @@ impl<'a> ChunkParser<'a> {
             self.present = [None; 4];
             return Ok(());
         }
+        // Vertex data and faces are rewritten; all else that is drawn is counted and dropped.
         let Statement { keyword, rest } = &statement;
         let place = || format!("line {number}");
         let diagnostics = &mut self.parsed.diagnostics;

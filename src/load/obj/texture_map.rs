@@ -58,7 +58,7 @@ impl TextureMap {
             "-imfchan" if values.len() == 1 && "rgbm".contains(values) => {
                 self.channel = "rgbm".find(values).map(|at| at as u8);
             }
-            // Luminance is that of a grey picture, whose channels are alike.
+            // Luminance is that of a grey image, whose channels are alike.
             "-imfchan" if values == "l" => self.channel = Some(0),
             // These are about how pixels are mixed and kept.
             "-blendu" | "-blendv" | "-boost" | "-texres" | "-type" => {}
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn options_that_would_change_the_picture_are_named() {
+    fn options_that_would_change_the_image_are_named() {
         let ignored = |text: &str| TextureMap::parse(text).unwrap().ignored;
         assert_eq!(ignored("-mm 0.1 2 -t 1 a.png"), ["-mm 0.1 2", "-t 1"]);
         assert_eq!(ignored("-mm 0 1 -t 0 0 0 -blendu off -texres 64 a.png"), [""; 0]);

@@ -89,14 +89,14 @@ impl<'a> Textures<'a> {
         self.bumps.push(Bump { material, map });
     }
 
-    /// Decodes the images, in parallel, if they are `wanted`, and decides what depends on them.
-    pub fn decode(self, wanted: bool, scene: &mut Scene, diagnostics: &mut Diagnostics) {
+    /// Decodes the images, in parallel, if the scene `needs_images`, and decides what depends on them.
+    pub fn decode(self, needs_images: bool, scene: &mut Scene, diagnostics: &mut Diagnostics) {
         let Self { sandbox, cache, alpha_preferred, bumps } = self;
         let open = |file: &ImageFile| {
             open_file(sandbox, &file.folder, &file.name).map(decode::Source::File)
         };
         let mut missing = HashSet::new();
-        for decoded in cache.decode(sandbox, open, |_| wanted) {
+        for decoded in cache.decode(sandbox, open, |_| needs_images) {
             let ImageFile { folder, name } = &decoded.source;
             let (image, textures) = (decoded.image, &decoded.textures);
             let image = image.map_err(|e| e.at(&folder.join(name)));

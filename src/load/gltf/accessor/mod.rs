@@ -66,9 +66,9 @@ impl<'a> Accessors<'a> {
 
     /// The number of triangles that may still be decompressed.
     pub fn remaining_faces(&self) -> u64 {
-        let most = self.sandbox.most(Limit::Elements).saturating_add(self.buffers.loaded_bytes());
+        let most = self.sandbox.limit(Limit::Elements).saturating_add(self.buffers.loaded_bytes());
         let remaining = most.saturating_sub(self.elements_read.get()) / ELEMENTS_PER_FACE;
-        remaining.min(self.sandbox.most(Limit::Triangles))
+        remaining.min(self.sandbox.limit(Limit::Triangles))
     }
 
     /// Counts triangles and attribute values that were decompressed.

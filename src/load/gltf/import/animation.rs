@@ -237,7 +237,7 @@ impl SamplerReader<'_> {
         // A small file can name the same times for any number of curves.
         let Sampler { input, output, .. } = self.sampler;
         let keys = self.accessors.count(input.value()).saturating_mul(count.max(1) as u64);
-        self.sandbox.take(Limit::Keys, keys)?;
+        self.sandbox.consume(Limit::Keys, keys)?;
         let path = |property: &str| format!("{}.samplers.{property}", self.path);
         let times = self.accessors.floats(input.value(), &path("input"))?;
         let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();

@@ -58,7 +58,9 @@ impl Importer<'_> {
 
         // The mesh as it is deformed at rest.
         let path = format_args!("nodes[{}]", node.index);
-        self.sandbox.take(Limit::Deformed, base.positions.len() as u64).map_err(at_path(path))?;
+        self.sandbox
+            .consume(Limit::Deformed, base.positions.len() as u64)
+            .map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
             morph_targets: morph_targets.clone(),

@@ -34,7 +34,7 @@ use super::accessor::Accessors;
 use super::buffers::Buffers;
 use super::json::{Document, at_path, lookup};
 use crate::error::Result;
-use crate::load::Choice;
+use crate::load::ModelOptions;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::report::{LoadReport, Loaded};
@@ -52,7 +52,7 @@ pub fn import(
     document: &Document,
     bin: Option<&[u8]>,
     sandbox: &Sandbox,
-    choice: &Choice,
+    choice: &ModelOptions,
     mut diagnostics: Diagnostics,
 ) -> Result<Loaded> {
     let root = &document.root;
@@ -63,7 +63,7 @@ pub fn import(
     let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
-    let textures = Textures::new(root, sandbox, &buffers, choice.pictures);
+    let textures = Textures::new(root, sandbox, &buffers, choice.needs_images);
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
@@ -188,7 +188,7 @@ impl Importer<'_> {
                 (Limit::Triangles, read.mesh.triangles.len()),
             ];
             for (limit, count) in sizes {
-                self.sandbox.take(limit, count as u64).map_err(at_path(&path))?;
+                self.sandbox.consume(limit, count as u64).map_err(at_path(&path))?;
             }
             if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
                 mesh.name.clone_from(name);
@@ -205,9 +205,9 @@ impl Importer<'_> {
         self.materials.decode_images(&mut self.scene, &mut self.diagnostics);
         let Scene { instances, spheres, planes, .. } = &self.scene;
         if instances.is_empty() && spheres.is_empty() && planes.is_empty() {
-            self.diagnostics.say("there is no triangle in the scene that the file shows");
+            self.diagnostics.note("there is no triangle in the scene that the file shows");
         }
-        let report = self.diagnostics.finish(path, &self.scene);
+        let report = self.diagnostics.into_report(path, &self.scene);
         let variants = self.variants.names();
         Loaded { scene: self.scene, report: LoadReport { variants, ..report } }
     }

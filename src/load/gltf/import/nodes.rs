@@ -74,7 +74,7 @@ pub fn collect_nodes<'a>(
     clip: &mut AnimationClip,
     diagnostics: &mut Diagnostics,
 ) -> Result<Vec<SceneNode<'a>>> {
-    sandbox.take(Limit::Nodes, root.nodes.len() as u64).map_err(at_path("nodes"))?;
+    sandbox.consume(Limit::Nodes, root.nodes.len() as u64).map_err(at_path("nodes"))?;
     let parents = parents(root)?;
     let mut roots = scene_roots(root, &parents)?;
     // A child that is listed among the roots as well is placed by its parent.

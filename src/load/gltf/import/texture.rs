@@ -105,7 +105,7 @@ impl<'a> Textures<'a> {
         };
 
         if !transform.is_finite() {
-            diagnostics.say(format!("{path}: a transform that is not finite is left out"));
+            diagnostics.note(format!("{path}: a transform that is not finite is left out"));
             transform = Affine2::IDENTITY;
         }
         Ok(self.cache.texture(key, image, scene, |image| Texture {

@@ -30,6 +30,7 @@ impl SceneBuilder<'_> {
     /// Returns the camera that a table describes.
     fn camera(&self, table: &CameraTable, span: &Span) -> Result<Camera> {
         let source = self.source;
+        // The forward direction, and the place of the key that gives it.
         let position = table.position.0;
         let (forward, forward_span) = match (&table.look_at, &table.direction) {
             (Some(target), None) => {
@@ -52,6 +53,7 @@ impl SceneBuilder<'_> {
                 return Err(source.error(span, message));
             }
         };
+        // The axes and the projection.
         let up = table.up.as_ref().map_or(DVec3::Y, |up| up.value.0);
         let projection = projection(source, table, self.scene.film.size[0])?;
         let up_span = table.up.as_ref().map_or(forward_span, |up| &up.span);
@@ -82,6 +84,7 @@ impl SceneBuilder<'_> {
             (None, Some(directions), _) => Some(AimTarget::Directions(directions.value.clone())),
             (None, None, target) => target.map(AimTarget::Anchor),
         };
+        // The projection; at rest it is that of time 0.
         let lens = curves.projection.as_ref().map(|(make, curve)| {
             rest.projection = make(curve.value.sample(0.0), self.scene.film.size[0]);
             curve.value.clone()

@@ -160,6 +160,7 @@ fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
     fn span<T>(value: &Option<At<T>>) -> Option<&Span> {
         value.as_ref().map(|v| &v.span)
     }
+    // The keys that are given, of those that not every kind has.
     let kind = table.kind.value;
     let given = [
         ("position", span(&table.position)),

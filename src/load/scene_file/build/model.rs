@@ -11,7 +11,7 @@ use crate::load::merge::{MergedModel, ModelInstance};
 use crate::load::sandbox::OpenedFile;
 use crate::load::scene_file::schema::spanned::At;
 use crate::load::scene_file::schema::tables::ModelTable;
-use crate::load::{self, Choice, Loaded};
+use crate::load::{self, Loaded, ModelOptions};
 use crate::scene::check::MAX_COORDINATE;
 
 /// The key by which a model is loaded once, however often a scene file names it.
@@ -73,13 +73,14 @@ impl SceneBuilder<'_> {
         if self.models.contains_key(&key) {
             return Ok(key);
         }
+        // The model, in a scene of its own.
         let path = file.path.clone();
-        let choice = Choice {
+        let options = ModelOptions {
             animation: key.animation.as_deref(),
             variant: key.variant.as_deref(),
-            pictures: self.image_use.uses_materials_of_model(&path),
+            needs_images: self.image_use.uses_materials_of_model(&path),
         };
-        let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &choice)?;
+        let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &options)?;
         if let Some(At { span, value }) = &table.variant {
             load::check_variant(value, &report).map_err(|e| self.source.locate(span, e))?;
         }

@@ -181,6 +181,7 @@ impl TrackReader<'_> {
     ) -> Result<Option<At<Curve<V>>>> {
         let Some(At { span, value: List(list) }) = list else { return Ok(None) };
         self.is_empty = false;
+        // The object must have the key.
         let kind = self.object.kind;
         if !kind.animated_keys().contains(&key) {
             let name = &self.object.name;
@@ -188,6 +189,7 @@ impl TrackReader<'_> {
             let help = format!("what can change of it is {}", spelling::list(kind.animated_keys()));
             return Err(self.source.error(&self.source.key_span(key, span), message).help(help));
         }
+        // There must be a value for each time.
         let times: Vec<f64> = self.table.times.value.0.iter().map(|time| time.value.0).collect();
         if list.len() != times.len() {
             let count =
@@ -196,6 +198,7 @@ impl TrackReader<'_> {
             let message = format!("`{key}`: {values} for {times}");
             return Err(self.source.error(span, message).help("a value for each time"));
         }
+        // The curve through the values.
         let values = list.iter().map(value).collect();
         let value = match self.table.interpolation.unwrap_or_default() {
             animation_tables::Interpolation::Smooth => smooth(times, values),

@@ -62,7 +62,7 @@ pub fn read(
             if !positions.is_some_and(|index| accessors.has_view(index.value())) {
                 return Err(error);
             }
-            diagnostics.say(format!("{error}; what is not compressed is read instead"));
+            diagnostics.note(format!("{error}; what is not compressed is read instead"));
         }
         None => {}
     }
