@@ -277,7 +277,7 @@ impl<'s> Renderer<'s> {
                     let built = BuildRecord::new(start, &builder, builder.stats() - before);
                     picture(posed, options, &*intersector, built, &share)
                 } else if let Some(intersector) = &shared {
-                    let kept = BuildStats::kept(before.meshes);
+                    let kept = BuildStats::reused(before.meshes_built);
                     let built = BuildRecord::new(start, &builder, kept);
                     picture(posed, options, &**intersector, built, &share)
                 } else {

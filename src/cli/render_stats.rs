@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::load_report::LoadSummary;
 use crate::cli::render::RenderTotals;
 use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
-use crate::intersect::{BuildQuality, BuildStats};
+use crate::intersect::BuildQuality;
 use crate::load::LoadReport;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
@@ -119,17 +119,16 @@ pub struct Build {
 
 impl From<&Statistics> for Build {
     fn from(statistics: &Statistics) -> Self {
-        let BuildStats { meshes, reused, tops, tops_kept, placed, moved, spheres_moved, .. } =
-            statistics.built;
+        let built = statistics.built;
         Self {
-            meshes,
-            reused,
+            meshes: built.meshes_built,
+            reused: built.meshes_reused,
             bvh: statistics.quality.map(BuildQuality::name),
-            top_levels_built: tops,
-            top_levels_kept: tops_kept,
-            instances_placed: placed,
-            instances_moved: moved,
-            spheres_moved,
+            top_levels_built: built.tlas_built,
+            top_levels_kept: built.tlas_kept,
+            instances_placed: built.instances_built,
+            instances_moved: built.instances_moved,
+            spheres_moved: built.spheres_moved,
         }
     }
 }
@@ -196,14 +195,14 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
     textures.sort_by_key(|image| Arc::as_ptr(image));
     textures.dedup_by_key(|image| Arc::as_ptr(image));
     [
-        (Feature::Spheres.name(), built.sphere_sets),
-        (Feature::Instances.name(), built.instanced),
+        (Feature::Spheres.name(), built.sphere_geometries),
+        (Feature::Instances.name(), built.object_space_instances),
         (Feature::Planes.name(), done.planes),
         (Feature::Pictures.name(), textures.len() as u64),
         (Feature::Uv.name(), done.uv),
         (Feature::Mipmaps.name(), done.mipmaps),
         (Feature::NormalMaps.name(), done.normal_maps),
-        (Feature::AlphaTests.name(), built.masked),
+        (Feature::AlphaTests.name(), built.masked_instances),
         (Feature::Checkers.name(), done.checkers),
         (Feature::VertexColors.name(), done.vertex_colors),
         (Feature::SmoothNormals.name(), done.smooth_normals),

@@ -82,10 +82,17 @@ impl Hit16 {
         self.id.get(i).map(|id| Hit { t: self.t[i], u: self.u[i], v: self.v[i], id })
     }
 
-    /// Replaces the hits of `W` lanes from lane `start` on by hits of plane `index` where these come
-    /// first. `ts` are the distances of the plane, NaN where it is missed.
+    /// Replaces the hits of `W` lanes from lane `start` on by hits on spheres or planes where these
+    /// come first. `geometry` is the code of either, and `ts` are the distances, NaN for a miss. No
+    /// lane may hold a hit on this geometry at the same distance.
     #[inline(always)]
-    pub fn merge_plane_hits<const W: usize>(&mut self, index: u32, ts: &[f64; W], start: usize) {
+    pub fn merge_closer<const W: usize>(
+        &mut self,
+        geometry: u32,
+        primitive: &[u32; W],
+        ts: &[f64; W],
+        start: usize,
+    ) {
         for i in 0..W {
             let (lane, t, id) = (start + i, ts[i], &mut self.id);
             let best = self.t[lane];
@@ -95,8 +102,8 @@ impl Hit16 {
             self.t[lane] = if first { t } else { best };
             self.u[lane] = if first { 0.0 } else { self.u[lane] };
             self.v[lane] = if first { 0.0 } else { self.v[lane] };
-            id.geometry[lane] = if first { PrimitiveId16::PLANES } else { id.geometry[lane] };
-            id.primitive[lane] = if first { index } else { id.primitive[lane] };
+            id.geometry[lane] = if first { geometry } else { id.geometry[lane] };
+            id.primitive[lane] = if first { primitive[i] } else { id.primitive[lane] };
             id.instance[lane] = if first { 0 } else { id.instance[lane] };
         }
     }

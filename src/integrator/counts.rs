@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::geometry::RayBatch;
 use crate::integrator::sample_pattern::MAX_STEPS;
-use crate::intersect::ExtraTests;
+use crate::scene::Scene;
 
 /// The numbers of rays traced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -53,11 +53,11 @@ pub struct FeatureCounts {
 }
 
 impl FeatureCounts {
-    /// Counts the tests that an intersector made of rays besides walking its trees.
-    pub(super) fn add_extra_tests(&mut self, tests: ExtraTests, rays: &RayBatch) {
+    /// Counts the tests of rays against planes, and those by a filter, if there are any.
+    pub(super) fn add_extra_tests(&mut self, scene: &Scene, has_filter: bool, rays: &RayBatch) {
         let blocks = rays.blocks().len() as u64;
-        self.planes += blocks * u64::from(tests.planes);
-        self.filters += blocks * u64::from(tests.filters);
+        self.planes += blocks * u64::from(!scene.planes.is_empty());
+        self.filters += blocks * u64::from(has_filter);
     }
 }
 

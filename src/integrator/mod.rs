@@ -1,6 +1,6 @@
 //! The Whitted integrator: the radiance along camera rays, by direct lighting, mirrors and glass.
 //!
-//! The way of a tile through it stands in `tile_loop`: camera rays, closest hits, surfaces, for each
+//! The loop over a tile is in `tile_loop`: camera rays, closest hits, surfaces, for each
 //! light shadow rays and what they let through, secondary rays, samples, pixels. Each stage is one
 //! file. All rays of a tile that are at the same stage form a wave, which is traced by one call and
 //! shaded sixteen rays at a time.

@@ -16,7 +16,7 @@ pub(super) struct SpawnedRay {
     pub ray: Ray,
     /// True if it went through the surface.
     pub is_refracted: bool,
-    /// Its path.
+    /// The path that it continues.
     pub path: PathState,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct WaveSurfaces {
     pub specular: Vec<SpecularHit>,
 }
 
-/// Sixteen surfaces, some of which scatter light.
+/// A block of sixteen surfaces, some of which scatter light.
 #[derive(Default)]
 #[repr(C, align(64))]
 pub(super) struct LitSurface16 {

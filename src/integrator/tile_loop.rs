@@ -15,7 +15,7 @@ use crate::integrator::{
     Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, radiance,
     secondary_rays, surface_evaluation, transmissive_shadows,
 };
-use crate::intersect::Coherence;
+use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
 
 /// The number of pixels that are refined together.
@@ -58,7 +58,7 @@ pub struct RefineStrip<'a> {
 /// A pixel that gets more samples.
 #[derive(Clone, Copy)]
 struct ActivePixel {
-    /// Its index in the strip.
+    /// The index of the pixel in the strip.
     index: usize,
     record: PixelRecord,
 }
@@ -202,13 +202,15 @@ impl Integrator<'_> {
         counts: &mut Counts,
     ) {
         self.intersector.closest_batch(rays, coherence, hits);
-        counts.work.add_extra_tests(self.intersector.closest_extras(rays), rays);
+        let has_filter = self.intersector.uses_filter(Query::Closest, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
     }
 
     /// Finds which shadow rays are occluded.
     fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
         self.intersector.occluded_batch(rays, Coherence::Coherent, occluded);
-        counts.work.add_extra_tests(self.intersector.occluded_extras(), rays);
+        let has_filter = self.intersector.uses_filter(Query::Occluded, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
     }
 
     /// Takes more samples of the pixels of a strip that need them, and makes all sums means.

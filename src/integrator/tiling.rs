@@ -50,7 +50,7 @@ pub(super) struct Pixels16 {
     pub rows: Lanes<f64>,
 }
 
-/// Neighbouring pixels of a row of a tile.
+/// A run of neighbouring pixels in a row of a tile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelRun {
     /// The column of the first one, in the tile.

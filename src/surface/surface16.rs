@@ -1,4 +1,4 @@
-//! Sixteen surfaces side by side; each is, to the bit, what [`Surface::new`] gives.
+//! The surfaces that sixteen rays hit, side by side; each is, to the bit, what [`Surface::new`] gives.
 
 use glam::DVec3;
 

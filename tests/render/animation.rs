@@ -278,7 +278,7 @@ fn each_mesh_is_built_once_for_all_frames() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
     }
 }
 
@@ -296,15 +296,21 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
-        assert_eq!((built.tops, built.tops_kept), (1, 5), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.tlas_built, built.tlas_kept), (1, 5), "{backend:?} {precision:?}");
         assert_ne!(films[0], films[1]);
     }
 }
 
 /// The counts of what was placed, in the first frame and again.
 fn places(built: BuildStats) -> [u64; 5] {
-    [built.tops, built.tops_kept, built.placed, built.moved, built.spheres_moved]
+    [
+        built.tlas_built,
+        built.tlas_kept,
+        built.instances_built,
+        built.instances_moved,
+        built.spheres_moved,
+    ]
 }
 
 #[test]
@@ -347,7 +353,7 @@ fn assert_alone(scene: &Scene) -> Vec<u64> {
                 .unwrap();
             assert!(*film == alone.film.pixels, "{backend:?} at {time}");
         }
-        tops.push(built.tops);
+        tops.push(built.tlas_built);
     }
     tops
 }

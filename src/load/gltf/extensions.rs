@@ -52,7 +52,7 @@ const UNSEEN_FAMILIES: [&str; 6] =
 
 /// Refuses a file that cannot be shown without an extension that isn't read, and warns of
 /// extensions that a file uses but can do without.
-pub fn check(root: &json::Root, tally: &mut Diagnostics) -> Result<()> {
+pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
     let is_read = |name: &str| {
         READ.contains(&name)
             || UNSEEN.contains(&name)
@@ -66,7 +66,7 @@ pub fn check(root: &json::Root, tally: &mut Diagnostics) -> Result<()> {
         }
     }
     for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
-        tally.unsupported(&format!("the extension {name} is not read"), 1, String::new);
+        diagnostics.unsupported(&format!("the extension {name} is not read"), 1, String::new);
     }
     Ok(())
 }

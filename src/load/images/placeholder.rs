@@ -56,6 +56,6 @@ fn checker(name: &str) -> Image {
 }
 
 /// One white pixel.
-pub fn white(name: &str) -> Image {
+fn white(name: &str) -> Image {
     Image::from_bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
 }

@@ -1,8 +1,7 @@
 //! Precision `certified`: every primitive is user geometry, tested with a proven bound or exactly.
 
-pub mod callbacks;
 pub mod instances;
 pub mod meshes;
+pub mod primitives;
 mod resolve;
-mod rounding;
-mod triangles;
+pub mod rounding;
