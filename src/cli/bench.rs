@@ -61,52 +61,30 @@ fn check_folder(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The defaults of the flags, with or without `--quick`.
-struct Defaults {
-    spp: &'static [u32],
-    adaptive: &'static [SampleRange],
-    reference_spp: u32,
-    runs: u32,
-}
-
-const FULL: Defaults = Defaults {
-    spp: &[1, 4, 16],
-    adaptive: &[SampleRange { min: 1, max: 25 }, SampleRange { min: 4, max: 36 }],
-    reference_spp: 64,
-    runs: 5,
-};
-const QUICK: Defaults = Defaults {
-    spp: &[1, 4],
-    adaptive: &[SampleRange { min: 1, max: 9 }],
-    reference_spp: 16,
-    runs: 3,
-};
-
 /// Returns the options of the benchmark.
 ///
 /// # Errors
 /// When they are inconsistent.
 fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
-    let defaults = if arguments.quick { QUICK } else { FULL };
+    let defaults = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
     let reference_spp = arguments.reference_spp.unwrap_or(defaults.reference_spp);
-    let mut spp = arguments.spp.clone();
-    if spp.is_empty() {
-        spp.extend(defaults.spp);
-    }
-    let mut adaptive = arguments.adaptive.clone();
-    if adaptive.is_empty() {
-        adaptive.extend(defaults.adaptive.iter().filter(|range| range.max <= reference_spp));
-    }
-    spp.sort_unstable();
-    spp.dedup();
-    adaptive.sort_unstable();
-    adaptive.dedup();
-    let regular = spp.into_iter().map(Samples::Regular);
-    let adaptive = adaptive.into_iter();
-    let adaptive = adaptive.map(|SampleRange { min, max }| Samples::Adaptive { min, max });
+
+    // The samples of the flags, or the default ones that the reference has as many of.
+    let Bench { spp, adaptive, .. } = arguments;
+    let adaptive_samples = |&SampleRange { min, max }: &_| Samples::Adaptive { min, max };
+    let mut samples = defaults.samples;
+    samples.retain(|samples| match samples {
+        Samples::Regular(_) => spp.is_empty(),
+        Samples::Adaptive { max, .. } => adaptive.is_empty() && *max <= reference_spp,
+    });
+    samples.extend(spp.iter().copied().map(Samples::Regular));
+    samples.extend(adaptive.iter().map(adaptive_samples));
+    samples.sort_unstable();
+    samples.dedup();
+
     let mut options = BenchOptions {
-        setups: Setup::all(),
-        samples: regular.chain(adaptive).collect(),
+        setups: defaults.setups,
+        samples,
         reference_spp,
         runs: arguments.runs.unwrap_or(defaults.runs),
         budget: arguments.budget,

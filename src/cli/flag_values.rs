@@ -108,7 +108,7 @@ fn number<T: FromStr>(
 }
 
 /// The fewest and the most samples of a pixel in adaptive sampling.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleRange {
     pub min: u32,
     pub max: u32,

@@ -34,7 +34,7 @@ from 0 to 1, at 67 pixels per degree. Wrong hits: pixels in which the ray throug
 another primitive than a certified ray does.";
 
 const IMAGES: &str = "\
-Each image as a PNG shows it, and beside it its FLIP map: from black (no visible difference from \
+Each image as a PNG shows it, next to its FLIP map: from black (no visible difference from \
 the reference) through red and yellow to white (0.5 and more). Hover over an image to see the \
 reference in its place. Modes that render the same bytes share an image.";
 

@@ -70,6 +70,13 @@ impl Default for BenchOptions {
 }
 
 impl BenchOptions {
+    /// Returns options for a quick benchmark, with fewer samples and runs.
+    pub fn quick() -> Self {
+        let adaptive = Samples::Adaptive { min: 1, max: 9 };
+        let samples = vec![Samples::Regular(1), Samples::Regular(4), adaptive];
+        Self { samples, reference_spp: 16, runs: 3, ..Self::default() }
+    }
+
     /// Checks that the options are consistent.
     ///
     /// # Errors

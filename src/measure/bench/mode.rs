@@ -24,8 +24,8 @@ pub struct Mode {
     pub samples: Samples,
 }
 
-/// A number of samples per pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A number of samples per pixel; in order, regular ones come before adaptive ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Samples {
     /// The same number for every pixel.
     Regular(u32),

@@ -92,12 +92,12 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParetoRank {
-    /// On the front of time and RMSE: no other mode is as fast with as small an RMSE.
+    /// The front of time and RMSE: no other mode is as fast with as small an RMSE.
     Front,
-    /// Behind that front, but on the front of time, RMSE and wrong hits.
+    /// The front of time, RMSE and wrong hits, but not that of time and RMSE.
     #[serde(rename = "hits")]
     FewerWrongHits,
-    /// Dominated: another mode is no slower, with no larger RMSE and no more wrong hits.
+    /// A dominated mode: another is no slower, with no larger RMSE and no more wrong hits.
     Dominated,
 }
 
