@@ -80,11 +80,11 @@ pub(super) struct Pose {
 impl Joint {
     /// The transform of the bound mesh, when it follows this joint, to world space.
     fn bound_to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
-        self.to_world(worlds) * self.inverse_bind
+        self.world_transform(worlds) * self.inverse_bind
     }
 
     /// The transform from the joint's space to world space.
-    fn to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
+    fn world_transform(&self, worlds: &[DAffine3]) -> DAffine3 {
         match self.node {
             Some(NodeId(node)) => worlds[node as usize] * self.transform,
             None => self.transform,
@@ -107,7 +107,7 @@ impl Deformation {
         let weights = self.weights.iter().map(|curve| curve.sample(time)).collect();
         let joints = self.skin.as_ref().map_or(Vec::new(), |skin| {
             // Not finite where the space is flat, and its instances invisible.
-            let space = skin.space.to_world(worlds).inverse();
+            let space = skin.space.world_transform(worlds).inverse();
             skin.joints.iter().map(|joint| space * joint.bound_to_world(worlds)).collect()
         });
         Pose { weights, joints }

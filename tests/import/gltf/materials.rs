@@ -2,7 +2,7 @@
 
 use super::*;
 use envers::Loaded;
-use envers::internals::{ShadingParams, TextureContext, surface};
+use envers::internals::{ShadingParams, TextureContext, shading_params};
 use envers::scene::Transfer;
 
 #[test]
@@ -43,11 +43,7 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Loaded {
 fn tinted(loaded: &Loaded, tint: Vec3) -> ShadingParams {
     let Loaded { scene, report, .. } = loaded;
     assert_eq!(report.warnings, [""; 0]);
-    surface::shading_params(
-        scene,
-        material(scene),
-        &TextureContext { tint, ..TextureContext::default() },
-    )
+    shading_params(scene, material(scene), &TextureContext { tint, ..TextureContext::default() })
 }
 
 fn finish(loaded: &Loaded) -> ShadingParams {

@@ -62,10 +62,9 @@ impl<const W: usize> QueryContext<'_, W> {
                 continue;
             }
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
-            let certain = within
-                && !self.departures.any_continuation
-                && !primitive.is_masked
-                && !(self.departures.any && primitive.shape.may_start_on(self, i));
+            let may_start_on = || self.departures.any && primitive.shape.may_start_on(self, i);
+            let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
+            let certain = within && has_plain_hit && !may_start_on();
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }

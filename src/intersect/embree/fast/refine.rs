@@ -66,7 +66,7 @@ pub fn refine<const W: usize>(
             if !(ts[i] > 0.0 && ts[i] < rays.tmax[i]) {
                 all_within = false;
                 let last = rays.tmax[i].next_down();
-                let t = rays.interval.to_f64_t(i, record.tfar[i]);
+                let t = rays.interval.f64_t(i, record.tfar[i]);
                 ts[i] = t.clamp(f64::MIN_POSITIVE, last);
             }
             if !(us[i].is_finite() && vs[i].is_finite()) {

@@ -94,7 +94,7 @@ impl UserPrimitive for FastSphere<'_> {
                 context.hits.t[i] = ts[i];
                 context.hits.primitive[i] = self.index;
             }
-            let end = context.rays.interval.to_f32_t(i, ts[i]);
+            let end = context.rays.interval.f32_t(i, ts[i]);
             if closer && end < tfar[i] {
                 tfar[i] = end;
             }

@@ -217,6 +217,6 @@ impl<'a, const W: usize> QueryContext<'a, W> {
     /// The end of the f32 ray in a lane, as the closest hit so far bounds it.
     #[inline(always)]
     pub fn closest_tfar(&self, lane: usize) -> f32 {
-        self.rays.interval.to_f32_t(lane, self.hits.upper(lane))
+        self.rays.interval.f32_t(lane, self.hits.upper(lane))
     }
 }

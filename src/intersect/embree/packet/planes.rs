@@ -51,7 +51,9 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
             // A ray that left a surface near the plane may have been spawned in it.
             for i in 0..W {
                 let height = normal.dot(rays.origin_and_direction(i).0 - point).abs();
-                let may_start_on = departures.any & !(height > departures.tolerance);
+                // Negated for what is not a number.
+                let is_apart = height > departures.tolerance;
+                let may_start_on = departures.any & !is_apart;
                 ts[i] = if open[i] & !may_start_on { ts[i] } else { f64::NAN };
                 open[i] &= may_start_on;
             }

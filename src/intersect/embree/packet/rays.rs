@@ -40,14 +40,14 @@ pub struct RayInterval<const W: usize> {
 impl<const W: usize> RayInterval<W> {
     /// Converts a t of the f32 ray `i` into one of the f64 ray.
     #[inline(always)]
-    pub fn to_f64_t(&self, i: usize, t: f32) -> f64 {
+    pub fn f64_t(&self, i: usize, t: f32) -> f64 {
         self.start[i] + f64::from(t) / self.scale[i]
     }
 
     /// Converts a t of ray `i` into one of its f32 copy, with more slack than the f32 arithmetic on
     /// both sides of a comparison with it can use up; never below 0.
     #[inline(always)]
-    pub fn to_f32_t(&self, i: usize, t: f64) -> f32 {
+    pub fn f32_t(&self, i: usize, t: f64) -> f32 {
         let t = (t - self.start[i]) * self.scale[i];
         round_up(t.max(0.0) * (1.0 + 1.0 / (1 << 20) as f64))
     }
@@ -268,7 +268,7 @@ mod tests {
         let space = unit_space(DVec3::ZERO);
         let ray = Ray::segment(DVec3::ZERO, DVec3::X * 0.1);
         let (exact, _, _, tfar, _) = single(&space, ray);
-        assert!((1.0..1.000001).contains(&exact.interval.to_f64_t(0, tfar)));
+        assert!((1.0..1.000001).contains(&exact.interval.f64_t(0, tfar)));
     }
 
     #[test]
