@@ -54,7 +54,7 @@ fn demo_scenes_and_models_load_without_a_warning() {
         "scenes/gallery/models/room.glb",
         "scenes/gallery/models/vase.obj",
     ] {
-        let Loaded { report, .. } = load(&assets.join(name)).expect(name);
+        let Loaded { report, .. } = load(assets.join(name)).expect(name);
         assert_eq!(report.warnings, [""; 0], "{name}");
     }
 }
@@ -62,7 +62,7 @@ fn demo_scenes_and_models_load_without_a_warning() {
 /// The room has all that it is there to show: instances of one mesh, textures, lights and a camera of its own.
 #[test]
 fn room_uses_what_gltf_offers() {
-    let scene = load(&assets::root().join("assets/scenes/gallery/models/room.glb"))
+    let scene = load(assets::root().join("assets/scenes/gallery/models/room.glb"))
         .expect("the room loads")
         .scene;
     assert!(scene.instances.len() > 2 * scene.meshes.len(), "columns and bays are instanced");
@@ -74,7 +74,7 @@ fn room_uses_what_gltf_offers() {
 /// The vase has all that it is there to show: two materials, one with a texture, on smooth polygons.
 #[test]
 fn vase_uses_what_obj_offers() {
-    let scene = load(&assets::root().join("assets/scenes/gallery/models/vase.obj"))
+    let scene = load(assets::root().join("assets/scenes/gallery/models/vase.obj"))
         .expect("the vase loads")
         .scene;
     assert_eq!((scene.materials.len(), scene.textures.len()), (2, 1));

@@ -10,7 +10,7 @@ fn loaded(name: &str, files: &[(&str, Vec<u8>)]) -> Loaded {
     for (name, bytes) in files {
         std::fs::write(folder.path().join(name), bytes).expect("the folder takes files");
     }
-    load(&folder.path().join(name)).expect(name)
+    load(folder.path().join(name)).expect(name)
 }
 
 fn s() -> Loaded {

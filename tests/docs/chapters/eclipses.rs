@@ -6,7 +6,7 @@ use super::book::{root, tutorial};
 
 #[test]
 fn program_and_scene_have_the_same_bodies_and_frames() {
-    let scene = envers::load(&root().join("assets/scenes/tutorial/6-4-orbit.toml"));
+    let scene = envers::load(root().join("assets/scenes/tutorial/6-4-orbit.toml"));
     let scene = scene.expect("the scene loads");
     let [sun, planet, moon] = &scene.scene.spheres[..] else {
         panic!("the scene has three spheres")

@@ -2,7 +2,7 @@
 
 use super::*;
 use envers::Loaded;
-use envers::internals::{ShadingParams, TextureContext, shading_params};
+use envers::internals::{ShadingParams, TextureContext, occlusion, shading_params};
 use envers::scene::Transfer;
 
 #[test]
@@ -119,7 +119,7 @@ fn occlusion_is_red_by_its_strength() {
         }),
     )
     .scene;
-    let share = surface::occlusion(&scene, material(&scene), &TextureContext::default());
+    let share = occlusion(&scene, material(&scene), &TextureContext::default());
     // 1 + 0.5 · (0.2 − 1).
     assert!((share - 0.6).abs() < 1e-6, "{share}");
 }
