@@ -14,12 +14,8 @@ mod support {
 
 use std::hint::black_box;
 
-use envers::geometry::Ray;
-use envers::integrator::Tiling;
-use envers::intersect::{IntersectorBuilder, Precision};
-use envers::render::Traced;
-use envers::scene::Scene;
-use envers::{LoadOptions, RenderOptions, Renderer};
+use envers::internals::{IntersectorBuilder, Tiling, Traced};
+use envers::{LoadOptions, Precision, Ray, RenderOptions, Renderer, Scene};
 use rayon::prelude::*;
 use support::arguments::Arguments;
 use support::bare::{Bare, Packet, packets};
@@ -174,7 +170,7 @@ fn measure(name: &str, scene: &Scene, settings: &Settings) {
         kind.best = best.0;
     }
 
-    let frame = |intersector: &dyn envers::intersect::Intersector| {
+    let frame = |intersector: &dyn envers::Intersector| {
         time(settings.threads, || {
             black_box(Renderer::new(scene).options(options.clone()).render_with(intersector));
         })

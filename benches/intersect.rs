@@ -16,12 +16,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput};
-use envers::geometry::Ray;
-use envers::intersect::{Bvh, Coherence, Embree, Intersector, Precision};
-use envers::render::Traced;
-use envers::scene::{IncidentLight, Scene};
-use envers::surface::Surface;
-use envers::{RenderOptions, Renderer};
+use envers::internals::{IncidentLight, Traced};
+use envers::{
+    Bvh, Coherence, Embree, Intersector, Precision, Ray, RenderOptions, Renderer, Scene, Surface,
+};
 use glam::Vec3;
 use support::arguments::Arguments;
 use support::bare::{Bare, Packet, packets};
@@ -47,7 +45,7 @@ impl Case {
                 let surface = Surface::new(&scene, ray, hit.as_ref()?);
                 let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
-                let arrival = IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+                let arrival = IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
                 lit.then(|| surface.shadow_ray(&arrival))
             })
             .collect();

@@ -17,8 +17,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use criterion::{Criterion, Throughput};
-use envers::geometry::sphere::{self, certified as sure_sphere};
-use envers::geometry::triangle::{self, certified as sure_triangle};
+use envers::internals::sphere::certified as sure_sphere;
+use envers::internals::triangle::certified as sure_triangle;
+use envers::internals::{sphere, triangle};
 use glam::DVec3;
 use support::arguments::Arguments;
 
@@ -65,7 +66,7 @@ fn sphere_may_cross(s: &Sphere, line: Line, any: &mut bool) -> bool {
 #[inline(always)]
 fn sphere_decision(s: &Sphere, line: Line, any: &mut bool) -> bool {
     let line = sure_line(s, line);
-    *any |= line.may_cross() & !line.crosses();
+    *any |= line.may_cross() & !line.certainly_crosses();
     line.may_cross()
 }
 
@@ -85,7 +86,7 @@ fn sphere_estimate(s: &Sphere, line: Line, _: &mut bool) -> f64 {
 #[inline(always)]
 fn sphere_round(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_sphere::round(s.center, s.radius, o, d, false);
-    if rounded.certain { rounded.t } else { f64::NAN }
+    if rounded.is_certain { rounded.t } else { f64::NAN }
 }
 
 #[inline(always)]
@@ -95,21 +96,21 @@ fn sphere_first_root(s: &Sphere, (o, d, _): Line, _: &mut bool) -> f64 {
 
 #[inline(always)]
 fn triangle_crosses(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
-    let crosses = triangle::Edges::new(*triangle, o, d).crosses();
+    let crosses = triangle::EdgeFunctions::new(*triangle, o, d).crosses();
     *any |= crosses;
     crosses
 }
 
 #[inline(always)]
 fn triangle_may_cross(triangle: &Triangle, (o, d, _): Line, any: &mut bool) -> bool {
-    let may = sure_triangle::Edges::new(*triangle, o, d).may_cross();
+    let may = sure_triangle::EdgeBounds::new(*triangle, o, d).may_cross();
     *any |= may;
     may
 }
 
 #[inline(always)]
 fn triangle_plain(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
-    let edges = triangle::Edges::new(*triangle, o, d);
+    let edges = triangle::EdgeFunctions::new(*triangle, o, d);
     let (u, v) = edges.weights();
     if edges.crosses() { edges.t + u + v } else { f64::INFINITY }
 }
@@ -122,7 +123,7 @@ fn triangle_estimate(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 
 #[inline(always)]
 fn triangle_round(triangle: &Triangle, (o, d, _): Line, _: &mut bool) -> f64 {
     let rounded = sure_triangle::round(*triangle, o, d);
-    if rounded.certain { rounded.t + rounded.u + rounded.v } else { f64::NAN }
+    if rounded.is_certain { rounded.t + rounded.u + rounded.v } else { f64::NAN }
 }
 
 #[inline(always)]

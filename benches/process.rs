@@ -21,8 +21,8 @@ use std::process::Command;
 use std::time::Instant;
 
 use embree4_sys::RTCBuildQuality;
-use envers::intersect::{IntersectorBuilder, Precision};
-use envers::{RenderOptions, Renderer};
+use envers::internals::IntersectorBuilder;
+use envers::{Precision, RenderOptions, Renderer};
 use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use rayon::prelude::*;

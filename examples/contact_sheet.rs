@@ -4,14 +4,11 @@
 //! `cargo run --release --example contact_sheet -- FOLDER [NAME …]` writes `out/contact/NAME.png` for
 //! each folder in FOLDER, or for those named: ours on the left of each pair, theirs on the right.
 
-use envers::Loaded;
+use envers::internals::Settings;
+use envers::{Camera, Film, Light, LightKind, Loaded, Projection, Renderer, Shadow};
 use std::error::Error;
 use std::path::Path;
 
-use envers::Renderer;
-use envers::film::Film;
-use envers::scene::{Camera, Light, LightKind, Projection, Shadow};
-use envers::write::Settings;
 use glam::{DVec3, Vec3};
 use image::imageops::{FilterType, replace, resize};
 use image::{Rgba, RgbaImage};
@@ -77,7 +74,7 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     scene.film.size = [SIDE; 2];
     scene.film.background = Vec3::new(0.35, 0.34, 0.36);
     let film = Renderer::new(&scene).render()?.film;
-    Ok(bytes(&film, &Settings::of(&scene.film)))
+    Ok(bytes(&film, &Settings::from_film(&scene.film)))
 }
 
 fn light(kind: LightKind, intensity: f32) -> Light {

@@ -2,12 +2,9 @@
 //!
 //! `cargo run --release --example model -- model.glb out.exr`
 
-use envers::Loaded;
+use envers::internals::{Settings, write};
+use envers::{Error, Loaded, Renderer, Result};
 use std::path::PathBuf;
-
-use envers::Renderer;
-use envers::error::{Error, Result};
-use envers::write::{Settings, write};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
@@ -17,7 +14,7 @@ fn main() -> Result<()> {
     let Loaded { scene, report, .. } = envers::load(&model)?;
     report.warnings.iter().for_each(|warning| eprintln!("{warning}"));
     let rendering = Renderer::new(&scene).render()?;
-    write(&rendering.film, &output, &Settings { half: true, ..Settings::of(&scene.film) })?;
+    write(&rendering.film, &output, &Settings { half: true, ..Settings::from_film(&scene.film) })?;
     println!("{}: {} rays", output.display(), rendering.statistics.counts.rays.total());
     Ok(())
 }

@@ -4,10 +4,9 @@
 //!
 //! `cargo run --release --example rays`
 
-use envers::error::Result;
-use envers::geometry::Ray;
-use envers::intersect::{Backend, Bvh, Coherence, Intersector, Precision};
-use envers::scene::{Material, Scene, Sphere};
+use envers::{
+    Backend, Bvh, Coherence, Intersector, Material, Precision, Ray, Result, Scene, Sphere,
+};
 use glam::DVec3;
 
 fn main() -> Result<()> {

@@ -4,12 +4,11 @@
 
 use std::path::Path;
 
-use envers::Renderer;
-use envers::error::Result;
-use envers::scene::{
-    Camera, Checker, Falloff, Light, LightKind, Material, Plane, Projection, Scene, Shadow, Sphere,
+use envers::internals::{Settings, write};
+use envers::{
+    Camera, Checker, Falloff, Light, LightKind, Material, Plane, Projection, Renderer, Result,
+    Scene, Shadow, Sphere,
 };
-use envers::write::{Settings, write};
 use glam::{DVec3, Vec3};
 
 fn main() -> Result<()> {
@@ -53,7 +52,7 @@ fn main() -> Result<()> {
     let rendering = Renderer::new(&scene).render()?;
     std::fs::create_dir_all("out").ok();
     for file in ["out/spheres.png", "out/spheres.exr"] {
-        write(&rendering.film, Path::new(file), &Settings::of(&scene.film))?;
+        write(&rendering.film, Path::new(file), &Settings::from_film(&scene.film))?;
         println!("{file}");
     }
     Ok(())

@@ -1,9 +1,20 @@
-//! The one error type: what went wrong, in which file, where in it, and the way out.
+//! The error type of the library: a message with its file, the place in the file, and advice.
+//!
+//! ```
+//! use envers::error::{Error, Place};
+//! use std::path::Path;
+//!
+//! let error = Error::input("unknown key `centre`")
+//!     .at(Path::new("scene.toml"))
+//!     .place(Place::Line(3))
+//!     .help("did you mean `center`?");
+//! assert_eq!(error.to_string(), "scene.toml:3: unknown key `centre` (did you mean `center`?)");
+//! ```
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// What an [`Error`] is about; it decides the command's exit status.
+/// The kind of an [`Error`], which decides the command's exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// The input or the request is wrong: a file, a key, a flag, an output that cannot be written.
@@ -12,16 +23,36 @@ pub enum ErrorKind {
     Failed,
 }
 
-/// Where in a file an error stands.
+/// A way out of an [`Error`] that is an option of the library, for which a command has a flag.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Reading files outside the folder of the one that was named, by
+    /// `load::LoadOptions::allow_outside`.
+    AllowOutside,
+    /// Raising a limit, by `load::LoadOptions::limits`.
+    RaiseLimit {
+        /// The limit's name, as `load::Limit::name` gives it.
+        name: &'static str,
+        /// The lowest limit that allows what was found, where that is known.
+        least: Option<u64>,
+    },
+    /// Tracing with the pure-Rust BVH, by `intersect::Backend::Rust`.
+    RustBackend,
+    /// Rendering the reference of a benchmark with this many samples per pixel.
+    ReferenceSamples(u32),
+}
+
+/// The place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A place in a text file.
     Text {
-        /// Line, counted from 1.
+        /// The line, counted from 1.
         line: usize,
-        /// Column, counted from 1, in characters.
+        /// The column, counted from 1, in characters.
         column: usize,
-        /// How many characters are meant, at least 1.
+        /// The number of characters that the error is about, at least 1.
         length: usize,
         /// The line itself, without its line break.
         quote: String,
@@ -65,7 +96,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// What went wrong, in which file, where in it, and what would be right.
+/// An error: a message, with the file, the place in it and advice, as far as they are known.
 #[derive(Clone, Debug, thiserror::Error)]
 pub struct Error(Box<Details>);
 
@@ -76,23 +107,24 @@ struct Details {
     place: Option<Place>,
     message: String,
     help: Option<String>,
+    remedy: Option<Remedy>,
 }
 
 /// A result whose error is [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 impl Error {
-    /// The input is wrong; `message` says what was found.
+    /// An error in the input; `message` says what was found.
     pub fn input(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Input, message)
     }
 
-    /// The work failed although the input was fine.
+    /// A failure of the work although the input was valid.
     pub fn failed(message: impl Into<String>) -> Self {
         Self::new(ErrorKind::Failed, message)
     }
 
-    /// A file that cannot be read or written; `doing` is "read", "write", "create" …
+    /// An error of reading or writing a file; `doing` is "read", "write", "create" …
     pub fn io(doing: &str, path: &Path, error: &std::io::Error) -> Self {
         Self::input(format!("cannot {doing} it: {error}")).at(path)
     }
@@ -104,6 +136,7 @@ impl Error {
             place: None,
             message: message.into(),
             help: None,
+            remedy: None,
         }))
     }
 
@@ -121,40 +154,52 @@ impl Error {
         self
     }
 
-    /// Adds what would be right.
+    /// Adds advice, unless there is some already.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.0.help.get_or_insert(help.into());
         self
     }
 
-    /// Whether the input or the work is at fault.
+    /// Adds the option that is a way out.
+    #[must_use]
+    pub fn remedied_by(mut self, remedy: Remedy) -> Self {
+        self.0.remedy.get_or_insert(remedy);
+        self
+    }
+
+    /// The kind of the error.
     pub fn kind(&self) -> ErrorKind {
         self.0.kind
     }
 
-    /// The file, where there is one.
+    /// The file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         self.0.path.as_deref()
     }
 
-    /// The place in the file, where it is known.
+    /// The place in the file, if it is known.
     pub fn place_in_file(&self) -> Option<&Place> {
         self.0.place.as_ref()
     }
 
-    /// What was found, without file and place.
+    /// The message, without file and place.
     pub fn message(&self) -> &str {
         &self.0.message
     }
 
-    /// What would be right, where there is advice.
+    /// The advice, if there is some.
     pub fn advice(&self) -> Option<&str> {
         self.0.help.as_deref()
     }
+
+    /// The option that is a way out, where there is one.
+    pub fn remedy(&self) -> Option<Remedy> {
+        self.0.remedy
+    }
 }
 
-/// `FILE:line:column: message (advice)`, with whatever of it is known.
+/// Writes `FILE:line:column: message (advice)`, as far as these are known.
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(path) = &self.0.path {

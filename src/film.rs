@@ -1,8 +1,8 @@
-//! The picture while it is made: linear f32 pixels.
+//! The film: the picture while it is made, in linear f32 pixels.
 
 use rayon::iter::ParallelIterator;
 
-/// What a picture shows.
+/// The quantity that a picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
     /// Radiance, linear Rec. 709.
@@ -10,16 +10,16 @@ pub enum View {
     Beauty,
     /// The shading normal in world space; 0 where nothing is hit.
     Normal,
-    /// The distance from the eye to the hit in world units, in the first channel; infinite where
+    /// The distance from the camera to the hit in world units, in the first channel; infinite where
     /// nothing is hit.
     Depth,
-    /// What is hit: 0 for nothing, 1 for a sphere, 2 for a plane, 3 + i for mesh i; the
+    /// The id of what is hit: 0 for nothing, 1 for a sphere, 2 for a plane, 3 + i for mesh i; the
     /// primitive's index; the instance's index. Exact below 2²⁴.
     Id,
 }
 
 impl View {
-    /// The names of its channels in an EXR file.
+    /// Returns the names of the channels in an EXR file.
     pub fn channels(self) -> &'static [&'static str] {
         match self {
             View::Beauty => &["R", "G", "B"],
@@ -30,34 +30,35 @@ impl View {
     }
 }
 
-/// One pixel: three values, whose meaning the [`View`] tells.
+/// A pixel: three values, whose meaning the [`View`] tells.
 pub type Pixel = [f32; 3];
 
 /// A picture in linear f32, row by row from the upper left.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
-    /// Width and height.
+    /// The width and the height.
     pub size: [u32; 2],
-    /// What it shows.
+    /// The quantity that it shows.
     pub view: View,
-    /// `width · height` pixels.
+    /// The `width · height` pixels.
     pub pixels: Vec<Pixel>,
 }
 
 impl Film {
-    /// A black picture.
+    /// Creates a black picture.
     pub fn new(size: [u32; 2], view: View) -> Self {
         let count = size[0] as usize * size[1] as usize;
-        // On all threads: touching so much memory for the first time takes a while.
-        const PART: usize = 64;
-        let parts: Vec<[Pixel; PART]> =
-            rayon::iter::repeat_n([[0.0; 3]; PART], count.div_ceil(PART)).collect();
-        let mut pixels = parts.into_flattened();
+        // The system maps memory when it is first written, which takes a while for a large picture: all
+        // threads write a share, in chunks that make the parallel loop worth it.
+        const CHUNK: usize = 64;
+        let chunks: Vec<[Pixel; CHUNK]> =
+            rayon::iter::repeat_n([[0.0; 3]; CHUNK], count.div_ceil(CHUNK)).collect();
+        let mut pixels = chunks.into_flattened();
         pixels.truncate(count);
         Self { size, view, pixels }
     }
 
-    /// The pixel in column `x` and row `y`.
+    /// Returns the pixel in column `x` and row `y`.
     ///
     /// # Panics
     /// When there is none.

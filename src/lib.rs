@@ -1,22 +1,42 @@
-//! A scene renderer that follows the light backwards, from the eye to the source.
+//! A scene renderer and ray caster.
 //!
-//! Analytic spheres, planes and triangle meshes from glTF and OBJ stand in one [`scene::Scene`].
-//! An [`intersect::Intersector`] finds what rays meet: [Intel Embree], or a pure-Rust BVH in f64
-//! that checks it. A Whitted [`integrator`] shades what is hit with Lambert and Phong; the picture
-//! is a [`film::Film`], written as PNG or EXR.
+//! A [`Scene`] holds analytic spheres, infinite planes and triangle meshes, and is [loaded](load) from
+//! glTF, OBJ or a scene file, or built by hand. A [`Renderer`] makes a picture of it, which is saved as
+//! PNG or EXR. An [`Intersector`] finds hits without a picture: [Intel Embree], or [`Bvh`], in pure
+//! Rust; in [`Precision::Certified`] every hit is the one that exact arithmetic finds.
+//!
+//! Render a scene that is built by hand:
 //!
 //! ```
 //! use envers::glam::{DVec3, Vec3};
-//! use envers::{Camera, Material, Projection, Renderer, Scene, Sphere};
+//! use envers::{Camera, Light, Material, Projection, Renderer, Scene, Sphere};
 //!
 //! let mut scene = Scene::default();
-//! let glow = Material { emission: Vec3::ONE, ..Material::default() };
-//! let glow = scene.add_material(glow);
-//! scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glow));
+//! let red = scene.add_material(Material::matte(Vec3::new(0.8, 0.2, 0.1)));
+//! scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, red));
+//! scene.lights.push(Light::sun(DVec3::NEG_Z));
 //! let projection = Projection::FovY(45f64.to_radians());
 //! scene.cameras.push(Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, projection)?);
-//! let rendering = Renderer::new(&scene).size([64, 32]).render()?;
-//! assert_eq!(rendering.film.pixel(32, 16), [1.0; 3]);
+//! let rendering = Renderer::new(&scene).size([64, 32]).samples(4).render()?;
+//! assert!(rendering.film.pixel(32, 16)[0] > 0.5);
+//! # Ok::<(), envers::Error>(())
+//! ```
+//!
+//! Cast rays without a picture:
+//!
+//! ```
+//! use envers::glam::DVec3;
+//! use envers::{Backend, Coherence, Material, Precision, Ray, Scene, Sphere};
+//!
+//! let mut scene = Scene::default();
+//! let material = scene.add_material(Material::default());
+//! scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, material));
+//! let intersector = Backend::default().build(&scene, Precision::Certified, 0)?;
+//! let rays = [Ray::new(DVec3::Z * 5.0, DVec3::NEG_Z), Ray::new(DVec3::Z * 5.0, DVec3::Y)];
+//! let mut hits = [None; 2];
+//! intersector.closest(&rays, Coherence::Coherent, &mut hits);
+//! assert_eq!(hits[0].map(|hit| hit.t), Some(4.0));
+//! assert_eq!(hits[1], None);
 //! # Ok::<(), envers::Error>(())
 //! ```
 //!
@@ -35,33 +55,33 @@
 //! - `measure`: holding one backend against the other, and one picture against another.
 //! - `cli`: the `envers` command.
 //!
-//! # Modules
-//!
-//! Each uses only those above it: [`error`], [`geometry`], [`scene`], [`load`], [`intersect`],
-//! [`surface`], [`shading`], [`film`], [`mod@write`], [`integrator`], [`render`], `measure`,
-//! `cli`.
+//! A program that uses the library alone takes none, and then builds without Embree, clap and plotters:
+//! `envers = { version = "0.1", default-features = false }`.
 //!
 //! [Intel Embree]: https://www.embree.org
 
-pub use glam;
+mod error;
+mod film;
+mod geometry;
+mod integrator;
+mod intersect;
+mod load;
+mod render;
+pub mod scene;
+mod shading;
+mod surface;
+mod write;
 
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;
-pub mod error;
-pub mod film;
-pub mod geometry;
-pub mod integrator;
-pub mod intersect;
-pub mod load;
 #[cfg(feature = "measure")]
+#[doc(hidden)]
 pub mod measure;
-pub mod render;
-pub mod scene;
-pub mod shading;
-pub mod surface;
-pub mod write;
 
-pub use error::{Error, ErrorKind, Result};
+pub use glam;
+
+pub use error::{Error, ErrorKind, Place, Remedy, Result};
 pub use film::{Film, View};
 pub use geometry::{
     Bounds, Continuation, Departure, Geometry, Hit, HitBatch, PrimitiveId, Ray, RayBatch, Side,
@@ -72,11 +92,29 @@ pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersect
 pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, load};
 pub use render::{RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
-    Adaptive, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light, LightKind,
-    Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere, Texture,
-    TextureId, Tone,
+    AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
+    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,
+    Texture, TextureId, Tone,
 };
 pub use surface::Surface;
+
+/// The parts that the project's own tests, benches and tools use beside the API. They may change at
+/// any time.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::geometry::{plane, sphere, triangle};
+    pub use crate::integrator::{
+        Counts, FeatureCounts, NotFinite, RayCounts, Tiling, sample_steps,
+    };
+    #[cfg(feature = "embree")]
+    pub use crate::intersect::embree_version;
+    pub use crate::intersect::{BuildStats, IntersectorBuilder};
+    pub use crate::load::schema;
+    pub use crate::render::Traced;
+    pub use crate::scene::{Feature, IncidentLight, ShadingParams};
+    pub use crate::surface::{TextureContext, shading_params};
+    pub use crate::write::{Settings, png_bytes, write};
+}
 
 /// The README's program, compiled with the documentation's.
 #[cfg(doctest)]

@@ -10,12 +10,12 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, PixelRecord, Scratch, Tiling};
+use crate::integrator::{Counts, Integrator, PixelRecord, RefineStrip, Scratch, Tiling};
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
 use crate::scene::Scene;
-use crate::scene::animation::Poses;
+use crate::scene::animation::PosedScene;
 use crate::write;
 
 /// The options of a rendering; size, samples and background are the scene's film settings.
@@ -214,7 +214,7 @@ impl<'s> Renderer<'s> {
         let (scene, options) = (&*self.scene, &self.options);
         scene.check()?;
         check_camera(scene, options.camera)?;
-        let posed = scene.animation.is_some().then(|| scene.at(0.0)).transpose()?;
+        let posed = scene.animation.is_some().then(|| scene.at_time(0.0)).transpose()?;
         let scene = posed.as_ref().unwrap_or(scene);
         in_pool(options.threads, || {
             let threads = rayon::current_num_threads();
@@ -256,7 +256,7 @@ impl<'s> Renderer<'s> {
             let mut builder = builder.with_quality(quality(scene, options));
             // Where only lights and cameras move, one intersector serves all frames.
             let mut shared: Option<Box<dyn Intersector + '_>> = None;
-            let mut poses = Poses::new(scene);
+            let mut poses = PosedScene::new(scene);
             for (i, &time) in times.iter().enumerate() {
                 // Pose the scene, and check what moved.
                 poses.pose(time)?;
@@ -277,7 +277,7 @@ impl<'s> Renderer<'s> {
                     let built = BuildRecord::new(start, &builder, builder.stats() - before);
                     picture(posed, options, &*intersector, built, &share)
                 } else if let Some(intersector) = &shared {
-                    let kept = BuildStats::kept(before.meshes);
+                    let kept = BuildStats::reused(before.meshes_built);
                     let built = BuildRecord::new(start, &builder, kept);
                     picture(posed, options, &**intersector, built, &share)
                 } else {
@@ -369,7 +369,7 @@ fn picture(
         build: build.duration,
         render: duration,
     };
-    Rendering { film, settings: write::Settings::of(&scene.film), statistics }
+    Rendering { film, settings: write::Settings::from_film(&scene.film), statistics }
 }
 
 /// Traces a checked scene with an intersector that is built, on the current rayon pool.
@@ -409,7 +409,7 @@ fn trace(
     record_strips.resize_with(strips, Default::default);
     let first_pass = film.pixels.par_chunks_mut(strip).zip(record_strips).enumerate();
     first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, records))| {
-        finish_strip(integrator.strip(i * rows, pixels, records, scratch));
+        finish_strip(integrator.render_strip(i * rows, pixels, records, scratch));
     });
 
     // Second pass: more samples for the pixels that disagree with themselves or their neighbours.
@@ -418,7 +418,8 @@ fn trace(
         let pixels = film.pixels.par_chunks_mut(strip).enumerate();
         let parts = pixels.zip(records.par_chunks(strip).zip(refined.par_chunks(strip)));
         parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (records, refined))| {
-            finish_strip(integrator.refine(i * rows, (pixels, records, refined), scratch));
+            let strip = RefineStrip { first_row: i * rows, pixels, records, refined };
+            finish_strip(integrator.refine_strip(strip, scratch));
         });
     }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());

@@ -3,10 +3,8 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use envers::Renderer;
-use envers::intersect::{Embree, Precision};
-use envers::render::Traced;
-use envers::scene::{LightKind, Scene};
+use envers::internals::Traced;
+use envers::{Embree, LightKind, Precision, Renderer, Scene};
 use glam::DVec3;
 use rayon::ThreadPool;
 use rayon::prelude::*;

@@ -3,9 +3,7 @@
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-use envers::geometry::Ray;
-use envers::intersect::{Coherence, Embree, Precision};
-use envers::scene::{Material, Scene, Sphere};
+use envers::{Coherence, Embree, Material, Precision, Ray, Scene, Sphere};
 use glam::DVec3;
 
 use super::table::{self, Step};

@@ -5,11 +5,10 @@
 use std::ffi::CStr;
 
 use embree4_sys as sys;
-use envers::geometry::Ray;
-use envers::scene::{Instance, Scene, Sphere};
+use envers::{Instance, Ray, Scene, Sphere};
 use glam::DVec3;
 
-/// A packet as Embree takes it, laid out and with room to spare as in `envers::intersect::embree`.
+/// A packet as Embree takes it, laid out and with room to spare as in `envers::internals::embree`.
 #[repr(C, align(64))]
 struct Record<const W: usize> {
     org: [[f32; W]; 3],

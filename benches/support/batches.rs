@@ -1,7 +1,6 @@
 //! Rays as the renderer hands them over: side by side, a tile at a time.
 
-use envers::geometry::{HitBatch, Ray, RayBatch};
-use envers::intersect::{Coherence, Intersector};
+use envers::{Coherence, HitBatch, Intersector, Ray, RayBatch};
 
 /// The number of rays of a tile.
 const TILE: usize = 1024;

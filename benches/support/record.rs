@@ -2,8 +2,7 @@
 
 use std::sync::Mutex;
 
-use envers::geometry::{Hit, Ray};
-use envers::intersect::{Coherence, Intersector};
+use envers::{Coherence, Hit, Intersector, Ray};
 
 /// The kind of a batch of rays.
 #[derive(Clone, Copy)]

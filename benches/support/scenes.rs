@@ -1,8 +1,9 @@
 //! The two scenes of the benches, made by formula, and the rays of their pictures.
 
-use envers::geometry::Ray;
-use envers::scene::{Camera, Falloff, Instance, Light, LightKind, Projection, Shadow};
-use envers::scene::{Material, Mesh, Scene, Sphere};
+use envers::{
+    Camera, Falloff, Instance, Light, LightKind, Material, Mesh, Projection, Ray, Scene, Shadow,
+    Sphere,
+};
 use glam::{DAffine3, DVec3, Vec3};
 use xtask::reference::knot;
 
@@ -56,7 +57,7 @@ pub const LIGHT: DVec3 = DVec3::new(3.0, 5.0, 4.0);
 /// The primary rays of a picture in squares of four by four, as the renderer sends them.
 pub fn primary(scene: &Scene) -> Vec<Ray> {
     let [width, height] = scene.film.size;
-    let maker = scene.cameras[0].rays(scene.film.size);
+    let maker = scene.cameras[0].ray_generator(scene.film.size);
     let mut rays = Vec::with_capacity((width * height) as usize);
     for y in (0..height).step_by(4) {
         for x in (0..width).step_by(4) {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use envers::{Limit, LoadOptions, Limits};
+use envers::{Limit, Limits, LoadOptions};
 
 /// The folder, in memory where the system has one for that.
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {

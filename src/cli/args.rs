@@ -1,21 +1,25 @@
-//! The command line.
+//! The command line: subcommands, flags and help.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 
-use crate::cli::bench::Bench;
-use crate::cli::load::{Loading, Tracing};
-use crate::cli::range::Range;
-use crate::cli::values::{
-    BackendName, BvhName, SampleRange, ToneName, ViewName, finite, goal, not_negative,
-    sample_range, share,
+use crate::cli::flag_values::{
+    BVH_QUALITIES, BvhQuality, SampleRange, TONES, VIEWS, backend, choice, duration, finite, goal,
+    not_negative, sample_range, share,
 };
+use crate::cli::frame_range::FrameRange;
+use crate::cli::scene_args::{InputArgs, LoadArgs, TraceArgs};
+use crate::film::View;
 use crate::geometry::Ray;
+use crate::intersect::Backend;
 use crate::measure::ray_from_text;
 use crate::measure::stress::Goal;
+use crate::scene::Tone;
+use crate::scene::check::MAX_SPP;
 
-/// Render scenes with analytic spheres, glTF and OBJ models; check every hit.
+/// Render 3D scenes and models (glTF, VRM, OBJ), and verify every ray-surface hit.
 #[derive(Parser)]
 #[command(name = "envers", disable_version_flag = true, after_help = EXAMPLES)]
 pub struct Arguments {
@@ -35,21 +39,21 @@ Examples:
   envers bench scene.toml --out out/bench
   envers diff a.exr b.exr --tolerance 0.004
 
-Exit status: 0 done, 1 a check or the work failed, 2 the command line or the input is wrong.";
+Exit status: 0 success, 1 a check or the work failed, 2 the command line or the input is invalid.";
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Render a scene to PNG or EXR
+    /// Render a scene or model to an image
     Render(Render),
-    /// Hold Embree against the pure-Rust intersector, hit by hit and pixel by pixel
+    /// Compare Embree with the certified pure-Rust ray tracer, hit by hit and pixel by pixel
     Validate(Validate),
-    /// Try every promise about precision where numbers are at their worst
+    /// Test the precision of ray intersections where rounding errors are worst
     Stress(Stress),
-    /// Hold run time against error, mode by mode
+    /// Measure run time and image error of every backend, precision and number of samples
     Bench(Bench),
-    /// Say what is in a scene, and what will be skipped
+    /// Print the contents of a scene or model, and what rendering it needs
     Info(Info),
-    /// Compare two pictures: exit status 0 when they are equal, 1 when they differ
+    /// Compare two images: exit status 0 if they are equal, 1 if they differ
     Diff(Diff),
 }
 
@@ -64,153 +68,206 @@ Examples:
   envers render orbit.toml --frames 1-120x2 -o out/frame-####.png --skip-existing")]
 pub struct Render {
     #[command(flatten)]
-    pub tracing: Tracing,
-    /// Output file, .png or .exr, of an animation also .gif or .apng; may be given several times.
-    /// #### stands for the number of the frame [default: NAME.png in this folder]
+    pub trace: TraceArgs,
+    /// Output file: .png or .exr, for an animation also .gif or .apng; can be given several times.
+    /// #### stands for the frame number [default: NAME.png in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
-    /// Frames of an animation: one, such as 7, or some, such as 1-120 or 1-120x2 [default: all for
-    /// .gif, .apng and ####, otherwise the first]
-    #[arg(long, value_name = "FRAMES", value_parser = Range::from_text, conflicts_with = "time", allow_negative_numbers = true)]
-    pub frames: Option<Range>,
-    /// From MIN to MAX samples per pixel: more than MIN where neighbouring ones disagree in what they
-    /// hit, in its normal or in colour. 1..25 suits clear shapes, 4..36 fine detail
+    /// Frames of an animation to render: one (7), a range (1-120) or every n-th frame of a range
+    /// (1-120x2) [default: all for .gif, .apng and ####, otherwise the first]
+    #[arg(long, value_name = "FRAMES", value_parser = FrameRange::from_text, conflicts_with = "time", allow_negative_numbers = true)]
+    pub frames: Option<FrameRange>,
+    /// Adaptive sampling: MIN samples per pixel, and up to MAX where neighbouring samples differ in
+    /// object, normal or colour. 1..25 suits clear shapes, 4..36 fine detail
     #[arg(long, value_name = "MIN..MAX", value_parser = sample_range, conflicts_with = "spp", allow_negative_numbers = true)]
     pub adaptive: Option<SampleRange>,
-    /// From which difference on colours disagree, from 0 (always) to 1, of about what a PNG shows
-    /// [default: the scene's, else 0.1]
+    /// Colour difference from which adaptive sampling adds samples, from 0 (always) to 1, on about
+    /// the scale of a PNG's values [default: the scene's, or 0.1]
     #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
     pub threshold: Option<f32>,
-    /// Leave alone what is there already, to go on where a rendering was interrupted
+    /// Skip frames whose output files exist, to resume an interrupted rendering
     #[arg(long)]
     pub skip_existing: bool,
-    /// Who finds the hits [default: embree where it is built in]
-    #[arg(long, value_enum)]
-    pub backend: Option<BackendName>,
-    /// How Embree builds its trees: low is built faster, medium traced faster; auto goes by the number
-    /// of rays to come. The pure-Rust intersector builds one way only
-    #[arg(long, value_enum, default_value = "auto", value_name = "QUALITY")]
-    pub bvh: BvhName,
-    /// Put matt ground under the scene, on which its shadow falls
+    /// Ray tracing backend [default: embree if it is built in, otherwise rust]
+    #[arg(long, value_name = "BACKEND", value_parser = backend())]
+    pub backend: Option<Backend>,
+    /// Build quality of Embree's BVH: low builds faster, medium traces faster, auto chooses by the
+    /// number of rays. The pure-Rust backend has only one quality
+    #[arg(long, value_name = "QUALITY", value_parser = choice(BVH_QUALITIES), default_value = "auto")]
+    pub bvh: BvhQuality,
+    /// Add a matt ground plane under the scene, to receive its shadows
     #[arg(long)]
     pub ground: bool,
-    /// What the picture shows; normal, depth and id are raw values in EXR, colours in PNG
-    #[arg(long, value_enum, default_value = "beauty")]
-    pub view: ViewName,
-    /// Brighten the PNG by 2 to the power of EV; an EXR is never changed [default: the scene's]
+    /// Quantity to show: beauty is the rendered image, id numbers the objects. Normals, depths and
+    /// ids are raw values in EXR and colours in PNG
+    #[arg(long, value_name = "VIEW", value_parser = choice(VIEWS), default_value = "beauty")]
+    pub view: View,
+    /// Exposure of the PNG in stops: multiplies the radiance by 2^EV. An EXR is never changed
+    /// [default: the scene's]
     #[arg(long, value_name = "EV", value_parser = finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
-    /// Tone curve of the PNG: how it shows what is bright; an EXR is never changed [default: the
-    /// scene's]
-    #[arg(long, value_enum, value_name = "CURVE")]
-    pub tone: Option<ToneName>,
-    /// Store 16-bit floats in the EXR rather than 32-bit ones; what is beyond 65504 becomes that
+    /// Tone mapping curve of the PNG. An EXR is never changed [default: the scene's]
+    #[arg(long, value_name = "CURVE", value_parser = choice(TONES))]
+    pub tone: Option<Tone>,
+    /// Store 16-bit instead of 32-bit floats in the EXR; larger values become 65504
     #[arg(long)]
     pub half: bool,
-    /// Write what was counted and timed as JSON; - is standard output
+    /// Write statistics (counts, times, memory) as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
 }
 
 #[derive(Args)]
 #[command(after_help = "\
-Of Embree in the given precision and the certified pure-Rust intersector, every hit, of the \
-eye's rays and of those off mirrors and through glass, every shadow ray from what the eye sees and \
-every pixel is compared. fast passes where each mismatch is explained by what f32 \
-rays and f64 formulas promise (edge, tangency, tie), on at most 1e-4 of the rays, and at most 1e-5 \
-of the pixels differ by more than 1 of 255; certified where nothing differs by any bit.
+Traces the scene with Embree in the given precision, and with the certified pure-Rust BVH. Compares \
+every hit of camera rays and of reflected and refracted rays, every shadow ray from the hits of \
+camera rays, and every pixel.
 
-The heat map: red an unexplained mismatch, yellow an explained one, blue a pixel that differs, grey \
-where both hit something, black where both hit nothing.
+In precision fast the validation passes if every mismatch is explained by the error bounds (the ray \
+is close to an edge, to a tangent, or to a tie of two surfaces), at most 1e-4 of the rays mismatch, \
+and at most 1e-5 of the pixels differ by more than 1 of 255. In precision certified it passes if no \
+bit differs.
+
+Colours of the heat map: red for an unexplained mismatch, yellow for an explained one, blue for a \
+pixel that differs, grey where both hit something, black where both hit nothing.
 
 Examples:
   envers validate scene.toml --precision certified
   envers validate scene.toml --json - --heatmap heat.png
   envers validate scene.toml --ray 0,1.5,6,0,-0.1,-1
 
-Exit status: 0 it passed, 1 it did not, 2 the command line or the input is wrong.")]
+Exit status: 0 passed, 1 failed, 2 the command line or the input is invalid.")]
 pub struct Validate {
     #[command(flatten)]
-    pub tracing: Tracing,
-    /// Only trace this ray, origin and direction, and say what each intersector makes of it in each
-    /// precision, held against exact arithmetic
+    pub trace: TraceArgs,
+    /// Trace only this ray (origin and direction), and print the hit that each intersector finds in
+    /// each precision, with its error against exact arithmetic
     #[arg(long, value_name = "ox,oy,oz,dx,dy,dz", value_parser = ray_from_text, allow_hyphen_values = true, conflicts_with_all = ["heatmap", "precision", "size", "spp", "max_depth", "camera", "threads"])]
     pub ray: Option<Ray>,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
-    /// Write a picture of where the hits differ
+    /// Write an image that shows where hits and pixels differ
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
 }
 
 #[derive(Args)]
 #[command(after_help = "\
-Goals: G1 distances to spheres, G2 tangency, G3 trees against brute force, G4 closed meshes, \
-G5 grazing triangles, G6 shadows, G7 scale, threads and tiles.
+Goals:
+  G1  distances to spheres are correctly rounded
+  G2  tangents of spheres are decided exactly
+  G3  BVH traversal finds the same hits as brute force
+  G4  closed meshes have no holes
+  G5  thin triangles at grazing angles are hit at the right distance
+  G6  no surface shadows itself
+  G7  scale, threads and tiles do not change an image
 
 Examples:
   envers stress --quick
   envers stress --goal G1,G2 --json rows.json --plot error.svg
   envers stress --resume finished.jsonl
 
-Exit status: 0 every row passed, 1 one failed, 2 the command line or the input is wrong.")]
+Exit status: 0 every test case passed, 1 one failed, 2 the command line or the input is invalid.")]
 pub struct Stress {
-    /// Fewer rays of every kind: less than a minute on two cores
+    /// Test fewer rays: takes less than a minute on two cores
     #[arg(long)]
     pub quick: bool,
-    /// Which sweeps, such as G1,G2 [default: all]
+    /// Goals to test, such as G1,G2 [default: all]
     #[arg(long, value_name = "GOALS", value_delimiter = ',', value_parser = goal)]
     pub goal: Vec<Goal>,
-    /// What the random numbers depend on
+    /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Write the rows as JSON; - is standard output
+    /// Write the results as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
-    /// Write a plot of the error of each sphere formula over distance
+    /// Write a plot of each sphere formula's error over distance
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
-    /// Keep finished cells in this file, and skip those that are there
+    /// Record finished test cases in this file, and skip those that it lists already
     #[arg(long, value_name = "FILE.jsonl")]
     pub resume: Option<PathBuf>,
-    /// Print no progress
+    /// Do not print progress
     #[arg(short, long)]
     pub quiet: bool,
 }
 
 #[derive(Args)]
+#[command(after_help = "\
+A mode is a backend, a precision, a build quality of Embree's BVH and a number of samples per pixel. \
+Every mode is run several times, alternating with the others, and its image is compared with a \
+reference that has certified hits and many samples. Writes bench.json, bench.csv, time-vs-error.svg \
+and report.html, a page that contains all results, to DIR.
+
+Examples:
+  envers bench scene.toml --out out/bench
+  envers bench scene.toml --out out/bench --spp 1,2,4,8,16,32 --reference-spp 256 --runs 15
+  envers bench model.glb --out out/bench --quick")]
+pub struct Bench {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Folder for the report; created if it does not exist
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+    /// Use fewer samples and runs, and an image of at most 320 pixels a side, where no other flag
+    /// sets them
+    #[arg(long)]
+    pub quick: bool,
+    /// Samples per pixel [default: 1,4,16; with --quick 1,4]
+    #[arg(long, value_name = "N,…", value_delimiter = ',', value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
+    pub spp: Vec<u32>,
+    /// Adaptive samples per pixel [default: 1..25,4..36, with --quick 1..9, as far as the reference
+    /// has as many samples]
+    #[arg(long, value_name = "MIN..MAX,…", value_delimiter = ',', value_parser = sample_range, allow_negative_numbers = true)]
+    pub adaptive: Vec<SampleRange>,
+    /// Samples per pixel of the reference [default: 64; with --quick 16]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
+    pub reference_spp: Option<u32>,
+    /// Number of runs of each mode [default: 5; with --quick 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), allow_negative_numbers = true)]
+    pub runs: Option<u32>,
+    /// Time limit for all runs of a mode together; a mode that is too slow gets fewer runs, or none
+    #[arg(long, value_name = "SECONDS", value_parser = duration, default_value = "60", allow_negative_numbers = true)]
+    pub budget: Duration,
+    /// Ray tracing backend to measure [default: all that are built in]
+    #[arg(long, value_name = "BACKEND", value_parser = backend())]
+    pub backend: Option<Backend>,
+}
+
+#[derive(Args)]
 pub struct Info {
-    /// A scene file (.toml) or a model (.gltf, .glb, .obj)
+    /// Scene file (.toml) or model (.gltf, .glb, .vrm, .obj)
     pub scene: PathBuf,
     #[command(flatten)]
-    pub loading: Loading,
-    /// Fail, with status 2, where anything of the scene's files is dropped, not supported, or shown
+    pub load: LoadArgs,
+    /// Fail with exit status 2 if anything in the scene's files is dropped, unsupported or replaced
     /// by a placeholder
     #[arg(long)]
     pub strict: bool,
-    /// Write it as JSON; - is standard output
+    /// Write the contents as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
 }
 
 #[derive(Args)]
 #[command(after_help = "\
-FLIP (Andersson et al. 2020) says how far the pictures differ to somebody who flips between them, from \
-0 to 1, on a screen with 67 pixels in a degree of the view. An EXR is shown clamped to [0, 1], as \
-sRGB; views other than beauty have none.")]
+Prints the root-mean-square error (RMSE), the peak signal-to-noise ratio (PSNR), the largest \
+difference, and FLIP (Andersson et al. 2020): the difference that a viewer perceives when flipping \
+between the images, from 0 to 1, at 67 pixels per degree. For FLIP an EXR is shown as sRGB, clamped \
+to [0, 1]. Images of views other than beauty have no FLIP.")]
 pub struct Diff {
-    /// A picture, .png or .exr
+    /// First image, .png or .exr
     pub a: PathBuf,
-    /// Another one of the same kind and size
+    /// Second image, of the same format and size
     pub b: PathBuf,
-    /// Largest difference of two values that still counts as equal; a PNG's values are n/255
+    /// Largest difference of two values that counts as equal; the values of a PNG are n/255
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = not_negative, allow_negative_numbers = true)]
     pub tolerance: f32,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
-    /// Write a picture of the differences: black where equal, white where the largest
+    /// Write an image of the differences, from black (equal) to white (the largest)
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `envers info`.
+//! The subcommand `envers info`.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -6,87 +6,80 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::cli::args::Info;
-use crate::cli::json::Geometry;
 use crate::cli::load_report::{self, LoadSummary};
-use crate::cli::{Outcome, Verdict, files, output, report};
+use crate::cli::render_stats::Geometry;
+use crate::cli::{Outcome, messages, output, paths};
+use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
-use crate::scene::{LightKind, Projection, Scene, SceneFeatures, precision_warnings};
+use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
 
-/// `info --json`.
+/// The contents of a scene: `info --json`.
 #[derive(Serialize)]
 struct Summary {
     size: [u32; 2],
     spp: u32,
-    /// The most samples of a pixel, where some get more than others.
+    /// The most samples of a pixel with adaptive sampling; null without it.
     max_spp: Option<u32>,
     geometry: Geometry,
-    /// Stored triangles: each mesh once, however often it stands.
+    /// The stored triangles: those of each mesh once, whatever the number of its instances.
     mesh_triangles: usize,
     meshes: usize,
     materials: usize,
     textures: usize,
     lights: Vec<String>,
     cameras: Vec<String>,
-    /// What moves, and for how long; null when nothing does.
-    animation: Option<Motion>,
-    /// The corners of the box around all that is finite; null when nothing is.
+    /// The animation; null if nothing is animated.
+    animation: Option<AnimationSummary>,
+    /// The corners of the box around all but planes; null if there is nothing else.
     bounds: Option<[[f64; 3]; 2]>,
-    /// Which kinds of work the scene needs, and for what.
+    /// The kinds of work that the scene needs, with the reason.
     needed: BTreeMap<&'static str, String>,
-    /// Which it does not need, and why: these are not done.
+    /// The kinds of work that are skipped, with the reason.
     skipped: BTreeMap<&'static str, String>,
-    /// What became of its files.
+    /// The load report.
     report: LoadSummary,
-    /// The same, as it is printed.
+    /// The load report's faces, as they are printed.
     #[serde(skip)]
     faces: String,
     warnings: Vec<String>,
 }
 
-/// An animation, and how many of each kind of thing it moves.
+/// An animation, and the numbers of objects that it moves.
 #[derive(Serialize)]
-struct Motion {
+struct AnimationSummary {
     frames: u32,
     fps: f64,
     seconds: f64,
     spheres: usize,
     instances: usize,
-    /// Meshes that change their shape.
+    /// The meshes that are deformed.
     meshes: usize,
     lights: usize,
     cameras: usize,
 }
 
-impl Motion {
-    fn of(animation: &Animation) -> Self {
-        let mut motion = Self {
+impl AnimationSummary {
+    fn new(animation: &Animation) -> Self {
+        let count =
+            |is_kind: fn(&&Animated) -> bool| animation.objects.iter().filter(is_kind).count();
+        Self {
             frames: animation.frames,
             fps: animation.fps,
-            seconds: animation.seconds(),
-            spheres: 0,
-            instances: 0,
-            meshes: 0,
-            lights: 0,
-            cameras: 0,
-        };
-        for mover in &animation.movers {
-            *match mover {
-                Animated::Sphere { .. } => &mut motion.spheres,
-                Animated::Instance { .. } => &mut motion.instances,
-                Animated::Mesh { .. } => &mut motion.meshes,
-                Animated::Light { .. } => &mut motion.lights,
-                Animated::Camera { .. } => &mut motion.cameras,
-            } += 1;
+            seconds: animation.duration(),
+            spheres: count(|moved| matches!(moved, Animated::Sphere { .. })),
+            instances: count(|moved| matches!(moved, Animated::Instance { .. })),
+            meshes: count(|moved| matches!(moved, Animated::Mesh { .. })),
+            lights: count(|moved| matches!(moved, Animated::Light { .. })),
+            cameras: count(|moved| matches!(moved, Animated::Camera { .. })),
         }
-        motion
     }
 }
 
-impl fmt::Display for Motion {
+impl fmt::Display for AnimationSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let moving: Vec<String> = [
+        let moved: Vec<String> = [
             (self.spheres, "sphere"),
             (self.instances, "instance"),
             (self.meshes, "shape"),
@@ -95,68 +88,73 @@ impl fmt::Display for Motion {
         ]
         .into_iter()
         .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| counted(count, what))
+        .map(|(count, noun)| counted(count, noun))
         .collect();
-        let moving = or_none(&moving);
-        let (frames, fps, seconds) =
-            (counted(self.frames as usize, "frame"), self.fps, self.seconds);
-        write!(f, "{frames} at {fps} a second ({seconds:.3} s), moving: {moving}")
+        let frames = counted(self.frames as usize, "frame");
+        let Self { fps, seconds, .. } = self;
+        write!(f, "{frames} at {fps} fps ({seconds:.3} s), moving: {}", or_none(&moved))
     }
 }
 
-pub fn run(arguments: &Info) -> Outcome {
+pub fn run(arguments: &Info) -> Result<Outcome> {
     output::check_json(arguments.json.as_ref())?;
-    files::check_input(&arguments.scene)?;
-    let Loaded { scene, report: loaded } =
-        arguments.loading.options(None).load(&arguments.scene)?;
-    let motion = scene.animation.as_ref().map(Motion::of);
-    // The rest is that of the first frame.
-    let summary = summarize(&scene.at(0.0)?, &loaded, motion);
+    paths::check_input(&arguments.scene)?;
+    let Loaded { scene, report } = arguments.load.options(None).load(&arguments.scene)?;
+    let animation = scene.animation.as_ref().map(AnimationSummary::new);
+    // All but the animation is that of the first frame.
+    let summary = Summary::new(&scene.at_time(0.0)?, &report, animation);
     if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&report::printable(&summary.to_string()))?;
-        summary.warnings.iter().for_each(|w| report::warning(w));
+        output::print(&messages::escape_controls(&summary.to_string()))?;
+        summary.warnings.iter().for_each(|w| messages::warning(w));
     }
     if let Some(path) = &arguments.json {
         output::write_json(path, &summary)?;
     }
     if arguments.strict {
-        load_report::check_strictly(&loaded, &arguments.scene)?;
+        load_report::check_strictly(&report, &arguments.scene)?;
     }
-    Ok(Verdict::Good)
+    Ok(Outcome::Success)
 }
 
-fn summarize(scene: &Scene, report: &LoadReport, animation: Option<Motion>) -> Summary {
-    let bounds = scene.bounds();
-    // As the default of `render`: precision fast, on Embree where it is built in.
-    let mut warnings = report.warnings.clone();
-    warnings
-        .extend(precision_warnings::precision_warnings(scene, Backend::default() != Backend::Rust));
-    let needs = SceneFeatures::of(scene);
-    Summary {
-        size: scene.film.size,
-        spp: scene.film.spp,
-        max_spp: scene.film.adaptive.map(|adaptive| adaptive.max),
-        geometry: Geometry::of(scene),
-        mesh_triangles: scene.meshes.iter().map(|m| m.triangles.len()).sum(),
-        meshes: scene.meshes.len(),
-        materials: scene.materials.len(),
-        textures: scene.textures.len(),
-        lights: scene.lights.iter().map(|l| named(light_kind(&l.kind), &l.name)).collect(),
-        cameras: scene.cameras.iter().map(|c| named(lens(&c.lens), &c.name)).collect(),
-        animation,
-        bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
-        needed: needs.done().map(|(work, why)| (work.name(), why)).collect(),
-        skipped: needs.skipped().map(|(work, why)| (work.name(), why)).collect(),
-        report: report.into(),
-        faces: report.to_string(),
-        warnings,
+impl Summary {
+    /// Sums up a scene at the first frame.
+    fn new(scene: &Scene, report: &LoadReport, animation: Option<AnimationSummary>) -> Self {
+        let bounds = scene.bounds();
+        // The default of `render`: precision fast, on Embree if it is built in.
+        let has_f32_rays = Backend::default() != Backend::Rust;
+        let features = SceneFeatures::from_scene(scene);
+        Self {
+            size: scene.film.size,
+            spp: scene.film.spp,
+            max_spp: scene.film.adaptive.map(|adaptive| adaptive.max),
+            geometry: Geometry::new(scene),
+            mesh_triangles: scene.meshes.iter().map(|m| m.triangles.len()).sum(),
+            meshes: scene.meshes.len(),
+            materials: scene.materials.len(),
+            textures: scene.textures.len(),
+            lights: scene.lights.iter().map(|l| labelled(light_kind(&l.kind), &l.name)).collect(),
+            cameras: scene
+                .cameras
+                .iter()
+                .map(|c| labelled(&lens(&c.projection), &c.name))
+                .collect(),
+            animation,
+            bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
+            needed: features.used().map(|(feature, why)| (feature.name(), why)).collect(),
+            skipped: features.skipped().map(|(feature, why)| (feature.name(), why)).collect(),
+            report: report.into(),
+            faces: report.to_string(),
+            warnings: messages::scene_warnings(report, scene, has_f32_rays),
+        }
     }
 }
 
-fn named(what: impl std::fmt::Display, name: &str) -> String {
-    if name.is_empty() { what.to_string() } else { format!("{what} `{name}`") }
+/// Returns a kind of object, followed by its name if it has one.
+fn labelled(kind: &str, name: &str) -> String {
+    if name.is_empty() { kind.to_owned() } else { format!("{kind} `{name}`") }
 }
 
+/// Returns the name of a kind of light.
 fn light_kind(kind: &LightKind) -> &'static str {
     match kind {
         LightKind::Ambient => "ambient",
@@ -166,6 +164,7 @@ fn light_kind(kind: &LightKind) -> &'static str {
     }
 }
 
+/// Returns the projection of a camera as a scene file sets it.
 fn lens(lens: &Projection) -> String {
     match lens {
         Projection::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
@@ -179,8 +178,8 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [width, height] = self.size;
         let g = &self.geometry;
-        let most = self.max_spp.map_or(String::new(), |max| format!(" to {max}"));
-        writeln!(f, "picture    {width}x{height}, {}{most} samples per pixel", self.spp)?;
+        let max_spp = self.max_spp.map_or(String::new(), |max| format!(" to {max}"));
+        writeln!(f, "image      {width}x{height}, {}{max_spp} samples per pixel", self.spp)?;
         writeln!(f, "spheres    {}", g.spheres)?;
         writeln!(f, "planes     {}", g.planes)?;
         writeln!(
@@ -203,17 +202,21 @@ impl fmt::Display for Summary {
             Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
             None => writeln!(f, "bounds     nothing finite")?,
         }
-        let line = |does: &str, (work, why): (&&str, &String)| format!("{does:10} {work}: {why}");
-        let needs = self.needed.iter().map(|needed| line("needs", needed));
-        let skips = self.skipped.iter().map(|skipped| line("skips", skipped));
-        needs.chain(skips).try_for_each(|line| writeln!(f, "{line}"))
+        for (verb, features) in [("needs", &self.needed), ("skips", &self.skipped)] {
+            for (feature, reason) in features {
+                writeln!(f, "{verb:10} {feature}: {reason}")?;
+            }
+        }
+        Ok(())
     }
 }
 
-fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+/// Returns a count with its noun, in the plural unless it is 1.
+fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Returns a list with commas, or `none`.
 fn or_none(list: &[String]) -> String {
     if list.is_empty() { "none".to_owned() } else { list.join(", ") }
 }

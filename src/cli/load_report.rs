@@ -1,4 +1,4 @@
-//! What became of a scene's files on the way to the picture: in JSON, and what was lost as an error.
+//! The load report as JSON, and the check of `--strict` on it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::load::LoadReport;
 
-/// `report` in `info --json` and `render --stats`.
+/// The load report: `report` in `info --json` and `render --stats`.
 #[derive(Serialize)]
 pub struct LoadSummary {
     faces: Faces,
@@ -17,7 +17,7 @@ pub struct LoadSummary {
     pub variants: BTreeSet<String>,
 }
 
-/// Of the faces of all meshes, each read once: `read` = `handed_over` + the sum of `dropped`.
+/// The numbers of faces of all meshes: `read` = `handed_over` + the sum of `dropped`.
 #[derive(Serialize)]
 struct Faces {
     read: u64,
@@ -29,27 +29,28 @@ impl From<&LoadReport> for LoadSummary {
     fn from(report: &LoadReport) -> Self {
         let LoadReport { read, handed_over, dropped, unsupported, placeholders, variants, .. } =
             report.clone();
-        let dropped = dropped.into_iter().map(|(why, count)| (why.name(), count)).collect();
+        let dropped = dropped.into_iter().map(|(reason, count)| (reason.name(), count)).collect();
         Self { faces: Faces { read, handed_over, dropped }, unsupported, placeholders, variants }
     }
 }
 
-/// Checks the demand of `--strict` on a load.
+/// Checks that a load was complete, for `--strict`.
 ///
 /// # Errors
-/// When anything of its files was dropped, is not supported, or has a placeholder; the error lists
+/// When anything in the files was dropped, unsupported or replaced by a placeholder; the error lists
 /// all of it.
 pub fn check_strictly(report: &LoadReport, path: &Path) -> Result<()> {
     let LoadReport { dropped, unsupported, placeholders, .. } = report;
     if report.is_clean() {
         return Ok(());
     }
-    let dropped = dropped.iter().map(|(why, count)| format!("dropped: {count} {}", why.name()));
+    let dropped =
+        dropped.iter().map(|(reason, count)| format!("dropped: {count} {}", reason.name()));
     let unsupported = unsupported.iter().map(|what| format!("not supported: {what}"));
     let placeholders = placeholders.iter().map(|what| format!("placeholder: {what}"));
     let list = dropped.chain(unsupported).chain(placeholders);
     let list: String = list.map(|line| format!("\n  {line}")).collect();
-    Err(Error::input(format!("--strict: not all of it can be shown as its files have it{list}"))
+    Err(Error::input(format!("--strict: the files cannot be shown completely{list}"))
         .at(path)
-        .help("mend the files, or leave --strict out to go on without"))
+        .help("correct the files, or leave out --strict to render without these parts"))
 }

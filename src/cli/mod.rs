@@ -1,21 +1,21 @@
-//! The command, on the public API alone.
+//! The `envers` command, on the public API alone.
 
 mod args;
 mod bench;
 mod diff;
-mod files;
-mod frames;
+mod flag_values;
+mod frame_range;
 mod info;
-mod json;
-mod load;
 mod load_report;
+mod messages;
 mod output;
-mod range;
+mod paths;
 mod render;
-mod report;
+mod render_plan;
+mod render_stats;
+mod scene_args;
 mod stress;
 mod validate;
-mod values;
 
 use std::process::ExitCode;
 
@@ -26,18 +26,18 @@ use args::{Arguments, Command};
 
 /// Runs the command on this process's arguments.
 ///
-/// Exit status 0: done; 1: a check or the work failed; 2: the command line or the input is wrong.
+/// Exit status 0: success; 1: a check or the work failed; 2: the command line or the input is
+/// invalid.
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.version {
-        return finish(output::print(&format!("{}\n", version())).map(|()| Verdict::Good));
+        return exit_code(output::print(&format!("{}\n", version())).map(|()| Outcome::Success));
     }
     let Some(command) = arguments.command else {
-        // Nothing was asked for: say what there is.
-        report::to_stderr(&Arguments::command().render_help().to_string());
+        messages::to_stderr(&Arguments::command().render_help().to_string());
         return ExitCode::from(2);
     };
-    finish(match command {
+    exit_code(match command {
         Command::Render(arguments) => render::run(&arguments),
         Command::Validate(arguments) => validate::run(&arguments),
         Command::Stress(arguments) => stress::run(&arguments),
@@ -47,13 +47,13 @@ pub fn run() -> ExitCode {
     })
 }
 
-/// Reports what went wrong, and says how it came out.
-fn finish(outcome: Outcome) -> ExitCode {
-    match outcome {
-        Ok(Verdict::Good) => ExitCode::SUCCESS,
-        Ok(Verdict::Bad) => ExitCode::FAILURE,
+/// Prints the error, if there is one, and returns the exit status.
+fn exit_code(result: Result<Outcome>) -> ExitCode {
+    match result {
+        Ok(Outcome::Success) => ExitCode::SUCCESS,
+        Ok(Outcome::CheckFailed) => ExitCode::FAILURE,
         Err(error) => {
-            report::error(&error);
+            messages::error(&error);
             match error.kind() {
                 ErrorKind::Input => ExitCode::from(2),
                 ErrorKind::Failed => ExitCode::FAILURE,
@@ -62,15 +62,21 @@ fn finish(outcome: Outcome) -> ExitCode {
     }
 }
 
-/// How a command that did its work came out.
-enum Verdict {
-    Good,
-    /// A check did not pass, or two pictures differ.
-    Bad,
+/// The outcome of a command that did its work.
+enum Outcome {
+    Success,
+    /// A check failed, or two images differ.
+    CheckFailed,
 }
 
-type Outcome = Result<Verdict>;
+impl Outcome {
+    /// Returns the outcome of a check.
+    fn of_check(passed: bool) -> Self {
+        if passed { Self::Success } else { Self::CheckFailed }
+    }
+}
 
+/// Returns the versions of envers and Embree.
 fn version() -> String {
     let version = env!("CARGO_PKG_VERSION");
     #[cfg(feature = "embree")]

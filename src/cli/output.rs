@@ -1,4 +1,4 @@
-//! Outputs of the command: checked before the work begins, written when it is done.
+//! The outputs of the command: checked before the work begins, written when it is done.
 
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -6,59 +6,67 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::write;
+use crate::film::Film;
+use crate::scene::Transfer;
+use crate::write::{self, Settings};
 
-/// What the files of scenes and pictures end in.
-const SCENES_AND_PICTURES: [&str; 14] = [
+/// The extensions of scene, model and image files.
+const SCENE_AND_IMAGE_EXTENSIONS: [&str; 14] = [
     "toml", "gltf", "glb", "vrm", "bin", "obj", "mtl", "png", "jpg", "jpeg", "webp", "tga", "bmp",
     "exr",
 ];
 
-/// Checks that JSON could be written to `path`.
+/// Checks that JSON can be written to `path`.
 ///
 /// # Errors
-/// When it could not.
+/// When it cannot, or the file is named like a scene or an image.
 pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
     let Some(path) = path.filter(|path| !is_stdout(path)) else { return Ok(()) };
-    // What scenes and pictures are made of keeps its names to itself: a slip of the hand must not
-    // overwrite it.
+    // A typing error must not overwrite a scene or an image.
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    if SCENES_AND_PICTURES.contains(&&*extension) {
-        return Err(Error::input("JSON is not written to a file of this name")
+    if SCENE_AND_IMAGE_EXTENSIONS.contains(&&*extension) {
+        return Err(Error::input("this is not the name of a JSON file")
             .at(path)
             .help("name it .json, or - for standard output"));
     }
     write::check_file(path)
 }
 
-/// Checks that a PNG could be written to `path`.
+/// Checks that a heat map can be written to `path` as PNG.
 ///
 /// # Errors
-/// When it could not, or the file is not named as a PNG.
-pub fn check_png(path: Option<&PathBuf>) -> Result<()> {
-    let Some(path) = path else { return Ok(()) };
-    if write::Format::of(path)? != write::Format::Png {
-        return Err(Error::input("a heat map is written as PNG").at(path).help("name it .png"));
-    }
-    write::check(path)
+/// When it cannot, or the file is not named .png.
+pub fn check_heatmap(path: Option<&PathBuf>) -> Result<()> {
+    check_extension(path, "png", "a heat map must be a PNG")
 }
 
-/// Writes `value` as JSON, to standard output when `path` is `-`.
+/// Checks that a file can be written to `path`, and is named with an extension.
+///
+/// # Errors
+/// When it cannot, or, with the message, when the extension is another one.
+pub fn check_extension(path: Option<&PathBuf>, extension: &str, message: &str) -> Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension)) {
+        return Err(Error::input(message).at(path).help(format!("name it .{extension}")));
+    }
+    write::check_file(path)
+}
+
+/// Writes `value` as JSON, to standard output if `path` is `-`.
 ///
 /// # Errors
 /// When it cannot be written.
 pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
     let mut text = serde_json::to_string_pretty(value)
-        .map_err(|e| Error::failed(format!("the JSON cannot be made: {e}")))?;
+        .map_err(|e| Error::failed(format!("cannot create the JSON: {e}")))?;
     text.push('\n');
     if is_stdout(path) {
         return print(&text);
     }
-    write::atomically(path, |out| out.write_all(text.as_bytes()))
+    write::write_atomically(path, |out| out.write_all(text.as_bytes()))
 }
 
-/// Prints to standard output. A reader that has gone, as `head` does, wants no more; that is no
-/// error.
+/// Prints to standard output. A closed pipe, as `head` leaves it, is no error.
 ///
 /// # Errors
 /// When it cannot be written for another reason.
@@ -72,11 +80,20 @@ pub fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Whether results for a person may go to standard output, which JSON may have taken.
+/// True if text can be printed to standard output, because no JSON is.
 pub fn stdout_is_free(json: Option<&PathBuf>) -> bool {
     !json.is_some_and(|path| is_stdout(path))
 }
 
 fn is_stdout(path: &Path) -> bool {
     path.as_os_str() == "-"
+}
+
+/// Writes a heat map, with its values as they are.
+///
+/// # Errors
+/// When it cannot be written.
+pub fn write_heatmap(path: &Path, heatmap: &Film) -> Result<()> {
+    let settings = Settings { transfer: Transfer::None, ..Settings::default() };
+    write::write(heatmap, path, &settings)
 }

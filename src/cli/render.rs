@@ -1,311 +1,325 @@
-//! `envers render`.
+//! The subcommand `envers render`.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::cli::args::Render;
-use crate::cli::frames::Plan;
-use crate::cli::json::Stats;
-use crate::cli::load::Input;
-use crate::cli::values::{SampleRange, ViewName};
-use crate::cli::{Outcome, Verdict, files, output, report};
+use crate::cli::flag_values::SampleRange;
+use crate::cli::render_plan::RenderPlan;
+use crate::cli::render_stats::RenderStats;
+use crate::cli::scene_args::SceneInput;
+use crate::cli::{Outcome, messages, output, paths};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
-use crate::scene::animation::Poses;
-use crate::scene::{Adaptive, FilmSettings, Scene, Tone, precision_warnings};
+use crate::scene::animation::PosedScene;
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
 use crate::write::{self, Format, Movie, Settings};
 
-pub fn run(arguments: &Render) -> Outcome {
+pub fn run(arguments: &Render) -> Result<Outcome> {
     let start = Instant::now();
-    let outputs = outputs(arguments)?;
-    let backend = match arguments.backend {
-        Some(name) => name.backend()?,
-        None => Default::default(),
-    };
+
+    // Check the flags, then load the scene and apply them.
+    let input = &arguments.trace.input;
+    let outputs = output_paths(arguments)?;
     output::check_json(arguments.stats.as_ref())?;
-    let Input { mut scene, report: loaded, camera } = arguments.tracing.load_animated()?;
+    let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
         load::add_ground(&mut scene);
     }
     set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
-    scene.film.tone = arguments.tone.map_or(scene.film.tone, Tone::from);
-    let plan = Plan::new(arguments, &scene, outputs)?;
-    let first = first(&scene, &plan).map_err(|e| e.at(&arguments.tracing.scene))?;
+    scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
+    let plan = RenderPlan::new(arguments, &scene, outputs)?;
+    let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     let load_time = start.elapsed();
 
-    let view = View::from(arguments.view);
-    let threads = arguments.tracing.threads();
-    let precision = arguments.tracing.precision.into();
-    let quality = arguments.bvh.quality();
-    let options =
-        RenderOptions { backend, precision, quality, threads, camera, view, ..Default::default() };
-    let progress = report::progress_bar(arguments.tracing.quiet);
-    let settings = Settings {
-        half: arguments.half,
-        metadata: metadata(&scene, camera, view, precision),
-        ..Settings::of(&scene.film)
+    // Render the frames, and write each when it is done.
+    let options = RenderOptions {
+        backend: arguments.backend.unwrap_or_default(),
+        precision: arguments.trace.precision,
+        quality: arguments.bvh,
+        threads: input.threads(),
+        camera,
+        view: arguments.view,
+        ..RenderOptions::default()
     };
-    let mut sink = Sink::new(&plan, settings, &options, scene.film.size)?;
-    let times: Vec<f64> = plan.frames.iter().map(|(_, time)| *time).collect();
-    let step = |share: f32| progress.set_position((share * 1000.0) as u64);
+    let bar = messages::progress_bar(input.quiet);
+    let mut writer = FrameWriter::new(&plan, &scene, &options, arguments.half)?;
+    let times: Vec<f64> = plan.frames.iter().map(|frame| frame.time).collect();
     Renderer::new(&scene)
-        .options(options)
-        .on_progress(step)
-        .render_frames(&times, |i, frame| sink.take(i, frame))
-        .map_err(|e| e.at(&arguments.tracing.scene))?;
-    progress.finish_and_clear();
-    let done = sink.finish()?;
+        .options(options.clone())
+        .on_progress(|share| messages::set_progress(&bar, share))
+        .render_frames(&times, |i, frame| writer.write(i, frame))
+        .map_err(|e| e.at(&input.scene))?;
+    bar.finish_and_clear();
+    let mut totals = writer.finish()?;
 
-    let mut warnings = loaded.warnings.clone();
-    let f32_rays = backend != Backend::Rust && precision == Precision::Fast;
-    warnings.extend(precision_warnings::precision_warnings(&first, f32_rays));
-    warnings.extend(oddities(&first, camera, view, &done));
-    if !arguments.tracing.quiet {
-        warnings.iter().for_each(|w| report::warning(w));
-    }
-    let total = start.elapsed();
-    if !arguments.tracing.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
-        output::print(&plan.summary(total.as_secs_f64()))?;
+    // Report warnings, the summary and the statistics.
+    let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
+    let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
+    warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
+    warnings.extend(image_warning(&first, &options, &totals));
+    totals.load = load_time;
+    totals.total = start.elapsed();
+    if !input.quiet {
+        warnings.iter().for_each(|w| messages::warning(w));
+        if output::stdout_is_free(arguments.stats.as_ref()) {
+            output::print(&plan.summary(totals.total.as_secs_f64()))?;
+        }
     }
     if let Some(path) = &arguments.stats {
-        let seconds = [load_time, done.write, total].map(|d| d.as_secs_f64());
-        let (statistics, layers) = (&done.statistics, done.layers);
-        let stats = Stats::new(&first, times.len(), &loaded, statistics, layers, seconds, warnings);
-        output::write_json(path, &stats)?;
+        output::write_json(path, &RenderStats::new(&first, &report, &totals, warnings))?;
     }
-    Ok(Verdict::Good)
+    Ok(Outcome::Success)
 }
 
-/// Applies the flags that say how many samples pixels have.
+/// Applies the flags for the number of samples.
 fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
-    if arguments.view != ViewName::Beauty {
+    if arguments.view != View::Beauty {
         (film.spp, film.adaptive) = (1, None);
     }
     if let Some(SampleRange { min, max }) = arguments.adaptive {
-        let threshold = film.adaptive.map_or(Adaptive::THRESHOLD, |adaptive| adaptive.threshold);
-        (film.spp, film.adaptive) = (min, Some(Adaptive { max, threshold }));
+        let threshold =
+            film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
+        (film.spp, film.adaptive) = (min, Some(AdaptiveSampling { max, threshold }));
     }
     match (arguments.threshold, &mut film.adaptive) {
         (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
         (Some(_), None) => {
-            return Err(Error::input("--threshold is about adaptive samples, and there are none")
-                .help("add `--adaptive 1..25`, or leave --threshold out"));
+            return Err(Error::input("--threshold needs adaptive sampling")
+                .help("add `--adaptive 1..25`, or leave out --threshold"));
         }
         _ => {}
     }
     Ok(())
 }
 
-/// The first frame's scene. Each frame is posed, and its files are looked at, before any is rendered;
-/// what only a check of its numbers finds, such as a way out of bounds, is found in its turn.
-fn first(scene: &Scene, plan: &Plan) -> Result<Scene> {
-    let mut poses = Poses::new(scene);
-    for (i, (frame, time)) in plan.frames.iter().enumerate() {
-        poses.pose(*time)?;
-        let files: Vec<PathBuf> = plan.files(*frame).collect();
-        files::check_not_a_texture(scene, &files)?;
+/// PosedScene every frame and checks its files before any frame is rendered. Returns the scene of the
+/// first frame. Numbers that are out of bounds in a pose are only found when it is rendered.
+fn check_frames(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
+    let mut poses = PosedScene::new(scene);
+    for (i, frame) in plan.frames.iter().enumerate() {
+        poses.pose(frame.time)?;
+        let files: Vec<PathBuf> = plan.files(frame.number).collect();
+        paths::check_not_a_texture(scene, &files)?;
         if i == 0 {
             files.iter().try_for_each(|path| write::check(path))?;
         }
     }
-    files::check_not_a_texture(scene, &plan.movies)?;
-    poses.pose(plan.frames.first().map_or(0.0, |(_, time)| *time))?;
+    paths::check_not_a_texture(scene, &plan.movies)?;
+    poses.pose(plan.frames.first().map_or(0.0, |frame| frame.time))?;
     Ok(poses.into_scene())
 }
 
-/// Where the frames go.
-struct Sink<'a> {
-    plan: &'a Plan,
+/// The writer of all frames.
+struct FrameWriter<'a> {
+    plan: &'a RenderPlan,
     settings: Settings,
     movies: Vec<Movie>,
-    done: Done,
+    totals: RenderTotals,
 }
 
-/// What all frames took, and what they show.
-struct Done {
-    statistics: Statistics,
-    write: Duration,
-    /// How many pictures were encoded.
-    layers: u64,
-    /// Whether there is nothing but black in any frame.
+/// The sums of all frames, and the times of the command.
+pub struct RenderTotals {
+    pub statistics: Statistics,
+    /// The number of frames.
+    pub frames: usize,
+    /// The number of encoded images.
+    pub images: u64,
+    /// True if all frames are black.
     is_black: bool,
+    /// The time to load the scene and check the outputs.
+    pub load: Duration,
+    /// The time to encode and write images.
+    pub write: Duration,
+    /// The time of the whole command.
+    pub total: Duration,
 }
 
-impl<'a> Sink<'a> {
+impl<'a> FrameWriter<'a> {
+    /// Creates the animated images.
     fn new(
-        plan: &'a Plan,
-        settings: Settings,
+        plan: &'a RenderPlan,
+        scene: &Scene,
         options: &RenderOptions,
-        size: [u32; 2],
+        half: bool,
     ) -> Result<Self> {
-        let frames = plan.frames.len() as u32;
-        let movie = |path: &PathBuf| Movie::create(path, size, frames, plan.fps);
+        let frames = plan.frames.len();
+        let movie = |path: &PathBuf| Movie::create(path, scene.film.size, frames as u32, plan.fps);
+        let totals = RenderTotals {
+            statistics: Statistics::zero(options),
+            frames,
+            images: 0,
+            is_black: true,
+            load: Duration::ZERO,
+            write: Duration::ZERO,
+            total: Duration::ZERO,
+        };
+        let settings = Settings {
+            half,
+            metadata: metadata(scene, options),
+            ..Settings::from_film(&scene.film)
+        };
         let movies = plan.movies.iter().map(movie).collect::<Result<_>>()?;
-        let statistics = Statistics::zero(options);
-        let done = Done { statistics, write: Duration::ZERO, layers: 0, is_black: true };
-        Ok(Self { plan, settings, movies, done })
+        Ok(Self { plan, settings, movies, totals })
     }
 
     /// Writes a frame.
-    fn take(&mut self, index: usize, rendering: Rendering) -> Result<()> {
+    fn write(&mut self, index: usize, rendering: Rendering) -> Result<()> {
         let start = Instant::now();
-        let (frame, time) = self.plan.frames[index];
+        let frame = self.plan.frames[index];
         let mut settings = self.settings.clone();
-        if frame.is_some() {
-            settings.metadata.push(("time".to_owned(), format!("{time} s")));
+        if frame.number.is_some() {
+            settings.metadata.push(("time".to_owned(), format!("{} s", frame.time)));
         }
-        for path in self.plan.files(frame) {
+        for path in self.plan.files(frame.number) {
             write::write(&rendering.film, &path, &settings)?;
-            self.done.layers += 1;
+            self.totals.images += 1;
         }
         for movie in &mut self.movies {
             movie.push(&rendering.film, &settings)?;
-            self.done.layers += 1;
+            self.totals.images += 1;
         }
-        let dark = 0.5 / 255.0 / self.settings.exposure.exp2();
-        let is_dark = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= dark);
-        self.done.is_black &= rendering.film.pixels.iter().all(is_dark);
-        self.done.statistics.add(&rendering.statistics);
-        self.done.write += start.elapsed();
+        let darkest = 0.5 / 255.0 / self.settings.exposure.exp2();
+        let is_black = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= darkest);
+        self.totals.is_black &= rendering.film.pixels.iter().all(is_black);
+        self.totals.statistics.add(&rendering.statistics);
+        self.totals.write += start.elapsed();
         Ok(())
     }
 
-    fn finish(mut self) -> Result<Done> {
+    /// Completes the animated images.
+    fn finish(mut self) -> Result<RenderTotals> {
         let start = Instant::now();
         self.movies.into_iter().try_for_each(Movie::finish)?;
-        self.done.write += start.elapsed();
-        Ok(self.done)
+        self.totals.write += start.elapsed();
+        Ok(self.totals)
     }
 }
 
-/// The output files, checked: named, distinct, of a known format, and writable.
-fn outputs(arguments: &Render) -> Result<Vec<PathBuf>> {
+/// Returns the output files, after checking that they are distinct, writable, and of formats to
+/// which the other flags apply.
+fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
     let mut outputs = arguments.output.clone();
     if outputs.is_empty() {
-        let name = arguments.tracing.scene.file_stem().unwrap_or("out".as_ref());
-        let mut name = PathBuf::from(name);
-        name.as_mut_os_string().push(".png");
-        outputs.push(name);
+        let stem = arguments.trace.input.scene.file_stem().unwrap_or("out".as_ref());
+        let mut path = PathBuf::from(stem);
+        path.as_mut_os_string().push(".png");
+        outputs.push(path);
     }
     for (i, path) in outputs.iter().enumerate() {
         write::check(path)?;
-        if outputs[..i].iter().any(|other| files::same(other, path)) {
-            return Err(Error::input("this output is named twice").at(path).help("name it once"));
+        if outputs[..i].iter().any(|other| paths::is_same(other, path)) {
+            return Err(Error::input("this output is given twice").at(path).help("give it once"));
         }
     }
-    let formats = outputs.iter().map(|path| Format::of(path)).collect::<Result<Vec<_>>>()?;
-    if arguments.half && !formats.contains(&Format::Exr) {
-        return Err(Error::input("--half is about EXR, and no .exr is asked for")
-            .help("add `-o NAME.exr`, or leave --half out"));
-    }
-    let shown =
-        [("--exposure", arguments.exposure.is_some()), ("--tone", arguments.tone.is_some())];
-    if let Some((flag, _)) = shown.iter().find(|(_, given)| *given)
-        && formats.iter().all(|&format| format == Format::Exr)
-    {
-        return Err(Error::input(format!("{flag} is about PNG, and no .png is asked for"))
-            .help("an EXR always holds the radiance itself"));
-    }
-    if arguments.view != ViewName::Beauty {
-        let [exposure, tone] = shown;
-        let flags = [
-            exposure,
-            tone,
-            ("--half", arguments.half),
-            ("--spp", arguments.tracing.spp.is_some()),
-            ("--adaptive", arguments.adaptive.is_some()),
-            ("--threshold", arguments.threshold.is_some()),
-            ("--max-depth", arguments.tracing.max_depth.is_some()),
-        ];
-        if let Some((flag, _)) = flags.iter().find(|(_, given)| *given) {
-            return Err(Error::input(format!("{flag} says nothing to a view other than beauty"))
-                .help(format!("leave {flag} out: a view has one sample, 32 bits, raw values")));
-        }
-    }
+    let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
+    check_format_flags(arguments, &formats)?;
     Ok(outputs)
 }
 
-/// What in a picture is probably not what was meant, with the likely cause.
-fn oddities(scene: &Scene, camera: usize, view: View, done: &Done) -> Vec<String> {
-    let counts = &done.statistics.counts;
-    let mut found = Vec::new();
-    found.extend(not_finite(&counts.not_finite));
+/// Checks that flags for one format, or for the beauty view, have an effect.
+fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
+    let has_exr = formats.contains(&Format::Exr);
+    let has_other = formats.iter().any(|&format| format != Format::Exr);
+    let is_beauty = arguments.view == View::Beauty;
+    let for_exr = "applies to EXR, and no output is an .exr";
+    let not_for_exr = "does not apply to EXR, which stores the radiance itself";
+    let for_beauty = "applies to the beauty view only: other views are one sample of raw values";
+    let Render { half, exposure, tone, adaptive, threshold, .. } = arguments;
+    let flags = [
+        ("--half", *half, has_exr, for_exr),
+        ("--exposure", exposure.is_some(), has_other, not_for_exr),
+        ("--tone", tone.is_some(), has_other, not_for_exr),
+        ("--exposure", exposure.is_some(), is_beauty, for_beauty),
+        ("--tone", tone.is_some(), is_beauty, for_beauty),
+        ("--half", *half, is_beauty, for_beauty),
+        ("--spp", arguments.trace.spp.is_some(), is_beauty, for_beauty),
+        ("--adaptive", adaptive.is_some(), is_beauty, for_beauty),
+        ("--threshold", threshold.is_some(), is_beauty, for_beauty),
+        ("--max-depth", arguments.trace.max_depth.is_some(), is_beauty, for_beauty),
+    ];
+    for (flag, is_given, applies, reason) in flags {
+        if is_given && !applies {
+            return Err(Error::input(format!("{flag} {reason}")).help(format!("leave out {flag}")));
+        }
+    }
+    Ok(())
+}
+
+/// Returns a warning if the image is empty or black, with the likely cause.
+fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) -> Option<String> {
+    let counts = &totals.statistics.counts;
     if counts.rays.primary == 0 {
-        // Every frame was there already.
-    } else if counts.hits == 0 {
+        return None; // Every frame was skipped.
+    }
+    if counts.hits == 0 {
         let bounds = scene.bounds();
-        found.push(if bounds.is_empty() && scene.planes.is_empty() {
-            "the picture is empty: nothing stands in the scene".to_owned()
+        return Some(if bounds.is_empty() && scene.planes.is_empty() {
+            "the image is empty: there is nothing in the scene".to_owned()
         } else {
             format!(
-                "the picture is empty: the camera at {} sees none of the scene, which is about {}",
-                scene.cameras[camera].position,
+                "the image is empty: the camera at {} sees nothing of the scene, whose centre is {}",
+                scene.cameras[options.camera].position,
                 bounds.center()
             )
         });
-    } else if view == View::Beauty {
-        let emits = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
-        if scene.lights.is_empty() && !emits {
-            found.push(
-                "the scene has no light: what is hit stays black (add a [[light]], or `emission` \
-                 to a material)"
-                    .to_owned(),
-            );
-        } else if done.is_black {
-            found.push(
-                "the picture is wholly black: the lights may be behind the surfaces, in their \
-                 shadow, or too weak at this distance (try `--exposure 4`)"
-                    .to_owned(),
-            );
-        }
     }
-    found
+    if options.view != View::Beauty {
+        return None;
+    }
+    let is_emissive = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
+    let warning = if scene.lights.is_empty() && !is_emissive {
+        "the scene has no light, so surfaces are black (add a [[light]], or `emission` to a material)"
+    } else if totals.is_black {
+        "the image is completely black: the lights may be behind the surfaces, in their shadow, or \
+         too weak at this distance (try `--exposure 4`)"
+    } else {
+        return None;
+    };
+    Some(warning.to_owned())
 }
 
-/// Says of samples that are not finite how many they are and, for each cause, what helps.
-fn not_finite(counts: &NotFinite) -> impl Iterator<Item = String> {
+/// Returns a warning for each cause of samples that are not finite, with what helps.
+fn not_finite_warnings(counts: &NotFinite) -> impl Iterator<Item = String> {
     let NotFinite { light, surface, sum } = *counts;
     [
         (
             light,
             "the light that reaches a surface is not finite: a light with \
-             `falloff = \"inverse_square\"` stands on it or very near it",
+             `falloff = \"inverse_square\"` is on it or very close to it",
         ),
         (
             surface,
-            "a surface's colour or position is not finite: its material times its vertex colours \
-             is beyond f32, or it is met too far out on a plane",
+            "a surface's colour or position is not finite: the product of its material and vertex \
+             colours is beyond f32, or the hit is too far away on a plane",
         ),
         (
             sum,
-            "finite terms multiply or add up to more than f32 holds: lower the intensity of the \
-             lights, or what the materials reflect and emit",
+            "finite values multiply or add up to more than f32 can store: lower the intensity of \
+             the lights, or what the materials reflect and emit",
         ),
     ]
     .into_iter()
     .filter(|(count, _)| *count > 0)
-    .map(|(count, why)| format!("{count} samples were left out of the picture, because {why}"))
+    .map(|(count, cause)| format!("{count} samples were left out of the image, because {cause}"))
 }
 
-/// What determines the picture; never the time, the host, the threads or the backend.
-fn metadata(
-    scene: &Scene,
-    camera: usize,
-    view: View,
-    precision: Precision,
-) -> Vec<(String, String)> {
+/// Returns the image's metadata: all that determines it, and not the time, the host, the number of
+/// threads or the backend.
+fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
     let [width, height] = scene.film.size;
+    let camera = options.camera;
     let mut entries = vec![
         ("version", env!("CARGO_PKG_VERSION").to_owned()),
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
-    if let Some(Adaptive { max, threshold }) = scene.film.adaptive {
+    if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));
     }
@@ -313,8 +327,8 @@ fn metadata(
         ("max_depth", scene.film.max_depth.to_string()),
         ("cutoff", scene.film.cutoff.to_string()),
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
-        ("view", format!("{view:?}").to_lowercase()),
-        ("precision", precision.name().to_owned()),
+        ("view", format!("{:?}", options.view).to_lowercase()),
+        ("precision", options.precision.name().to_owned()),
         ("png_exposure", scene.film.exposure.to_string()),
         ("png_tone", format!("{:?}", scene.film.tone).to_lowercase()),
         ("png_transfer", format!("{:?}", scene.film.transfer).to_lowercase()),

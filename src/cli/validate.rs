@@ -1,78 +1,81 @@
-//! `envers validate`.
+//! The subcommand `envers validate`.
 
 use std::path::Path;
 
 use serde::Serialize;
 
 use crate::cli::args::Validate;
-use crate::cli::load::Input;
-use crate::cli::{Outcome, Verdict, files, output, report};
+use crate::cli::scene_args::SceneInput;
+use crate::cli::{Outcome, messages, output, paths};
+use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::{Scene, Transfer, precision_warnings};
-use crate::write::{self, Settings};
+use crate::scene::Scene;
 
-/// `validate --json`.
+/// The result of a validation: `validate --json`.
 #[derive(Serialize)]
-struct Outcomes<'a> {
+struct ValidationResult<'a> {
     #[serde(flatten)]
-    found: &'a Validation,
-    /// The command that traces the worst ray again; null where there is none.
+    validation: &'a Validation,
+    /// The command that traces the worst ray again; null if there is no such ray.
     replay: Option<String>,
     warnings: &'a [String],
 }
 
-pub fn run(arguments: &Validate) -> Outcome {
+pub fn run(arguments: &Validate) -> Result<Outcome> {
     output::check_json(arguments.json.as_ref())?;
-    output::check_png(arguments.heatmap.as_ref())?;
-    let Input { scene, report: loaded, camera } = arguments.tracing.load()?;
+    output::check_heatmap(arguments.heatmap.as_ref())?;
+    let input = &arguments.trace.input;
+    let SceneInput { scene, report, camera } = arguments.trace.load()?;
+    let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
         return replay(arguments, &scene, ray);
     }
-    files::check_not_a_texture(&scene, &arguments.heatmap)?;
-    let precision = Precision::from(arguments.tracing.precision);
-    let mut warnings = loaded.warnings.clone();
-    warnings.extend(precision_warnings::precision_warnings(&scene, precision == Precision::Fast));
-    if !arguments.tracing.quiet {
-        warnings.iter().for_each(|w| report::warning(w));
+    paths::check_not_a_texture(&scene, &arguments.heatmap)?;
+    let precision = arguments.trace.precision;
+    let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
+    if !input.quiet {
+        warnings.iter().for_each(|w| messages::warning(w));
     }
-    let found = measure::validate(&scene, precision, camera, arguments.tracing.threads())?;
-    let again = found.worst.as_ref().map(|w| command(&arguments.tracing.scene, &w.ray));
+
+    let validation = measure::validate(&scene, precision, camera, input.threads())?;
+    let worst = validation.worst.as_ref();
+    let replay = worst.map(|worst| replay_command(&input.scene, &worst.ray));
     if output::stdout_is_free(arguments.json.as_ref()) {
-        let mut text = format!("{found}\n");
-        if let Some((worst, again)) = found.worst.as_ref().zip(again.as_ref()) {
-            text += &format!("{worst}\n  {again}\n");
+        let mut text = format!("{validation}\n");
+        if let Some((worst, replay)) = worst.zip(replay.as_ref()) {
+            text += &format!("{worst}\n  {replay}\n");
         }
         output::print(&text)?;
     }
     if let Some(path) = &arguments.json {
-        output::write_json(path, &Outcomes { found: &found, replay: again, warnings: &warnings })?;
+        let result = ValidationResult { validation: &validation, replay, warnings: &warnings };
+        output::write_json(path, &result)?;
     }
     if let Some(path) = &arguments.heatmap {
-        let settings = Settings { transfer: Transfer::None, ..Settings::default() };
-        write::write(&found.heatmap, path, &settings)?;
+        output::write_heatmap(path, &validation.heatmap)?;
     }
-    Ok(if found.passed { Verdict::Good } else { Verdict::Bad })
+    Ok(Outcome::of_check(validation.passed))
 }
 
-/// `envers validate --ray`: what everyone says of one ray.
-fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Outcome {
-    let found = measure::replay(scene, ray)?;
+/// Traces one ray with every intersector: `envers validate --ray`.
+fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Result<Outcome> {
+    let replay = measure::replay(scene, ray)?;
     if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&found.to_string())?;
+        output::print(&replay.to_string())?;
     }
     if let Some(path) = &arguments.json {
-        output::write_json(path, &found)?;
+        output::write_json(path, &replay)?;
     }
-    Ok(Verdict::Good)
+    Ok(Outcome::Success)
 }
 
-/// The command that traces a ray again, as a shell takes it.
-fn command(scene: &Path, ray: &str) -> String {
+/// Returns the command that traces a ray again, quoted for a shell.
+fn replay_command(scene: &Path, ray: &str) -> String {
     let scene = scene.display().to_string();
-    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:@%".contains(c);
-    let scene = if scene.chars().all(plain) {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:@%".contains(c);
+    let scene = if scene.chars().all(is_plain) {
         scene
     } else {
         format!("'{}'", scene.replace('\'', r"'\''"))
@@ -86,7 +89,7 @@ mod tests {
 
     #[test]
     fn command_quotes_a_path_that_a_shell_would_split() {
-        let of = |path| command(Path::new(path), "-1,0,0,0,0,1");
+        let of = |path| replay_command(Path::new(path), "-1,0,0,0,0,1");
         assert_eq!(of("a/b.toml"), "envers validate a/b.toml --ray -1,0,0,0,0,1");
         assert_eq!(of("it's a.glb"), r"envers validate 'it'\''s a.glb' --ray -1,0,0,0,0,1");
     }

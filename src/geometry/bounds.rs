@@ -1,4 +1,4 @@
-//! Axis-aligned boxes.
+//! The axis-aligned bounding box.
 
 use glam::{DAffine3, DVec3};
 
@@ -12,27 +12,27 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box that holds nothing.
+    /// The box that contains nothing.
     pub const EMPTY: Self = Self { lower: DVec3::INFINITY, upper: DVec3::NEG_INFINITY };
 
-    /// The least box around some points.
-    pub fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, Self::with)
+    /// The smallest box around some points.
+    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, Self::union_point)
     }
 
-    /// The least box around this one and a point.
+    /// The smallest box around this one and a point.
     #[inline]
-    pub fn with(self, point: DVec3) -> Self {
+    fn union_point(self, point: DVec3) -> Self {
         Self { lower: self.lower.min(point), upper: self.upper.max(point) }
     }
 
-    /// The least box around both.
+    /// The smallest box around both.
     #[inline]
     pub fn union(self, other: Self) -> Self {
         Self { lower: self.lower.min(other.lower), upper: self.upper.max(other.upper) }
     }
 
-    /// Whether it holds no point.
+    /// True if the box contains no point.
     pub fn is_empty(&self) -> bool {
         !self.lower.cmple(self.upper).all()
     }
@@ -52,30 +52,30 @@ impl Bounds {
         if self.is_empty() { 0.0 } else { self.size().length() }
     }
 
-    /// Half the surface, the measure that the surface-area heuristic needs; 0 for an empty box.
+    /// Half the surface area, for the surface-area heuristic; 0 for an empty box.
     #[inline]
     pub fn half_area(&self) -> f64 {
         let s = self.size().max(DVec3::ZERO);
         s.x * s.y + s.y * s.z + s.z * s.x
     }
 
-    /// The box moved outward by `by` on each side.
+    /// The box enlarged by `margin` on each side.
     #[inline]
-    pub fn padded(self, by: f64) -> Self {
-        Self { lower: self.lower - by, upper: self.upper + by }
+    pub fn padded(self, margin: f64) -> Self {
+        Self { lower: self.lower - margin, upper: self.upper + margin }
     }
 
-    /// The largest absolute coordinate of any of its points; 0 for an empty box.
+    /// The largest absolute coordinate of any point of the box; 0 for an empty box.
     pub fn max_abs(&self) -> f64 {
         if self.is_empty() { 0.0 } else { self.lower.abs().max(self.upper.abs()).max_element() }
     }
 
-    /// The least box around the transformed box.
+    /// The smallest box around the transformed box.
     pub fn transformed(&self, transform: &DAffine3) -> Self {
         if self.is_empty() {
             return Self::EMPTY;
         }
-        Self::of((0..8).map(|i| {
+        Self::from_points((0..8).map(|i| {
             let pick = |bit: usize, low: f64, high: f64| if i & bit == 0 { low } else { high };
             transform.transform_point3(DVec3::new(
                 pick(1, self.lower.x, self.upper.x),

@@ -1,32 +1,32 @@
-//! Double-double numbers: an unevaluated sum of two f64s, about 106 bits.
+//! Double-double arithmetic: numbers that are the unevaluated sum of two f64s, about 106 bits.
 //!
 //! The algorithms and their bounds are those of Joldes, Muller and Popescu, *Tight and Rigorous
 //! Error Bounds for Basic Building Blocks of Double-Word Arithmetic* (ACM TOMS 2017). Sums and
 //! differences of two f64s are exact, and so are products that neither overflow nor underflow.
 //! The operators `+`, `-` and `*` have a relative error below [`OMEGA`].
 //!
-//! `mul_add` stands here alone: the rounding error of a product is a float, so that any machine
-//! gives the same one.
+//! This is the only file that uses `mul_add`: the rounding error of a product is itself a float, so
+//! that every machine computes the same one.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// The unit roundoff of f64, 2⁻⁵³.
 pub const U: f64 = f64::EPSILON / 2.0;
 
-/// Bound of the relative error of one operation: 8 u², where the paper's worst is 7 u².
+/// The bound of the relative error of one operation: 8 u², where the paper's worst is 7 u².
 pub const OMEGA: f64 = 8.0 * U * U;
 
-/// `hi + lo`, with |lo| at most half an ulp of `hi`.
+/// A double-double number: `hi + lo`, with |lo| at most half an ulp of `hi`.
 #[derive(Clone, Copy, Debug)]
 pub struct DoubleDouble {
     /// The sum, rounded to nearest.
     pub hi: f64,
-    /// What that leaves out.
+    /// The rounding error of `hi`.
     pub lo: f64,
 }
 
 impl DoubleDouble {
-    /// a + b, exactly (Knuth's two-sum).
+    /// The exact sum a + b (Knuth's two-sum).
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Self {
         let hi = a + b;
@@ -34,27 +34,27 @@ impl DoubleDouble {
         Self { hi, lo: (a - (hi - b_part)) + (b - b_part) }
     }
 
-    /// a − b, exactly.
+    /// The exact difference a − b.
     #[inline(always)]
     pub fn difference(a: f64, b: f64) -> Self {
         Self::sum(a, -b)
     }
 
-    /// a · b, exactly.
+    /// The exact product a · b.
     #[inline(always)]
     pub fn product(a: f64, b: f64) -> Self {
         let hi = a * b;
         Self { hi, lo: a.mul_add(b, -hi) }
     }
 
-    /// a + b, exactly, where |a| ≥ |b| or a = 0 (Dekker's fast two-sum).
+    /// The exact sum a + b where |a| ≥ |b| or a = 0 (Dekker's fast two-sum).
     #[inline(always)]
-    pub fn ordered_sum(a: f64, b: f64) -> Self {
+    fn ordered_sum(a: f64, b: f64) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }
     }
 
-    /// Whether every number within `error` of this one rounds to `hi`, by Ziv's test.
+    /// True if every number within `error` of this one rounds to `hi`, by Ziv's test.
     #[inline(always)]
     pub fn rounds_to_hi(self, error: f64) -> bool {
         // The second term makes up for the rounding of the sums with `lo`.
@@ -127,7 +127,7 @@ impl Mul<f64> for DoubleDouble {
     }
 }
 
-/// The scalar product of a vector of doubles with one of doubles or f64s.
+/// The dot product of a vector of double-doubles with one of double-doubles or f64s.
 #[inline(always)]
 pub fn dot<T: Copy>(a: [DoubleDouble; 3], b: [T; 3]) -> DoubleDouble
 where
@@ -136,7 +136,7 @@ where
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product of a vector of doubles with one of doubles or f64s.
+/// The cross product of a vector of double-doubles with one of double-doubles or f64s.
 #[inline(always)]
 pub fn cross<T: Copy>(a: [DoubleDouble; 3], b: [T; 3]) -> [DoubleDouble; 3]
 where
@@ -145,7 +145,7 @@ where
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// a − b for each component, exactly.
+/// The exact difference a − b of two vectors.
 #[inline(always)]
 pub fn difference(a: glam::DVec3, b: glam::DVec3) -> [DoubleDouble; 3] {
     [
@@ -155,8 +155,8 @@ pub fn difference(a: glam::DVec3, b: glam::DVec3) -> [DoubleDouble; 3] {
     ]
 }
 
-/// Whether x is so far from both ends of the exponents (2⁻²⁰⁰ ≤ x ≤ 2²⁰⁰) that neither a few
-/// products of such numbers nor the rounding errors of those can overflow or underflow.
+/// True if 2⁻²⁰⁰ ≤ x ≤ 2²⁰⁰: neither a few products of such numbers nor the rounding errors of these
+/// products can overflow or underflow.
 #[inline(always)]
 pub fn in_range(x: f64) -> bool {
     const END: f64 = f64::from_bits((1023 + 200) << 52);

@@ -1,5 +1,5 @@
-//! Exact sums and products of floats, and numbers rounded by bisection: what the tests hold the
-//! certified results to. It shares nothing with what it judges but the big integers.
+//! The reference arithmetic of the tests: exact sums and products of floats, and rounding by
+//! bisection. It shares only the big integers with the certified functions that it checks.
 
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Sub};
@@ -7,7 +7,7 @@ use std::ops::{Add, Mul, Sub};
 use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 
-/// m · 2ᵉ.
+/// A dyadic rational, m · 2ᵉ.
 #[derive(Clone, Debug)]
 pub struct Dyadic {
     m: BigInt,
@@ -78,14 +78,14 @@ pub fn dot(a: &Vector, b: &Vector) -> Dyadic {
     x + y + z
 }
 
-/// det(a, b, c), row by row.
+/// The determinant of the matrix with rows a, b and c.
 pub fn determinant(a: &Vector, b: &Vector, c: &Vector) -> Dyadic {
     let minor = |i: usize, j: usize| b[i].clone() * c[j].clone() - b[j].clone() * c[i].clone();
     dot(a, &[minor(1, 2), minor(2, 0), minor(0, 1)])
 }
 
-/// The positive number that `compare` compares with each of those it is given, rounded to nearest,
-/// ties to even, but neither to 0 nor to infinity; and how it compares with a limit.
+/// Returns the f64 nearest to a positive number, ties to even, but neither 0 nor infinity. The
+/// number is given by `compare`, which compares it with its argument.
 pub fn round(compare: impl Fn(&Dyadic) -> Ordering) -> f64 {
     let (mut low, mut high) = (0u64, f64::MAX.to_bits() + 1);
     // The number is at least the float with the bits `low` and below that with the bits `high`.

@@ -1,6 +1,6 @@
-//! What a ray met.
+//! The hit of a ray, and the ids of primitives.
 
-/// The set that a primitive belongs to.
+/// The geometry that a primitive belongs to.
 ///
 /// The order of the variants is part of the tie rule: of two hits at the same `t` the one with
 /// the lesser ([`Geometry`], primitive, instance) counts.
@@ -14,58 +14,58 @@ pub enum Geometry {
     Mesh(u32),
 }
 
-/// One sphere, plane, or triangle of an instance.
+/// The id of one primitive: a sphere, a plane, or a triangle of an instance.
 ///
 /// Ordered by geometry, then primitive, then instance: the order that decides between hits at
 /// the same distance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PrimitiveId {
-    /// The set it belongs to.
+    /// The geometry that it belongs to.
     pub geometry: Geometry,
-    /// Its index in that set.
+    /// Its index in that geometry.
     pub primitive: u32,
     /// The index in `Scene::instances` for triangles; 0 for spheres and planes.
     pub instance: u32,
 }
 
 impl PrimitiveId {
-    /// The sphere with index `primitive`.
+    /// The id of the sphere with index `primitive`.
     pub const fn sphere(primitive: u32) -> Self {
         Self { geometry: Geometry::Spheres, primitive, instance: 0 }
     }
 
-    /// The plane with index `primitive`.
+    /// The id of the plane with index `primitive`.
     pub const fn plane(primitive: u32) -> Self {
         Self { geometry: Geometry::Planes, primitive, instance: 0 }
     }
 
-    /// Triangle `primitive` of mesh `mesh`, as it stands in `instance`.
+    /// The id of triangle `primitive` of mesh `mesh` in instance `instance`.
     pub const fn triangle(mesh: u32, primitive: u32, instance: u32) -> Self {
         Self { geometry: Geometry::Mesh(mesh), primitive, instance }
     }
 }
 
-/// The closest intersection of a ray, and nothing that can be worked out from it later.
+/// The intersection of a ray with a primitive, without anything that can be derived from it later.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance in units of the ray's |direction|, above 0.
+    /// The distance in units of the ray's |direction|, above 0.
     pub t: f64,
-    /// Barycentric weight of a triangle's second vertex, in \[0, 1\]; 0 for spheres and planes.
+    /// The barycentric weight of a triangle's second vertex, in \[0, 1\]; 0 for spheres and planes.
     pub u: f64,
-    /// Barycentric weight of a triangle's third vertex, in \[0, 1\]; 0 for spheres and planes.
+    /// The barycentric weight of a triangle's third vertex, in \[0, 1\]; 0 for spheres and planes.
     pub v: f64,
-    /// What was hit.
+    /// The primitive that was hit.
     pub id: PrimitiveId,
 }
 
 impl Hit {
-    /// Whether this hit counts rather than `other`: the least (t, geometry, primitive, instance).
+    /// True if this hit comes before `other`, by (t, geometry, primitive, instance).
     #[inline]
     pub fn is_before(&self, other: &Hit) -> bool {
         self.t < other.t || (self.t == other.t && self.id < other.id)
     }
 
-    /// Keeps in `best` whichever of the two counts.
+    /// Replaces `best` by `candidate` if that comes first.
     #[inline]
     pub fn keep_closest(best: &mut Option<Hit>, candidate: Hit) {
         if best.is_none_or(|b| candidate.is_before(&b)) {

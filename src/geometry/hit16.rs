@@ -1,34 +1,31 @@
-//! What many rays hit, sixteen side by side.
+//! Hits in sixteen lanes, and batches of them.
 
 use crate::geometry::{Geometry, Hit, LANES, Lanes, PrimitiveId};
 
-/// Which primitives sixteen ids name, or none; see [`PrimitiveId`].
-#[derive(Clone, Debug)]
+/// Sixteen primitive ids side by side, any of which may name no primitive; see [`PrimitiveId`].
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct PrimitiveId16 {
-    /// The geometries: [`PrimitiveId16::NONE`], [`PrimitiveId16::SPHERES`], [`PrimitiveId16::PLANES`], or [`PrimitiveId16::MESHES`] and the
-    /// mesh's index.
+    /// The geometries: [`PrimitiveId16::NONE`], [`PrimitiveId16::SPHERES`],
+    /// [`PrimitiveId16::PLANES`], or [`PrimitiveId16::MESHES`] plus the mesh's index.
     pub geometry: Lanes<u32>,
-    /// The primitives' indices.
+    /// The indices of the primitives.
     pub primitive: Lanes<u32>,
-    /// The instances' indices; 0 where it is no triangle.
+    /// The indices of the instances; 0 for anything but a triangle.
     pub instance: Lanes<u32>,
 }
 
 impl PrimitiveId16 {
-    /// No primitive.
+    /// The geometry code of no primitive.
     pub const NONE: u32 = 0;
-    /// A sphere.
+    /// The geometry code of a sphere.
     pub const SPHERES: u32 = 1;
-    /// A plane.
+    /// The geometry code of a plane.
     pub const PLANES: u32 = 2;
-    /// A triangle of the first mesh.
+    /// The geometry code of a triangle of the first mesh; later meshes follow.
     pub const MESHES: u32 = 3;
 
-    pub(super) const NOTHING: Self =
-        Self { geometry: [0; LANES], primitive: [0; LANES], instance: [0; LANES] };
-
-    /// The id in lane `i`.
+    /// The id in lane `i`, if there is one.
     #[inline(always)]
     pub fn get(&self, i: usize) -> Option<PrimitiveId> {
         let geometry = match self.geometry[i] {
@@ -40,7 +37,7 @@ impl PrimitiveId16 {
         Some(PrimitiveId { geometry, primitive: self.primitive[i], instance: self.instance[i] })
     }
 
-    /// Sets lane `i`.
+    /// Sets the id in lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, id: Option<PrimitiveId>) {
         self.geometry[i] = match id.map(|id| id.geometry) {
@@ -54,63 +51,63 @@ impl PrimitiveId16 {
     }
 }
 
-/// What sixteen rays hit; see [`Hit`].
-#[derive(Clone, Debug)]
+/// The hits of sixteen rays side by side; see [`Hit`].
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Hit16 {
-    /// Distances; infinite where nothing is hit.
+    /// The distances; infinite where nothing is hit.
     pub t: Lanes<f64>,
-    /// Weights of triangles' second vertices; any number where nothing is hit.
+    /// The weights of the triangles' second vertices; any number where nothing is hit.
     pub u: Lanes<f64>,
-    /// Weights of triangles' third vertices; any number where nothing is hit.
+    /// The weights of the triangles' third vertices; any number where nothing is hit.
     pub v: Lanes<f64>,
-    /// What is hit.
+    /// The primitives that are hit.
     pub id: PrimitiveId16,
 }
 
 impl Hit16 {
-    const NOTHING: Self = Self {
-        t: [f64::INFINITY; LANES],
-        u: [0.0; LANES],
-        v: [0.0; LANES],
-        id: PrimitiveId16::NOTHING,
-    };
-
-    /// The hit in lane `i`.
+    /// The hit in lane `i`, if there is one.
     #[inline(always)]
     pub fn hit(&self, i: usize) -> Option<Hit> {
         self.id.get(i).map(|id| Hit { t: self.t[i], u: self.u[i], v: self.v[i], id })
     }
 
-    /// Keeps plane `index` from lane `at` on where it counts rather than what is there; `ts` are its
-    /// distances, no number where it is not met.
+    /// Replaces the hits of `W` lanes from lane `start` on by hits on spheres or planes where these
+    /// come first. `geometry` is the code of either, and `ts` are the distances, NaN for a miss. No
+    /// lane may hold a hit on this geometry at the same distance.
     #[inline(always)]
-    pub fn merge_plane<const W: usize>(&mut self, index: u32, ts: &[f64; W], at: usize) {
+    pub fn merge_closer<const W: usize>(
+        &mut self,
+        geometry: u32,
+        primitive: &[u32; W],
+        ts: &[f64; W],
+        start: usize,
+    ) {
         for i in 0..W {
-            let (t, best) = (ts[i], self.t[at + i]);
-            // Of two at the same distance a sphere counts before a plane, and that before a mesh.
-            let first =
-                (t < best) | ((t == best) & (self.id.geometry[at + i] >= PrimitiveId16::MESHES));
-            self.t[at + i] = if first { t } else { best };
-            self.u[at + i] = if first { 0.0 } else { self.u[at + i] };
-            self.v[at + i] = if first { 0.0 } else { self.v[at + i] };
-            let id = &mut self.id;
-            id.geometry[at + i] = if first { PrimitiveId16::PLANES } else { id.geometry[at + i] };
-            id.primitive[at + i] = if first { index } else { id.primitive[at + i] };
-            id.instance[at + i] = if first { 0 } else { id.instance[at + i] };
+            let (lane, t, id) = (start + i, ts[i], &mut self.id);
+            let best = self.t[lane];
+            // The tie rule: a sphere comes before a plane, and a plane before a mesh.
+            let first = (t < best) | ((t == best) & (id.geometry[lane] >= PrimitiveId16::MESHES));
+            // Selects rather than a branch, so that the loop vectorises.
+            self.t[lane] = if first { t } else { best };
+            self.u[lane] = if first { 0.0 } else { self.u[lane] };
+            self.v[lane] = if first { 0.0 } else { self.v[lane] };
+            id.geometry[lane] = if first { geometry } else { id.geometry[lane] };
+            id.primitive[lane] = if first { primitive[i] } else { id.primitive[lane] };
+            id.instance[lane] = if first { 0 } else { id.instance[lane] };
         }
     }
 
-    /// Makes `W` lanes from lane `at` on hit nothing.
+    /// Makes `W` lanes from lane `start` on miss.
     #[inline(always)]
-    pub fn clear<const W: usize>(&mut self, at: usize) {
-        for i in at..at + W {
+    pub fn clear<const W: usize>(&mut self, start: usize) {
+        for i in start..start + W {
             self.t[i] = f64::INFINITY;
             self.id.geometry[i] = PrimitiveId16::NONE;
         }
     }
 
-    /// Sets lane `i`.
+    /// Sets the hit in lane `i`.
     #[inline(always)]
     pub fn set(&mut self, i: usize, hit: Option<Hit>) {
         self.id.set(i, hit.map(|hit| hit.id));
@@ -120,7 +117,7 @@ impl Hit16 {
     }
 }
 
-/// What a batch of rays hits. In the last sixteen the lanes beyond its end hit nothing.
+/// The hits of a batch of rays. In the last block the lanes beyond the batch's end miss.
 #[derive(Clone, Debug, Default)]
 pub struct HitBatch {
     blocks: Vec<Hit16>,
@@ -128,37 +125,37 @@ pub struct HitBatch {
 }
 
 impl HitBatch {
-    /// Makes it `count` hits on nothing.
+    /// Resizes the batch to `count` misses.
     pub fn reset_to_misses(&mut self, count: usize) {
-        self.resize(count).iter_mut().for_each(|found| found.clear::<LANES>(0));
+        self.resize(count).iter_mut().for_each(|block| block.clear::<LANES>(0));
     }
 
-    /// Makes it `count` hits, to be set to whatever they are, sixteen by sixteen.
+    /// Resizes the batch to `count` hits of any value, and returns the blocks to be filled.
     pub fn resize(&mut self, count: usize) -> &mut [Hit16] {
         let blocks = count.div_ceil(LANES);
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Hit16::NOTHING);
+            self.blocks.resize(blocks, Hit16::default());
         }
         self.len = count;
         let all = &mut self.blocks[..blocks];
         if let Some(last) = all.last_mut() {
-            // Narrow packets need not reach the lanes beyond the batch's end.
+            // Packets narrower than a block may leave lanes beyond the batch's end untouched.
             last.clear::<LANES>(0);
         }
         all
     }
 
-    /// How many there are.
+    /// The number of rays.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// True if there are no rays.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// What ray `i` hits.
+    /// The hit of ray `i`, if there is one.
     ///
     /// # Panics
     /// When there is no ray `i`.
@@ -168,7 +165,7 @@ impl HitBatch {
         self.blocks[i / LANES].hit(i % LANES)
     }
 
-    /// Sets what ray `i` hits.
+    /// Sets the hit of ray `i`.
     ///
     /// # Panics
     /// When there is no ray `i`.
@@ -178,26 +175,24 @@ impl HitBatch {
         self.blocks[i / LANES].set(i % LANES, hit);
     }
 
-    /// How many rays hit anything.
+    /// The number of rays that hit something.
     pub fn count(&self) -> usize {
-        let hits = |found: &Hit16| -> usize {
-            found.t.iter().map(|&t| usize::from(t < f64::INFINITY)).sum()
-        };
-        self.blocks().iter().map(hits).sum()
+        let distances = self.blocks().iter().flat_map(|block| block.t);
+        distances.filter(|&t| t < f64::INFINITY).count()
     }
 
-    /// All hits.
+    /// An iterator over the hits of all rays.
     pub fn iter(&self) -> impl Iterator<Item = Option<Hit>> {
         (0..self.len).map(|i| self.get(i))
     }
 
-    /// The sixteens, of which the last may be partly filled.
+    /// The blocks of sixteen hits; the last may be partly filled.
     #[inline(always)]
     pub fn blocks(&self) -> &[Hit16] {
         &self.blocks[..self.len.div_ceil(LANES)]
     }
 
-    /// The sixteens, to be set.
+    /// The blocks of sixteen hits, mutable.
     #[inline(always)]
     pub fn blocks_mut(&mut self) -> &mut [Hit16] {
         &mut self.blocks[..self.len.div_ceil(LANES)]

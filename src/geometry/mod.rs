@@ -1,8 +1,19 @@
-//! Intersection mathematics: pure functions in f64 that trace, load and shade nothing.
+//! The intersection mathematics: rays, hits, bounding boxes, and pure functions in f64 that
+//! intersect a ray with a sphere, a plane or a triangle.
 //!
-//! Both backends call these functions, so that a hit is the same number whoever found its
-//! primitive. None of them uses a fused multiply-add: the results must not depend on whether the
-//! compiler vectorised the caller.
+//! All backends call these functions, so that a hit has the same distance whichever of them found
+//! its primitive. None uses a fused multiply-add: results must not depend on whether the compiler
+//! vectorised the caller. The `certified` submodules hold the same intersections in exact
+//! arithmetic.
+//!
+//! ```
+//! use envers::geometry::{Ray, plane};
+//! use glam::DVec3;
+//!
+//! let ray = Ray::new(DVec3::Y * 3.0, DVec3::new(1.0, -2.0, 0.0));
+//! let t = plane::intersect(DVec3::ZERO, DVec3::Y, ray.origin, ray.direction).unwrap();
+//! assert_eq!(ray.position(t), DVec3::X * 1.5);
+//! ```
 
 mod bounds;
 mod double_double;
@@ -23,4 +34,4 @@ pub use estimate::Estimate;
 pub use hit::{Geometry, Hit, PrimitiveId};
 pub use hit16::{Hit16, HitBatch, PrimitiveId16};
 pub use ray::{Continuation, Departure, Ray, Side};
-pub use ray16::{Departure16, LANES, Lanes, Ray16, RayBatch};
+pub use ray16::{LANES, Lanes, Ray16, RayBatch};

@@ -1,22 +1,22 @@
-//! A ray, and the surface it left.
+//! The ray, and the surface that it was spawned on.
 
 use glam::DVec3;
 
 use crate::geometry::{Hit, PrimitiveId};
 
-/// The side of a surface: the geometric normal's, or the other one.
+/// The side of a surface: the front, to which its geometric normal points, or the back.
 ///
 /// A sphere's geometric normal points outward, so `Front` is outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The side that the geometric normal points to.
     Front,
-    /// The other side; the inside of a sphere.
+    /// The side that the geometric normal points away from; the inside of a sphere.
     Back,
 }
 
 impl Side {
-    /// The other side.
+    /// Returns the other side.
     pub fn opposite(self) -> Self {
         match self {
             Side::Front => Side::Back,
@@ -25,33 +25,34 @@ impl Side {
     }
 }
 
-/// What a ray was spawned from, so that it is not stopped by the very surface it leaves.
+/// The primitive that a ray was spawned on and the side into which it goes, so that the ray does not
+/// hit the surface that it leaves.
 ///
 /// No distance is skipped: the primitive is left out by identity, and a sphere that is left
-/// toward its inside is still met at its far root.
+/// toward its inside is still hit at its far root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Departure {
-    /// The primitive that was left.
+    /// The primitive that the ray leaves.
     pub id: PrimitiveId,
     /// The side into which the ray goes.
     pub side: Side,
 }
 
-/// How far a ray has come that went straight through surfaces.
+/// The progress of a ray that went straight through surfaces.
 ///
-/// It keeps its origin and direction, and so meets what lies beyond at the very `t` at which it
-/// would if nothing had stood there.
+/// Such a ray keeps its origin and direction, and so hits what lies beyond at the very `t` at which
+/// it would if nothing had been in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Continuation {
-    /// The `t` of the last surface that it went through.
+    /// The `t` of the last surface that the ray went through.
     pub t: f64,
-    /// That surface.
+    /// The surface at that `t`, and the side on which the ray went on.
     pub crossed: Departure,
 }
 
 impl Continuation {
-    /// Whether a crossing at `t` lies behind, in the order in which hits count: by `t`, then by
-    /// what is hit. Of the sphere that was gone into, only the far side lies ahead.
+    /// True if a crossing at `t` is already behind the ray, in the order in which hits count: by
+    /// `t`, then by id. Of a sphere that the ray entered, only the far side is ahead.
     #[inline]
     pub fn excludes(&self, t: f64, id: PrimitiveId) -> bool {
         t < self.t || (t == self.t && id <= self.crossed.id)
@@ -60,23 +61,23 @@ impl Continuation {
 
 /// A half-line from `origin` along `direction`, up to `tmax`.
 ///
-/// It meets what it crosses at `t` with 0 < t < `tmax`, both strictly.
+/// It hits what it crosses at `t` with 0 < t < `tmax`, both strictly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, in world space.
+    /// The origin, in world space.
     pub origin: DVec3,
-    /// Where it goes, of any length but zero; `t` is in units of that length.
+    /// The direction, of any length but zero; `t` is in units of that length.
     pub direction: DVec3,
-    /// Where it ends, in units of |direction|; infinite for rays that see, 1 for shadow rays.
+    /// The end, in units of |direction|; infinite for primary and secondary rays, 1 for shadow rays.
     pub tmax: f64,
-    /// The surface it left, if any.
+    /// The surface that it was spawned on, if any.
     pub departure: Option<Departure>,
-    /// How far it has come, if it went straight through a surface: it meets only what lies ahead.
+    /// Its progress, if it went straight through a surface: it hits only what lies ahead.
     pub continuation: Option<Continuation>,
 }
 
 impl Ray {
-    /// An unbounded ray that left no surface.
+    /// A ray without end, spawned on no surface.
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
         Self { origin, direction, tmax: f64::INFINITY, departure: None, continuation: None }
@@ -84,23 +85,23 @@ impl Ray {
 
     /// The segment from `origin` to `target`, both ends excluded.
     pub fn segment(origin: DVec3, target: DVec3) -> Self {
-        Self { origin, direction: target - origin, tmax: 1.0, departure: None, continuation: None }
+        Self { tmax: 1.0, ..Self::new(origin, target - origin) }
     }
 
-    /// The same ray beyond a surface that it met, on whose `side` it goes on.
+    /// The continuation of this ray beyond a surface that it hit, on whose `side` it goes on.
     pub fn continue_past(&self, hit: &Hit, side: Side) -> Self {
-        let through = Departure { id: hit.id, side };
-        Self { continuation: Some(Continuation { t: hit.t, crossed: through }), ..*self }
+        let crossed = Departure { id: hit.id, side };
+        Self { continuation: Some(Continuation { t: hit.t, crossed }), ..*self }
     }
 
-    /// The `t` up to which it has come.
+    /// The `t` beyond which hits count: 0, or that of the last surface it went through.
     pub fn start_t(&self) -> f64 {
-        self.continuation.map_or(0.0, |past| past.t)
+        self.continuation.map_or(0.0, |continuation| continuation.t)
     }
 
     /// The point at `t`.
     #[inline]
-    pub fn at(&self, t: f64) -> DVec3 {
+    pub fn position(&self, t: f64) -> DVec3 {
         self.origin + self.direction * t
     }
 }

@@ -1,91 +1,86 @@
-//! Many rays, sixteen side by side: as processors and packet tracers want them.
+//! Rays in sixteen lanes, component by component, and batches of them.
 
 use glam::DVec3;
 
 use crate::geometry::{Continuation, Departure, PrimitiveId16, Ray, Side};
 
-/// How many rays stand side by side: a multiple of every packet width there is.
+/// The number of lanes of a block: a multiple of every packet width.
 pub const LANES: usize = 16;
 
-/// One number for each of sixteen rays.
+/// One value for each of sixteen lanes.
 pub type Lanes<T> = [T; LANES];
 
-/// Sixteen half-lines; see [`Ray`].
-#[derive(Clone, Debug)]
+/// Sixteen rays side by side, without their departures; see [`Ray`].
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Ray16 {
-    /// Where they start, axis by axis.
+    /// The origins, axis by axis.
     pub origin: [Lanes<f64>; 3],
-    /// Where they go, axis by axis.
+    /// The directions, axis by axis.
     pub direction: [Lanes<f64>; 3],
-    /// Where they end.
+    /// The ends.
     pub tmax: Lanes<f64>,
 }
 
 impl Ray16 {
-    const NONE: Self =
-        Self { origin: [[0.0; LANES]; 3], direction: [[0.0; LANES]; 3], tmax: [0.0; LANES] };
-
-    /// Origin and direction in lane `i`.
+    /// The origin and the direction in lane `i`.
     #[inline(always)]
     pub fn origin_and_direction(&self, i: usize) -> (DVec3, DVec3) {
-        let at = |v: &[Lanes<f64>; 3]| DVec3::new(v[0][i], v[1][i], v[2][i]);
-        (at(&self.origin), at(&self.direction))
+        let vector = |v: &[Lanes<f64>; 3]| DVec3::new(v[0][i], v[1][i], v[2][i]);
+        (vector(&self.origin), vector(&self.direction))
     }
 }
 
-/// What sixteen rays left; see [`Departure`].
-#[derive(Clone, Debug)]
+/// The departures of sixteen rays side by side; see [`Departure`].
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Departure16 {
     /// The primitives.
     pub id: PrimitiveId16,
-    /// Whether each went to the side that the geometric normal does not point to.
+    /// True where the ray goes into the back side.
     pub is_back: Lanes<bool>,
 }
 
 impl Departure16 {
-    const NOTHING: Self = Self { id: PrimitiveId16::NOTHING, is_back: [false; LANES] };
-
-    fn set(&mut self, i: usize, from: Option<Departure>) {
-        self.id.set(i, from.map(|from| from.id));
-        self.is_back[i] = from.is_some_and(|from| from.side == Side::Back);
+    fn set(&mut self, i: usize, departure: Option<Departure>) {
+        self.id.set(i, departure.map(|d| d.id));
+        self.is_back[i] = departure.is_some_and(|d| d.side == Side::Back);
     }
 }
 
-/// A batch of rays. Its memory is kept when it is cleared.
+/// A batch of rays, in blocks of sixteen lanes. Clearing it keeps its memory.
 ///
-/// In the last sixteen the lanes beyond the batch's end hold any numbers. A ray whose `tmax` is not
-/// above 0 only holds its place: it meets nothing, and its other numbers may be any.
+/// In the last block the lanes beyond the batch's end hold any values. A ray whose `tmax` is not
+/// above 0 is inactive: it hits nothing, and its other components may have any value.
 #[derive(Clone, Debug, Default)]
 pub struct RayBatch {
     blocks: Vec<Ray16>,
     len: usize,
-    /// What each left; empty while none left anything.
+    /// The departures; empty while no ray has one.
     departures: Vec<Departure16>,
-    /// How far each has come; empty while none went through anything.
+    /// The continuations; empty while no ray has one.
     continuations: Vec<Option<Continuation>>,
 }
 
 impl RayBatch {
-    /// How many there are.
+    /// The number of rays.
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// True if there are no rays.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Forgets all.
+    /// Removes all rays.
     pub fn clear(&mut self) {
         self.len = 0;
         self.departures.clear();
         self.continuations.clear();
     }
 
-    /// Makes it `blocks` times sixteen rays that left nothing, to be set to whatever they are.
+    /// Resizes the batch to `blocks` blocks of rays without departure, and returns them to be filled.
     pub fn resize_blocks(&mut self, blocks: usize) -> &mut [Ray16] {
         self.clear();
         self.reserve(blocks);
@@ -93,7 +88,7 @@ impl RayBatch {
         &mut self.blocks[..blocks]
     }
 
-    /// Forgets all but the first `count`.
+    /// Removes all but the first `count` rays.
     pub fn truncate(&mut self, count: usize) {
         self.len = self.len.min(count);
         self.departures.truncate(count.div_ceil(LANES));
@@ -102,18 +97,18 @@ impl RayBatch {
 
     fn reserve(&mut self, blocks: usize) {
         if self.blocks.len() < blocks {
-            self.blocks.resize(blocks, Ray16::NONE);
+            self.blocks.resize(blocks, Ray16::default());
         }
     }
 
-    /// Adds a ray.
+    /// Appends a ray.
     #[inline]
     pub fn push(&mut self, ray: &Ray) {
         let i = self.len;
         self.reserve(i / LANES + 1);
         self.len += 1;
         if ray.departure.is_some() || !self.departures.is_empty() {
-            self.departures.resize(i / LANES + 1, Departure16::NOTHING);
+            self.departures.resize(i / LANES + 1, Departure16::default());
             self.departures[i / LANES].set(i % LANES, ray.departure);
         }
         if ray.continuation.is_some() || !self.continuations.is_empty() {
@@ -123,10 +118,11 @@ impl RayBatch {
         self.set_ray(i, ray);
     }
 
-    /// Adds sixteen rays that left surfaces, and went through none, to be set to whatever they are.
+    /// Appends a block of sixteen rays that have departures but no continuations, and returns it to
+    /// be filled.
     ///
     /// # Panics
-    /// When the sixteens before are not full, or are rays of another kind.
+    /// When a block before it is not full, or holds rays of another kind.
     #[inline(always)]
     pub fn push_block(&mut self) -> (&mut Ray16, &mut Departure16) {
         let block = self.len / LANES;
@@ -135,98 +131,98 @@ impl RayBatch {
             && self.continuations.is_empty();
         assert!(alike, "rays of another kind");
         self.reserve(block + 1);
-        self.departures.resize(block + 1, Departure16::NOTHING);
+        self.departures.resize(block + 1, Departure16::default());
         self.len += LANES;
         (&mut self.blocks[block], &mut self.departures[block])
     }
 
-    /// Puts another ray in the place of ray `i`.
+    /// Replaces ray `i`.
     ///
     /// # Panics
     /// When there is no ray `i`.
     pub fn set(&mut self, i: usize, ray: &Ray) {
         assert!(i < self.len, "ray {i} of {}", self.len);
         if ray.departure.is_some() && self.departures.is_empty() {
-            self.departures.resize(self.len.div_ceil(LANES), Departure16::NOTHING);
+            self.departures.resize(self.len.div_ceil(LANES), Departure16::default());
         }
-        if let Some(left) = self.departures.get_mut(i / LANES) {
-            left.set(i % LANES, ray.departure);
+        if let Some(departures) = self.departures.get_mut(i / LANES) {
+            departures.set(i % LANES, ray.departure);
         }
         if ray.continuation.is_some() && self.continuations.is_empty() {
             self.continuations.resize(self.len, None);
         }
-        if let Some(past) = self.continuations.get_mut(i) {
-            *past = ray.continuation;
+        if let Some(continuation) = self.continuations.get_mut(i) {
+            *continuation = ray.continuation;
         }
         self.set_ray(i, ray);
     }
 
     #[inline(always)]
     fn set_ray(&mut self, i: usize, ray: &Ray) {
-        let (lines, lane) = (&mut self.blocks[i / LANES], i % LANES);
+        let (block, lane) = (&mut self.blocks[i / LANES], i % LANES);
         for axis in 0..3 {
-            lines.origin[axis][lane] = ray.origin[axis];
-            lines.direction[axis][lane] = ray.direction[axis];
+            block.origin[axis][lane] = ray.origin[axis];
+            block.direction[axis][lane] = ray.direction[axis];
         }
-        lines.tmax[lane] = ray.tmax;
+        block.tmax[lane] = ray.tmax;
     }
 
-    /// Ray `i`.
+    /// The ray with index `i`.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no ray `i`.
     #[inline]
     pub fn ray(&self, i: usize) -> Ray {
         assert!(i < self.len, "ray {i} of {}", self.len);
-        let (lines, lane) = (&self.blocks[i / LANES], i % LANES);
-        let (origin, direction) = lines.origin_and_direction(lane);
+        let (block, lane) = (&self.blocks[i / LANES], i % LANES);
+        let (origin, direction) = block.origin_and_direction(lane);
         Ray {
             origin,
             direction,
-            tmax: lines.tmax[lane],
+            tmax: block.tmax[lane],
             departure: self.departure(i),
             continuation: self.continuation(i),
         }
     }
 
-    /// All rays.
+    /// An iterator over all rays.
     pub fn iter(&self) -> impl Iterator<Item = Ray> {
         (0..self.len).map(|i| self.ray(i))
     }
 
-    /// The sixteens, of which the last may be partly filled.
+    /// The blocks of sixteen rays; the last may be partly filled.
     #[inline(always)]
     pub fn blocks(&self) -> &[Ray16] {
         &self.blocks[..self.len.div_ceil(LANES)]
     }
 
-    /// What ray `i` left, if anything.
+    /// The departure of ray `i`, if it has one.
     #[inline(always)]
     pub fn departure(&self, i: usize) -> Option<Departure> {
-        let left = self.departures.get(i / LANES)?;
-        let side = if left.is_back[i % LANES] { Side::Back } else { Side::Front };
-        left.id.get(i % LANES).map(|id| Departure { id, side })
+        let departures = self.departures.get(i / LANES)?;
+        let side = if departures.is_back[i % LANES] { Side::Back } else { Side::Front };
+        departures.id.get(i % LANES).map(|id| Departure { id, side })
     }
 
-    /// What the rays left, sixteen by sixteen; nothing where none left anything.
+    /// The departures in blocks of sixteen; empty while no ray has one.
     #[inline(always)]
     pub fn departures(&self) -> &[Departure16] {
         &self.departures
     }
 
-    /// How far ray `i` has come, if it went through anything.
+    /// The continuation of ray `i`, if it has one.
     #[inline(always)]
     pub fn continuation(&self, i: usize) -> Option<Continuation> {
         self.continuations.get(i).copied().flatten()
     }
 
-    /// Whether no ray left a surface, nor went through one.
+    /// True if no ray has a departure or a continuation.
     #[inline(always)]
     pub fn have_no_departures(&self) -> bool {
         self.departures.is_empty() && self.continuations.is_empty()
     }
 
-    /// Whether no ray went straight through a surface.
+    /// True if no ray has a continuation.
     #[inline(always)]
     pub fn have_no_continuations(&self) -> bool {
         self.continuations.is_empty()
@@ -267,11 +263,11 @@ mod tests {
     }
 
     #[test]
-    fn rays_that_left_nothing_are_fresh_after_others() {
+    fn a_reused_batch_has_no_departures_of_earlier_rays() {
         let mut rays = RayBatch::default();
         rays.extend(&(0..20).map(ray).collect::<Vec<_>>());
         assert!(!rays.have_no_departures() && !rays.have_no_continuations());
-        let tmax = |(block, lines): (usize, &mut Ray16)| lines.tmax = [block as f64; LANES];
+        let tmax = |(i, block): (usize, &mut Ray16)| block.tmax = [i as f64; LANES];
         rays.resize_blocks(2).iter_mut().enumerate().for_each(tmax);
         rays.truncate(17);
         assert!(rays.have_no_departures() && rays.have_no_continuations());

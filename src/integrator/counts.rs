@@ -1,101 +1,103 @@
-//! What is counted while a picture is made.
+//! The counters of rays and of work.
 
-use super::adaptive::STEPS;
+use serde::Serialize;
+
 use crate::geometry::RayBatch;
-use crate::intersect::ExtraTests;
+use crate::integrator::sample_pattern::MAX_STEPS;
+use crate::scene::Scene;
 
-/// How many rays were traced.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// The numbers of rays traced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct RayCounts {
-    /// From the eye.
+    /// Rays from the camera.
     pub primary: u64,
-    /// To a light.
+    /// Rays to a light.
     pub shadow: u64,
-    /// Off a mirror.
+    /// Rays off a mirror.
     pub reflection: u64,
-    /// Through a surface.
+    /// Rays through a surface.
     pub refraction: u64,
 }
 
 impl RayCounts {
-    /// All of them.
+    /// Returns the number of all rays.
     pub fn total(&self) -> u64 {
         self.primary + self.shadow + self.reflection + self.refraction
     }
 }
 
-/// How much was done of the work that not every picture needs. Exactly 0 means that the code for it
-/// did not run.
+/// The amounts of work that not every picture needs. Exactly 0 means that the code for it did not
+/// run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FeatureCounts {
-    /// Points that were shaded whose texture coordinates were worked out.
+    /// Points whose texture coordinates were computed.
     pub uv: u64,
-    /// Points for which it was worked out how much of a picture one sample sees.
+    /// Points whose footprint was computed, for the level of a mipmap.
     pub mipmaps: u64,
-    /// Points whose normal a picture was asked for.
+    /// Points whose normal was looked up in a normal map.
     pub normal_maps: u64,
-    /// Points of planes that were looked up in a checker.
+    /// Points of planes whose checker was evaluated.
     pub checkers: u64,
-    /// Points of meshes whose vertices were asked for colours.
+    /// Points of meshes whose vertex colours were interpolated.
     pub vertex_colors: u64,
-    /// Points of meshes whose vertices were asked for normals.
+    /// Points of meshes whose vertex normals were interpolated.
     pub smooth_normals: u64,
-    /// Highlights that were worked out. They are so sixteen at a time: those of rays beside count.
+    /// Highlights that were computed, sixteen at a time: lanes without one count.
     pub highlights: u64,
-    /// Shadow rays that were traced again, to look for glass in their way.
+    /// Shadow rays that were traced again, through glass.
     pub glass: u64,
-    /// Sixteens of rays that were tried against planes.
+    /// Blocks of sixteen rays that were tested against planes.
     pub planes: u64,
-    /// Sixteens of rays of which a filter looked at each hit that Embree found.
+    /// Blocks of sixteen rays whose hits in Embree were tested by a filter.
     pub filters: u64,
 }
 
 impl FeatureCounts {
-    /// Counts what an intersector did with rays besides walking its trees.
-    pub(super) fn extras(&mut self, what: ExtraTests, rays: &RayBatch) {
-        let sixteens = rays.blocks().len() as u64;
-        self.planes += sixteens * u64::from(what.planes);
-        self.filters += sixteens * u64::from(what.filters);
+    /// Counts the tests of rays against planes, and those by a filter, if there are any.
+    pub(super) fn add_extra_tests(&mut self, scene: &Scene, has_filter: bool, rays: &RayBatch) {
+        let blocks = rays.blocks().len() as u64;
+        self.planes += blocks * u64::from(!scene.planes.is_empty());
+        self.filters += blocks * u64::from(has_filter);
     }
 }
 
-/// What was counted while a picture was made.
+/// The counters of one picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Rays traced.
+    /// The rays traced.
     pub rays: RayCounts,
-    /// Primary rays that hit something.
+    /// The primary rays that hit something.
     pub hits: u64,
-    /// Pixels that got more samples, at each step of an adaptive picture.
-    pub refined: [u64; STEPS],
-    /// Work that not every picture needs.
+    /// The pixels that got more samples, at each step of an adaptive picture.
+    pub refined: [u64; MAX_STEPS],
+    /// The work that not every picture needs.
     pub work: FeatureCounts,
-    /// Samples whose radiance was not finite and was left out.
+    /// The samples whose radiance was not finite and was left out.
     pub not_finite: NotFinite,
 }
 
-/// Samples whose radiance was not finite, by what made it so: each counts once, for what was met
+/// The numbers of samples whose radiance was not finite, by its cause: each counts once, for the
 /// first.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NotFinite {
     /// The light that reaches the surface: a light that weakens with the square of the distance
     /// stands very near it.
     pub light: u64,
-    /// The surface itself: its position, or what its material, textures and vertex colours make
-    /// of its colour.
+    /// The surface itself: its position, or the colour that its material, textures and vertex
+    /// colours give it.
     pub surface: u64,
     /// Finite values whose product or sum is beyond f32.
     pub sum: u64,
 }
 
 impl NotFinite {
-    /// All of them.
+    /// Returns the number of all such samples.
     pub fn total(&self) -> u64 {
         self.light + self.surface + self.sum
     }
 }
 
-/// What made a sample's radiance not finite; see [`NotFinite`].
+/// A cause of a sample's radiance not being finite; see [`NotFinite`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NotFiniteCause {
     Light,
@@ -104,12 +106,13 @@ pub(super) enum NotFiniteCause {
 }
 
 impl NotFiniteCause {
+    /// Counts a sample.
     pub(super) fn count(self, counts: &mut Counts) {
-        let to = &mut counts.not_finite;
+        let not_finite = &mut counts.not_finite;
         *match self {
-            NotFiniteCause::Light => &mut to.light,
-            NotFiniteCause::Surface => &mut to.surface,
-            NotFiniteCause::Sum => &mut to.sum,
+            NotFiniteCause::Light => &mut not_finite.light,
+            NotFiniteCause::Surface => &mut not_finite.surface,
+            NotFiniteCause::Sum => &mut not_finite.sum,
         } += 1;
     }
 }
@@ -121,7 +124,7 @@ impl std::ops::AddAssign for Counts {
         self.rays.reflection += other.rays.reflection;
         self.rays.refraction += other.rays.refraction;
         self.hits += other.hits;
-        self.refined.iter_mut().zip(other.refined).for_each(|(to, other)| *to += other);
+        self.refined.iter_mut().zip(other.refined).for_each(|(count, other)| *count += other);
         self.work += other.work;
         self.not_finite.light += other.not_finite.light;
         self.not_finite.surface += other.not_finite.surface;

@@ -1,49 +1,50 @@
-//! Every ray against every primitive: slow, and with nothing to go wrong.
+//! The brute-force intersector, which tests every ray against every primitive.
 
 use glam::DVec3;
 
 use crate::geometry::{Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{Coherence, Intersector, Precision};
+use crate::intersect::{Coherence, Intersector, Precision, trace_each};
 use crate::scene::Scene;
 
-/// Whether a line is so far out of proportion that its way to a box may overflow or underflow f64,
-/// in the world or in an instance's space; such a ray tries every primitive instead.
+/// True if a ray is so extreme that its distance to a box may overflow or underflow f64, in world space
+/// or in object space; such a ray is tested with every primitive instead.
 ///
 /// Directions within 2^±500 and origins within 2^500 leave t normal for coordinates from 1e-157 on,
 /// and room for any transform that takes f32 vertices into the bounds of a scene.
 #[inline(always)]
 pub(in crate::intersect) fn is_extreme(origin: DVec3, direction: DVec3) -> bool {
     const GREATEST: f64 = f64::from_bits((1023 + 500) << 52);
-    let (way, place) = (direction.abs().max_element(), origin.abs().max_element());
-    !((1.0 / GREATEST..=GREATEST).contains(&way) & (place <= GREATEST))
+    let (length, distance) = (direction.abs().max_element(), origin.abs().max_element());
+    !((1.0 / GREATEST..=GREATEST).contains(&length) & (distance <= GREATEST))
 }
 
-/// The intersector that tries everything; for tests.
+/// The intersector that tests every ray against every primitive, for tests: slow, with nothing to go
+/// wrong.
 pub struct BruteForce<'s> {
     primitives: Primitives<'s>,
 }
 
 impl<'s> BruteForce<'s> {
-    /// An intersector of a checked scene.
+    /// Makes the intersector of a checked scene.
     pub fn new(scene: &'s Scene, precision: Precision) -> Self {
         Self { primitives: Primitives { scene, precision } }
     }
 
-    /// The closest hit of the ray, planes and all.
-    pub(crate) fn first(&self, ray: &Ray) -> Option<Hit> {
+    /// The closest hit of a ray.
+    pub(crate) fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let mut best = None;
-        self.all(ray).for_each(|hit| Hit::keep_closest(&mut best, hit));
+        self.all_hits(ray).for_each(|hit| Hit::keep_closest(&mut best, hit));
         best
     }
 
-    /// Whether anything that blocks light stands in the ray's way.
-    pub(crate) fn blocks(&self, ray: &Ray) -> bool {
-        self.all(ray).any(|hit| self.primitives.scene.blocks_light(hit.id))
+    /// True if anything that blocks light is hit by a ray.
+    pub(crate) fn is_occluded(&self, ray: &Ray) -> bool {
+        self.all_hits(ray).any(|hit| self.primitives.scene.blocks_light(hit.id))
     }
 
-    /// Every hit of the ray, in no particular order.
-    pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+    /// Returns every hit of a ray, in no particular order.
+    pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let (primitives, ray) = (self.primitives, *ray);
         let scene = primitives.scene;
         let inverse = sphere::inverse_length_squared(ray.direction);
@@ -70,16 +71,10 @@ impl Intersector for BruteForce<'_> {
     }
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        for (ray, best) in rays.iter().zip(hits) {
-            *best = self.first(ray);
-        }
+        trace_each(rays, hits, |ray| self.closest_hit(ray));
     }
 
-    fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
-        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
-        for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.blocks(ray);
-        }
+    fn occluded(&self, rays: &[Ray], _: Coherence, occluded: &mut [bool]) {
+        trace_each(rays, occluded, |ray| self.is_occluded(ray));
     }
 }

@@ -1,24 +1,24 @@
-//! How good a tree is worth building.
+//! The quality of the trees that Embree builds.
 
-/// How much work Embree puts into its trees.
+/// The work that Embree puts into its trees.
 ///
 /// In precision `certified` the hits are the same with either. In `fast`, which of several
 /// triangles is hit is open where f32 cannot tell, and may differ with the tree.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BuildQuality {
-    /// By Morton codes: built faster, traced slower.
+    /// Trees by Morton codes: built faster, traced slower.
     Low,
-    /// By the surface-area heuristic.
+    /// Trees by the surface-area heuristic.
     #[default]
     Medium,
 }
 
-/// From how many rays for each primitive on the better tree pays: measured, as docs/performance.md
-/// says.
+/// The number of rays for each primitive from which on the better tree pays: measured, as
+/// docs/performance.md says.
 const RAYS_PER_PRIMITIVE: u64 = 32;
 
 impl BuildQuality {
-    /// What it is called: `low` or `medium`.
+    /// The name: `low` or `medium`.
     pub const fn name(self) -> &'static str {
         match self {
             BuildQuality::Low => "low",
@@ -26,7 +26,8 @@ impl BuildQuality {
         }
     }
 
-    /// What takes the least time for so many rays to come among so many primitives.
+    /// Returns the quality with which a scene of this many primitives, and this many rays, takes the least
+    /// time.
     pub const fn for_rays(rays: u64, primitives: u64) -> Self {
         if rays < primitives.saturating_mul(RAYS_PER_PRIMITIVE) {
             BuildQuality::Low

@@ -1,115 +1,64 @@
-//! Intersectors for one picture, or for the frames of an animation, which share what was built of
-//! their meshes.
+//! The builder of intersectors, for one picture or for the frames of an animation, which share the trees
+//! of their meshes.
 
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::meshes_in_use;
+use crate::intersect::build_stats::BuildStats;
 #[cfg(feature = "embree")]
 use crate::intersect::embree::{self, Embree};
-use crate::intersect::frame_diff::PreviousFrame;
+use crate::intersect::frame_diff::{FrameDiff, PreviousFrame};
 use crate::intersect::{Backend, BuildQuality, Bvh, Intersector, Precision, bvh};
-use crate::scene::{MeshId, Scene};
+use crate::scene::Scene;
 
-/// What building took, and what was kept of a frame before.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct BuildStats {
-    /// Meshes whose trees were built.
-    pub meshes: u64,
-    /// Meshes that were there already, from another frame.
-    pub reused: u64,
-    /// Times that the level above the meshes was built: the spheres, and where each mesh stands.
-    pub tops: u64,
-    /// Times that it was kept, with what moved in it placed again.
-    pub tops_kept: u64,
-    /// Instances of meshes that were placed in a level that was built.
-    pub placed: u64,
-    /// Instances that were placed again in one that was kept.
-    pub moved: u64,
-    /// Spheres that were placed again in a level that was kept.
-    pub spheres_moved: u64,
-    /// Times that a level that was built has spheres in it: in Embree a user geometry, in Rust a
-    /// tree.
-    pub sphere_sets: u64,
-    /// Instances in a level that was built whose meshes are in spaces of their own.
-    pub instanced: u64,
-    /// Instances in a level that was built whose alpha is tested.
-    pub masked: u64,
-}
-
-impl BuildStats {
-    /// Each count, of this and another.
-    fn with(self, other: Self, each: impl Fn(u64, u64) -> u64) -> Self {
-        Self {
-            meshes: each(self.meshes, other.meshes),
-            reused: each(self.reused, other.reused),
-            tops: each(self.tops, other.tops),
-            tops_kept: each(self.tops_kept, other.tops_kept),
-            placed: each(self.placed, other.placed),
-            moved: each(self.moved, other.moved),
-            spheres_moved: each(self.spheres_moved, other.spheres_moved),
-            sphere_sets: each(self.sphere_sets, other.sphere_sets),
-            instanced: each(self.instanced, other.instanced),
-            masked: each(self.masked, other.masked),
-        }
-    }
-
-    /// What a frame takes for which nothing is built that there is already: so many meshes.
-    pub fn kept(meshes: u64) -> Self {
-        Self { reused: meshes, tops_kept: 1, ..Self::default() }
-    }
-}
-
-impl std::ops::AddAssign for BuildStats {
-    fn add_assign(&mut self, other: Self) {
-        *self = self.with(other, |a, b| a + b);
-    }
-}
-
-impl std::ops::Sub for BuildStats {
-    type Output = Self;
-
-    /// What was built since there was only `before`.
-    fn sub(self, before: Self) -> Self {
-        self.with(before, |a, b| a - b)
-    }
-}
-
-/// Builds intersectors of checked scenes.
+/// The builder of intersectors of checked scenes.
 pub struct IntersectorBuilder {
     backend: Backend,
     precision: Precision,
     threads: usize,
     quality: BuildQuality,
-    /// What frames share; nothing for one picture.
-    shared: Option<FrameCache>,
-    built: BuildStats,
+    /// The trees that frames share; none for single pictures.
+    cache: Option<FrameCache>,
+    stats: BuildStats,
 }
 
-/// What frames share, for whichever backend it was built.
+/// The trees that frames share, for either backend.
 struct FrameCache {
-    standing: PreviousFrame,
-    trees: bvh::FrameCache,
+    previous: PreviousFrame,
+    bvh: bvh::FrameCache,
     #[cfg(feature = "embree")]
     embree: embree::FrameCache,
 }
 
+impl FrameCache {
+    /// The numbers of meshes and TLASes that were built.
+    fn stats(&self, backend: Backend) -> BuildStats {
+        match backend {
+            #[cfg(feature = "embree")]
+            Backend::Embree => self.embree.stats(),
+            Backend::Rust => self.bvh.stats(),
+        }
+    }
+}
+
 impl IntersectorBuilder {
-    /// A builder for pictures that have nothing in common, on `threads` threads (0: all there are).
+    /// Makes a builder for pictures that have nothing in common, on `threads` threads (0: all there
+    /// are).
     pub fn new(backend: Backend, precision: Precision, threads: usize) -> Self {
         Self {
             backend,
             precision,
             threads,
             quality: BuildQuality::default(),
-            shared: None,
-            built: BuildStats::default(),
+            cache: None,
+            stats: BuildStats::default(),
         }
     }
 
-    /// A builder for scenes that share meshes, each of which is built once: in a space of its own,
-    /// in which it may stand still or move. The level above, of spheres and instances, is kept for
-    /// the next scene, too, if that is of the same things, and the intersector of the one before
-    /// is gone by then.
+    /// Makes a builder for scenes that share meshes, each of which is built once: in object space, in
+    /// which it may stand still or move. The level above, of spheres and instances, is kept for the
+    /// next scene, too, if that is of the same things, and the intersector of the one before is gone by
+    /// then.
     ///
     /// `stage` is the box in which they mostly take place, such as [`Scene::bounds_over_time`]:
     /// scenes that stay in it, and fill it, share the space of Embree's f32 numbers. An empty box is
@@ -122,16 +71,16 @@ impl IntersectorBuilder {
     ) -> Self {
         // The BVH is in f64.
         let _ = stage;
-        let shared = FrameCache {
-            standing: PreviousFrame::default(),
-            trees: bvh::FrameCache::default(),
+        let cache = FrameCache {
+            previous: PreviousFrame::default(),
+            bvh: bvh::FrameCache::default(),
             #[cfg(feature = "embree")]
             embree: embree::FrameCache::new(stage),
         };
-        Self { shared: Some(shared), ..Self::new(backend, precision, threads) }
+        Self { cache: Some(cache), ..Self::new(backend, precision, threads) }
     }
 
-    /// The same with trees of another quality than medium. The pure-Rust BVH has only one.
+    /// Sets the quality of the trees, which is medium unless it is set. The pure-Rust BVH has only one.
     pub fn with_quality(self, quality: BuildQuality) -> Self {
         Self { quality, ..self }
     }
@@ -141,89 +90,114 @@ impl IntersectorBuilder {
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
     pub fn build<'s>(&mut self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
-        let is_there = |mesh: MeshId| !scene.meshes[mesh.0 as usize].triangles.is_empty();
-        let stand = scene.instances.iter().filter(|i| is_there(i.mesh)).count() as u64;
-        let used = meshes_in_use(scene).into_iter().filter(|&used| used).count() as u64;
-        let before = self.shared.as_ref().map_or(BuildStats::default(), FrameCache::built);
-        let shared = self.shared.as_mut();
-        let (intersector, moved, work): (Box<dyn Intersector + 's>, _, _) = match self.backend {
+        let before = self.cache.as_ref().map(|cache| cache.stats(self.backend)).unwrap_or_default();
+        // See what moved since the frame before, if it was of the same things.
+        let diff = self.cache.as_mut().and_then(|cache| cache.previous.advance(scene));
+        // Build, or update, the intersector.
+        let (intersector, contents): (Box<dyn Intersector + 's>, _) = match self.backend {
             #[cfg(feature = "embree")]
             Backend::Embree => {
-                let asked = embree::BuildOptions {
-                    precision: self.precision,
-                    threads: self.threads,
-                    quality: self.quality,
-                    width: None,
-                };
-                let (built, moved) = match shared {
-                    None => (Embree::build_as(scene, asked)?, None),
-                    Some(shared) => {
-                        let moved = shared.standing.advance(scene);
-                        let (boxes, kept) = (shared.standing.boxes(), &mut shared.embree);
-                        (Embree::build_sharing(scene, asked, boxes, kept, moved.as_ref())?, moved)
-                    }
-                };
-                let work = built.work();
-                (Box::new(built), moved, work)
+                let embree = self.build_embree(scene, diff.as_ref())?;
+                let contents = embree.stats();
+                (Box::new(embree), contents)
             }
             Backend::Rust => {
-                // The BVH is built on the caller's rayon pool, and always has all its levels.
-                let _ = self.threads;
-                let (built, moved) = match shared {
-                    None => (Bvh::build(scene, self.precision), None),
-                    Some(shared) => {
-                        let moved = shared.standing.advance(scene);
-                        let trees = &mut shared.trees;
-                        (Bvh::build_sharing(scene, self.precision, trees, moved.as_ref()), moved)
-                    }
+                let contents = BuildStats {
+                    sphere_geometries: u64::from(!scene.spheres.is_empty()),
+                    object_space_instances: visible_instances(scene),
+                    ..BuildStats::default()
                 };
-                (Box::new(built), moved, (u64::from(!scene.spheres.is_empty()), stand))
+                (Box::new(self.build_bvh(scene, diff.as_ref())), contents)
             }
         };
-        let built = match &self.shared {
-            None => BuildStats { meshes: used, tops: 1, ..BuildStats::default() },
-            Some(shared) => shared.built() - before,
+        // Count what that took.
+        let built = match &self.cache {
+            None => {
+                BuildStats { meshes_built: used_meshes(scene), tlas_built: 1, ..Default::default() }
+            }
+            Some(cache) => cache.stats(self.backend) - before,
         };
-        let moved = moved.unwrap_or_default();
-        let (sphere_sets, instanced) = work;
-        let masked =
-            (0..scene.instances.len() as u32).filter(|&i| scene.is_masked(i)).count() as u64;
-        self.built += match built.tops {
-            0 => BuildStats {
-                tops_kept: 1,
-                moved: moved.instances.len() as u64,
-                spheres_moved: moved.spheres.len() as u64,
-                ..built
-            },
-            _ => BuildStats { placed: stand, sphere_sets, instanced, masked, ..built },
-        };
-        self.built.reused += used.saturating_sub(built.meshes);
+        self.count(scene, built, contents, &diff.unwrap_or_default());
         Ok(intersector)
     }
 
-    /// How good its trees are; nothing where Embree does not build them.
+    #[cfg(feature = "embree")]
+    fn build_embree<'s>(
+        &mut self,
+        scene: &'s Scene,
+        diff: Option<&FrameDiff>,
+    ) -> Result<Embree<'s>> {
+        let options = embree::BuildOptions {
+            precision: self.precision,
+            threads: self.threads,
+            quality: self.quality,
+            width: None,
+        };
+        match &mut self.cache {
+            None => Embree::with_options(scene, options),
+            Some(FrameCache { previous, embree, .. }) => {
+                Embree::build_frame(scene, options, previous.mesh_bounds(), embree, diff)
+            }
+        }
+    }
+
+    /// Builds a BVH, on the caller's rayon pool.
+    fn build_bvh<'s>(&mut self, scene: &'s Scene, diff: Option<&FrameDiff>) -> Bvh<'s> {
+        let _ = self.threads;
+        match &mut self.cache {
+            None => Bvh::build(scene, self.precision),
+            Some(cache) => Bvh::build_frame(scene, self.precision, &mut cache.bvh, diff),
+        }
+    }
+
+    /// Adds to the counts those of a scene: the trees that were `built`, the `contents` of its TLAS, and
+    /// what moved.
+    fn count(&mut self, scene: &Scene, built: BuildStats, contents: BuildStats, diff: &FrameDiff) {
+        let BuildStats { meshes_built, tlas_built, .. } = built;
+        self.stats += if tlas_built == 0 {
+            BuildStats {
+                tlas_kept: 1,
+                instances_moved: diff.instances.len() as u64,
+                spheres_moved: diff.spheres.len() as u64,
+                ..built
+            }
+        } else {
+            let instances = 0..scene.instances.len() as u32;
+            BuildStats {
+                meshes_built,
+                tlas_built,
+                instances_built: visible_instances(scene),
+                masked_instances: instances.filter(|&i| scene.is_masked(i)).count() as u64,
+                ..contents
+            }
+        };
+        self.stats.meshes_reused += used_meshes(scene).saturating_sub(meshes_built);
+    }
+
+    /// The quality of its trees; none where Embree does not build them.
     pub fn quality(&self) -> Option<BuildQuality> {
         (self.backend != Backend::Rust).then_some(self.quality)
     }
 
-    /// What all intersectors so far took.
+    /// The counts of all intersectors so far.
     pub fn stats(&self) -> BuildStats {
-        self.built
+        self.stats
     }
 }
 
-impl FrameCache {
-    /// How many meshes, and levels above them, were built.
-    fn built(&self) -> BuildStats {
-        let (meshes, tops) = (self.trees.built(), self.trees.tops());
-        #[cfg(feature = "embree")]
-        let (meshes, tops) = (meshes + self.embree.built(), tops + self.embree.tops());
-        BuildStats { meshes, tops, ..BuildStats::default() }
-    }
+/// The number of meshes that have instances and triangles.
+fn used_meshes(scene: &Scene) -> u64 {
+    meshes_in_use(scene).into_iter().filter(|&used| used).count() as u64
+}
+
+/// The number of instances of meshes with triangles.
+fn visible_instances(scene: &Scene) -> u64 {
+    let is_visible = |i: u32| !scene.meshes[i as usize].triangles.is_empty();
+    scene.instances.iter().filter(|i| is_visible(i.mesh.0)).count() as u64
 }
 
 impl std::fmt::Debug for IntersectorBuilder {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Builder").field("built", &self.built).finish_non_exhaustive()
+        f.debug_struct("IntersectorBuilder").field("stats", &self.stats).finish_non_exhaustive()
     }
 }

@@ -1,4 +1,4 @@
-//! What stands in a frame of an animation, and what of it stood elsewhere in the frame before.
+//! The difference between a frame of an animation and the frame before.
 
 use std::sync::Arc;
 
@@ -6,18 +6,18 @@ use std::sync::Arc;
 use crate::geometry::Bounds;
 use crate::scene::{Instance, Mesh, Scene, Sphere};
 
-/// The things that rays can meet, as they stood in the last frame.
+/// The meshes, spheres and instances of the last frame.
 #[derive(Default)]
 pub(in crate::intersect) struct PreviousFrame {
     meshes: Vec<Arc<Mesh>>,
-    /// The boxes of the meshes, each in its own space.
+    /// The boxes of the meshes in object space.
     #[cfg(feature = "embree")]
-    boxes: Vec<Bounds>,
+    mesh_bounds: Vec<Bounds>,
     spheres: Vec<Sphere>,
     instances: Vec<Instance>,
 }
 
-/// Indices of what stood elsewhere, or was another, in the frame before.
+/// The indices of what moved or changed since the frame before.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(in crate::intersect) struct FrameDiff {
     /// Spheres.
@@ -27,24 +27,22 @@ pub(in crate::intersect) struct FrameDiff {
 }
 
 impl PreviousFrame {
-    /// Goes on to the scene of another frame. Says what moved, or nothing where the things are not
-    /// the same ones.
+    /// Advances to the scene of another frame, and returns what moved; `None` where the frames do not
+    /// have the same meshes, or as many spheres and instances of the same meshes.
     pub fn advance(&mut self, scene: &Scene) -> Option<FrameDiff> {
         if !same_meshes(&self.meshes, &scene.meshes) {
             *self = Self {
                 meshes: scene.meshes.clone(),
                 #[cfg(feature = "embree")]
-                boxes: scene.mesh_bounds(),
+                mesh_bounds: scene.mesh_bounds(),
                 spheres: scene.spheres.clone(),
                 instances: scene.instances.clone(),
             };
             return None;
         }
-        let counts = |spheres: &[Sphere], instances: &[Instance]| (spheres.len(), instances.len());
-        let same_counts =
-            counts(&self.spheres, &self.instances) == counts(&scene.spheres, &scene.instances);
-        let mut both = self.instances.iter().zip(&scene.instances);
-        if !(same_counts && both.all(|(a, b)| a.mesh == b.mesh)) {
+        let same_meshes =
+            self.instances.iter().map(|i| i.mesh).eq(scene.instances.iter().map(|i| i.mesh));
+        if !(same_meshes && self.spheres.len() == scene.spheres.len()) {
             self.spheres.clone_from(&scene.spheres);
             self.instances.clone_from(&scene.instances);
             return None;
@@ -54,10 +52,10 @@ impl PreviousFrame {
         Some(FrameDiff { spheres, instances })
     }
 
-    /// The boxes of the meshes, each in its own space.
+    /// The boxes of the meshes in object space.
     #[cfg(feature = "embree")]
-    pub fn boxes(&self) -> &[Bounds] {
-        &self.boxes
+    pub fn mesh_bounds(&self) -> &[Bounds] {
+        &self.mesh_bounds
     }
 }
 
@@ -65,7 +63,7 @@ fn same_meshes(a: &[Arc<Mesh>], b: &[Arc<Mesh>]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
 }
 
-/// Puts what is new in the place of what it differs from, and says where.
+/// Replaces what differs from `new`, and returns its indices.
 fn replace<T: Clone + PartialEq>(old: &mut [T], new: &[T]) -> Vec<u32> {
     let mut replaced = Vec::new();
     for (i, (old, new)) in (0..).zip(old.iter_mut().zip(new)) {
@@ -95,34 +93,34 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_known_of_a_first_frame() {
+    fn a_first_frame_has_no_difference() {
         assert_eq!(PreviousFrame::default().advance(&scene()), None);
     }
 
     #[test]
-    fn what_moved_is_told_once() {
-        let (mut standing, mut scene) = (PreviousFrame::default(), scene());
-        standing.advance(&scene);
+    fn what_moved_is_returned_once() {
+        let (mut previous, mut scene) = (PreviousFrame::default(), scene());
+        previous.advance(&scene);
         scene.spheres[2].radius = 2.0;
         scene.instances[1].transform = DAffine3::IDENTITY;
-        let moved = FrameDiff { spheres: vec![2], instances: vec![1] };
-        assert_eq!(standing.advance(&scene), Some(moved));
-        assert_eq!(standing.advance(&scene), Some(FrameDiff::default()));
+        let diff = FrameDiff { spheres: vec![2], instances: vec![1] };
+        assert_eq!(previous.advance(&scene), Some(diff));
+        assert_eq!(previous.advance(&scene), Some(FrameDiff::default()));
     }
 
     #[test]
-    fn another_mesh_is_not_the_same_one_moved() {
-        let (mut standing, mut scene) = (PreviousFrame::default(), scene());
-        standing.advance(&scene);
+    fn another_mesh_has_not_moved() {
+        let (mut previous, mut scene) = (PreviousFrame::default(), scene());
+        previous.advance(&scene);
         Arc::make_mut(&mut scene.meshes[0]).positions = vec![[0.0; 3]];
-        assert_eq!(standing.advance(&scene), None);
+        assert_eq!(previous.advance(&scene), None);
     }
 
     #[test]
-    fn what_is_gone_did_not_move() {
-        let (mut standing, mut scene) = (PreviousFrame::default(), scene());
-        standing.advance(&scene);
+    fn what_is_gone_has_not_moved() {
+        let (mut previous, mut scene) = (PreviousFrame::default(), scene());
+        previous.advance(&scene);
         scene.instances.remove(0);
-        assert_eq!(standing.advance(&scene), None);
+        assert_eq!(previous.advance(&scene), None);
     }
 }

@@ -1,12 +1,13 @@
-//! The hit layer: who finds what a ray meets.
+//! The intersectors, which find the hits of rays.
 //!
-//! An [`Intersector`] is asked in batches. Its implementations answer alike: `Embree` (with the
-//! feature `embree`), [`Bvh`], the pure-Rust fallback and judge, and [`BruteForce`], for tests.
-//! They share the primitives' tests in [`primitive`]; what differs is which primitives they try.
+//! An [`Intersector`] traces batches of rays. Its implementations find the same hits: `Embree` (with the
+//! feature `embree`), [`Bvh`], the pure-Rust fallback and reference, and [`BruteForce`], for tests.
+//! They share the primitives' tests in [`primitive`]; they differ in which primitives they test.
 
 mod blas_cache;
 mod brute_force;
 mod build_quality;
+mod build_stats;
 mod builder;
 mod bvh;
 #[cfg(feature = "embree")]
@@ -18,7 +19,8 @@ mod self_intersection;
 
 pub use brute_force::BruteForce;
 pub use build_quality::BuildQuality;
-pub use builder::{BuildStats, IntersectorBuilder};
+pub use build_stats::BuildStats;
+pub use builder::IntersectorBuilder;
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
 pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
@@ -27,95 +29,100 @@ use crate::error::Result;
 use crate::geometry::{Hit, HitBatch, Ray, RayBatch};
 use crate::scene::Scene;
 
-/// Whether the rays of a batch go much the same way, which a packet tracer can use.
+/// The coherence of the rays of a batch, which a packet tracer can use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coherence {
     /// Neighbours in the batch start and go alike, as primary and shadow rays do.
     Coherent,
-    /// They do not, as after a bounce.
+    /// Neighbours do not, such as secondary rays.
     Incoherent,
 }
 
-/// What an intersector does with the rays of a batch besides walking its trees.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExtraTests {
-    /// It tries each ray against planes.
-    pub planes: bool,
-    /// It looks at each hit that Embree finds, before Embree goes on.
-    pub filters: bool,
+/// The kind of a query.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Query {
+    /// The query for closest hits.
+    Closest,
+    /// The query for whether rays are occluded.
+    Occluded,
 }
 
-/// Finds what rays meet in one scene.
+/// The intersector of one scene.
 ///
-/// A ray meets what it crosses at 0 < t < `tmax`, both strictly, except the surface it left; a
-/// tangent counts. Of several the least (t, geometry, primitive, instance) is the closest.
+/// A ray hits what it crosses at 0 < t < `tmax`, both strictly, except the surface it left; a
+/// tangent counts. Of several hits the least (t, geometry, primitive, instance) is the closest.
 pub trait Intersector: Send + Sync {
-    /// What it is called: `embree`, `rust` or `brute`.
+    /// The name: `embree`, `rust` or `brute`.
     fn name(&self) -> &'static str;
 
-    /// The version of what does the work.
+    /// The version of the library that traces.
     fn version(&self) -> String;
 
-    /// The closest hit of each ray, written to the same place in `hits`.
+    /// Finds the closest hit of each ray, and writes it to `hits` at the same index.
     ///
     /// # Panics
     /// When the two slices differ in length.
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]);
 
-    /// Whether anything that blocks light stands in each ray's way, written to the same place in
-    /// `blocked`; see [`Scene::blocks_light`].
+    /// Finds whether each ray is occluded by anything that blocks light, and writes it to `occluded` at
+    /// the same index; see [`Scene::blocks_light`].
     ///
     /// # Panics
     /// When the two slices differ in length.
-    fn occluded(&self, rays: &[Ray], coherence: Coherence, blocked: &mut [bool]);
+    fn occluded(&self, rays: &[Ray], coherence: Coherence, occluded: &mut [bool]);
 
-    /// What it does besides, when it looks for the closest hits of these rays.
-    fn closest_extras(&self, _: &RayBatch) -> ExtraTests {
-        ExtraTests::default()
-    }
-
-    /// What it does besides, when it looks for what stands in the way of any rays.
-    fn occluded_extras(&self) -> ExtraTests {
-        ExtraTests::default()
-    }
-
-    /// As [`Intersector::closest`], of rays that stand side by side.
+    /// Finds the closest hits of rays in lanes; see [`Intersector::closest`].
     fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
-        let (places, all) = active_rays(rays);
-        let mut found = vec![None; all.len()];
-        self.closest(&all, coherence, &mut found);
+        let (indices, active) = active_rays(rays);
+        let mut active_hits = vec![None; active.len()];
+        self.closest(&active, coherence, &mut active_hits);
         hits.reset_to_misses(rays.len());
-        places.into_iter().zip(found).for_each(|(i, hit)| hits.set(i, hit));
+        indices.into_iter().zip(active_hits).for_each(|(i, hit)| hits.set(i, hit));
     }
 
-    /// As [`Intersector::occluded`], of rays that stand side by side.
-    fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, blocked: &mut Vec<bool>) {
-        let (places, all) = active_rays(rays);
-        let mut found = vec![false; all.len()];
-        self.occluded(&all, coherence, &mut found);
-        blocked.clear();
-        blocked.resize(rays.len(), false);
-        places.into_iter().zip(found).for_each(|(i, found)| blocked[i] = found);
+    /// Finds whether rays in lanes are occluded; see [`Intersector::occluded`].
+    fn occluded_batch(&self, rays: &RayBatch, coherence: Coherence, occluded: &mut Vec<bool>) {
+        let (indices, active) = active_rays(rays);
+        let mut active_occluded = vec![false; active.len()];
+        self.occluded(&active, coherence, &mut active_occluded);
+        occluded.clear();
+        occluded.resize(rays.len(), false);
+        indices.into_iter().zip(active_occluded).for_each(|(i, value)| occluded[i] = value);
+    }
+
+    /// True if a filter callback tests each hit that is found for these rays, before the search goes on;
+    /// for statistics.
+    fn uses_filter(&self, _: Query, _: &RayBatch) -> bool {
+        false
     }
 }
 
-/// The rays of a batch that may meet anything, and their places.
+/// Traces rays one by one.
+///
+/// # Panics
+/// When the two slices differ in length.
+fn trace_each<T>(rays: &[Ray], results: &mut [T], trace: impl Fn(&Ray) -> T) {
+    assert_eq!(rays.len(), results.len(), "one result for each ray");
+    rays.iter().zip(results).for_each(|(ray, result)| *result = trace(ray));
+}
+
+/// The rays of a batch that can hit anything, and their indices.
 fn active_rays(rays: &RayBatch) -> (Vec<usize>, Vec<Ray>) {
     rays.iter().enumerate().filter(|(_, ray)| ray.tmax > 0.0).unzip()
 }
 
-/// How far a hit can be trusted.
+/// The precision of hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// The formulas in f64, and on Embree triangles found by f32 rays.
+    /// Hits by formulas in f64, and on Embree triangles found by f32 rays.
     #[default]
     Fast,
-    /// The answer of exact arithmetic on the baked scene, for every ray.
+    /// The hits of exact arithmetic on the baked scene, for every ray.
     Certified,
 }
 
 impl Precision {
-    /// What it is called: `fast` or `certified`.
+    /// The name: `fast` or `certified`.
     pub const fn name(self) -> &'static str {
         match self {
             Precision::Fast => "fast",
@@ -124,7 +131,7 @@ impl Precision {
     }
 }
 
-/// Which intersector to use.
+/// The library that an intersector traces with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
     /// Intel Embree.
@@ -135,7 +142,7 @@ pub enum Backend {
 }
 
 impl Default for Backend {
-    /// Embree where it is compiled in.
+    /// Returns Embree where it is compiled in.
     fn default() -> Self {
         #[cfg(feature = "embree")]
         return Backend::Embree;
@@ -145,7 +152,7 @@ impl Default for Backend {
 }
 
 impl Backend {
-    /// What its intersector is called.
+    /// The name of its intersectors.
     pub const fn name(self) -> &'static str {
         match self {
             #[cfg(feature = "embree")]

@@ -1,6 +1,7 @@
-//! One ray against one primitive, in f64 and in world space: what every backend means by a hit.
+//! The tests of one ray against one primitive, in f64 and in world space: what every backend means by a
+//! hit.
 //!
-//! A ray does not meet, at its own origin, the surfaces that it was spawned on: [`sphere_departure`],
+//! A ray does not hit, at its own origin, the surfaces that it was spawned on: [`sphere_departure`],
 //! [`starts_on_plane`] and [`starts_on_triangle`] say which those are.
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
@@ -10,17 +11,17 @@ pub use crate::intersect::self_intersection::{
 };
 use crate::scene::Scene;
 
-/// The primitives of a scene, as a precision tests them.
+/// The primitives of a scene, with the precision in which they are tested.
 #[derive(Clone, Copy, Debug)]
 pub struct Primitives<'s> {
     /// The scene.
     pub scene: &'s Scene,
-    /// By which arithmetic.
+    /// The precision.
     pub precision: Precision,
 }
 
 impl Primitives<'_> {
-    /// Where `ray` meets sphere `index`, with `inverse_length_squared` = 1 / |direction|². A hit
+    /// The hit of `ray` on sphere `index`, with `inverse_length_squared` = 1 / |direction|². A hit
     /// beyond `limit` may be left out.
     #[inline]
     pub fn sphere(
@@ -30,23 +31,23 @@ impl Primitives<'_> {
         inverse_length_squared: f64,
         limit: f64,
     ) -> Option<Hit> {
-        let Some(past) = ray.continuation else {
+        let Some(continuation) = ray.continuation else {
             return self.sphere_root(index, ray, inverse_length_squared, limit, false);
         };
         let id = PrimitiveId::sphere(index);
-        if past.crossed.id == id {
-            // Gone into, it is met at its far side, which rounding may put at the same t.
-            return (past.crossed.side == Side::Back)
-                .then(|| self.sphere_root(index, ray, inverse_length_squared, limit, true))?
-                .filter(|hit| hit.t >= past.t);
+        let root = |far| self.sphere_root(index, ray, inverse_length_squared, limit, far);
+        if continuation.crossed.id != id {
+            let is_ahead = |hit: &Hit| !continuation.excludes(hit.t, id);
+            return root(false).filter(is_ahead).or_else(|| root(true).filter(is_ahead));
         }
-        [false, true].into_iter().find_map(|far| {
-            self.sphere_root(index, ray, inverse_length_squared, limit, far)
-                .filter(|hit| !past.excludes(hit.t, id))
-        })
+        // A sphere that the ray entered is hit at its far side, which rounding may put at the same t.
+        if continuation.crossed.side == Side::Front {
+            return None;
+        }
+        root(true).filter(|hit| hit.t >= continuation.t)
     }
 
-    /// The first root that counts, or the far one.
+    /// The hit at the first root that counts, or at the far one.
     #[inline(always)]
     fn sphere_root(
         &self,
@@ -87,7 +88,7 @@ impl Primitives<'_> {
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
-    /// Where `ray` meets plane `index`.
+    /// The hit of `ray` on plane `index`.
     #[inline]
     pub fn plane(&self, index: u32, ray: &Ray) -> Option<Hit> {
         let p = &self.scene.planes[index as usize];
@@ -96,7 +97,7 @@ impl Primitives<'_> {
                 .filter(|&t| t > 0.0 && t < ray.tmax)?,
             Precision::Certified => {
                 use plane::certified::{certainly_misses, crossing};
-                // A ray that leaves the plane nearly meets it, which is dear to decide.
+                // A ray that leaves the plane nearly hits it, which is expensive to decide.
                 if certainly_misses(p.point, p.normal, ray.origin, ray.direction, ray.tmax)
                     || starts_on_plane(self.scene, index, ray)
                 {
@@ -106,36 +107,36 @@ impl Primitives<'_> {
             }
         };
         let id = PrimitiveId::plane(index);
-        if starts_on_plane(self.scene, index, ray) || lies_behind(ray, t, id) {
+        if starts_on_plane(self.scene, index, ray) || is_passed(ray, t, id) {
             return None;
         }
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
-    /// Where `ray` meets the triangle `id`. A hit beyond `limit` may be left out.
+    /// The hit of `ray` on the triangle `id`. A hit beyond `limit` may be left out.
     #[inline]
     pub fn triangle(&self, id: PrimitiveId, ray: &Ray, limit: f64) -> Option<Hit> {
-        if ray.departure.is_some_and(|from| from.id == id) {
+        if ray.departure.is_some_and(|departure| departure.id == id) {
             return None;
         }
-        let corners = self.scene.triangle_vertices(id);
+        let vertices = self.scene.triangle_vertices(id);
         let crossing = match self.precision {
-            Precision::Fast => triangle::intersect(corners, ray.origin, ray.direction)
+            Precision::Fast => triangle::intersect(vertices, ray.origin, ray.direction)
                 .filter(|hit| hit.t > 0.0 && hit.t < ray.tmax)?,
             Precision::Certified => {
                 use triangle::certified::{crossing, estimate};
-                if estimate(corners, ray.origin, ray.direction).is_outside(limit) {
+                if estimate(vertices, ray.origin, ray.direction).is_outside(limit) {
                     return None;
                 }
-                crossing(corners, ray.origin, ray.direction, ray.tmax)?
+                crossing(vertices, ray.origin, ray.direction, ray.tmax)?
             }
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
-        let left = starts_on_triangle(self.scene, corners, ray) || lies_behind(ray, hit.t, id);
-        (!left && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
+        let excluded = starts_on_triangle(self.scene, vertices, ray) || is_passed(ray, hit.t, id);
+        (!excluded && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
     }
 
-    /// Where `ray` meets whatever `id` names.
+    /// The hit of `ray` on the primitive `id`.
     pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
         match id.geometry {
             Geometry::Spheres => {
@@ -147,8 +148,8 @@ impl Primitives<'_> {
         }
     }
 
-    /// Merges the infinite planes into a hit on what is finite: they stand in no tree, since
-    /// nothing infinite can be bounded.
+    /// Merges the infinite planes into a hit on finite primitives: they are in no tree, since nothing
+    /// infinite can be bounded.
     #[inline]
     pub fn merge_planes(&self, ray: &Ray, best: &mut Option<Hit>) {
         for index in 0..self.scene.planes.len() as u32 {
@@ -158,7 +159,7 @@ impl Primitives<'_> {
         }
     }
 
-    /// Whether a plane that blocks light stands in the ray's way.
+    /// True if a plane that blocks light is hit by the ray.
     #[inline]
     pub fn planes_occlude(&self, ray: &Ray) -> bool {
         (0..self.scene.planes.len() as u32)
@@ -166,10 +167,10 @@ impl Primitives<'_> {
     }
 }
 
-/// Whether a surface that a line crosses once, at `t`, lies behind a ray that went through others.
+/// True if a continuation ray has passed a surface that its line crosses once, at `t`.
 #[inline(always)]
-fn lies_behind(ray: &Ray, t: f64, id: PrimitiveId) -> bool {
-    ray.continuation.is_some_and(|past| past.crossed.id == id || past.excludes(t, id))
+fn is_passed(ray: &Ray, t: f64, id: PrimitiveId) -> bool {
+    ray.continuation.is_some_and(|c| c.crossed.id == id || c.excludes(t, id))
 }
 
 #[cfg(test)]
@@ -200,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn ray_does_not_meet_the_triangle_it_left() {
+    fn a_ray_does_not_hit_the_triangle_it_left() {
         let scene = roof();
         let id = PrimitiveId::triangle(0, 0, 0);
         let origin = DVec3::new(0.5, 0.5 + 1e-17, 0.0);
@@ -209,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn ray_from_the_shared_edge_does_not_meet_the_neighbour() {
+    fn a_ray_from_the_shared_edge_does_not_hit_the_neighbour() {
         let scene = roof();
         let ray = spawned(
             DVec3::new(1e-17, 0.0, 0.25),
@@ -224,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn ray_across_the_valley_meets_the_neighbour() {
+    fn a_ray_across_the_valley_hits_the_neighbour() {
         let scene = roof();
         let ray = spawned(
             DVec3::new(0.25, 0.25, 0.0),
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn sphere_left_outward_is_not_met_again() {
+    fn a_sphere_left_outward_is_not_hit_again() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let inside = DVec3::X * (1.0 - 1e-16);
@@ -247,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn sphere_left_inward_is_met_at_its_far_side() {
+    fn a_sphere_left_inward_is_hit_at_its_far_side() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let ray = spawned(DVec3::X, -DVec3::X, PrimitiveId::sphere(0), Side::Back);
@@ -255,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn plane_merges_before_a_farther_hit_and_behind_a_nearer_one() {
+    fn a_plane_merges_before_a_farther_hit_and_behind_a_closer_one() {
         let mut scene = Scene::default();
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0)));
         let ray = Ray::new(DVec3::Y * 2.0, -DVec3::Y);
@@ -267,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn end_of_a_segment_is_not_met() {
+    fn the_end_of_a_segment_is_not_hit() {
         let mut scene = Scene::default();
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0)));
         assert!(!fast(&scene).planes_occlude(&Ray::segment(DVec3::Y, DVec3::ZERO)));

@@ -1,6 +1,6 @@
-//! How a ray leaves the surface it was spawned on, without an epsilon.
+//! The avoidance of self-intersection, without an epsilon.
 //!
-//! One rule: a spawned ray does not meet, at its own origin, a surface on which that origin lies
+//! One rule: a spawned ray does not hit, at its own origin, a surface on which that origin lies
 //! to within rounding. The surface it left is one of them, and is known by its identity. Others
 //! are faces that share an edge or a vertex with it, coplanar or coincident faces, a plane in a
 //! floor, a sphere that touches it. A line leaves a plane once, so that triangles and planes are
@@ -22,7 +22,7 @@
 //! = 26, and 32 ε S is what is allowed. The height of the origin over a triangle is itself rounded;
 //! that is bounded where it is computed.
 //!
-//! What is farther apart than that is two surfaces, such as a vertex stored in f32 and a plane at
+//! Surfaces that are farther apart than that are two, such as a vertex stored in f32 and a plane at
 //! the same decimal number.
 
 use glam::DVec3;
@@ -32,86 +32,86 @@ use crate::geometry::Bounds;
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::scene::{Scene, Sphere};
 
-/// How far from a surface a point may be that lies on it to within rounding, in units of ε S.
+/// The distance from a surface up to which a point lies on it to within rounding, in units of ε S.
 const ROUNDING: f64 = 32.0;
 
-/// Whether, and how, a ray leaves a sphere.
+/// The way in which a ray leaves a sphere, if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SphereDeparture {
-    /// The ray does not start on the sphere: its first root counts.
+    /// A ray that does not start on the sphere: its first root counts.
     No,
-    /// It starts on the sphere and goes away from it, which then is not met.
+    /// A ray that starts on the sphere and goes away from it, and so does not hit it.
     Outward,
-    /// It starts on the sphere and goes into it: only the far root counts.
+    /// A ray that starts on the sphere and goes into it: only the far root counts.
     Inward,
 }
 
-/// How `ray` leaves sphere `index`: the one it was spawned on, or one on which its origin lies to
-/// within rounding.
+/// Returns how `ray` leaves sphere `index`: the one it was spawned on, or one on which its origin lies
+/// to within rounding.
 ///
 /// # Panics
 /// When the sphere, or what the ray left, is not in the scene.
 #[inline]
 pub fn sphere_departure(scene: &Scene, index: u32, ray: &Ray) -> SphereDeparture {
-    let Some(from) = ray.departure else { return SphereDeparture::No };
-    if from.id == PrimitiveId::sphere(index) {
-        return match from.side {
+    let Some(departure) = ray.departure else { return SphereDeparture::No };
+    if departure.id == PrimitiveId::sphere(index) {
+        return match departure.side {
             Side::Front => SphereDeparture::Outward,
             Side::Back => SphereDeparture::Inward,
         };
     }
     let s = &scene.spheres[index as usize];
-    let slack = slack(scene, ray, from.id, extent(s));
+    let tolerance = tolerance(scene, ray, departure.id, sphere_extent(s));
     let f = ray.origin - s.center;
-    // ||f| − r| <= slack, without the square root.
+    // ||f| − r| <= tolerance, without the square root.
     let off = (f.length_squared() - s.radius * s.radius).abs();
-    if off > slack * (2.0 * s.radius + slack) {
+    if off > tolerance * (2.0 * s.radius + tolerance) {
         return SphereDeparture::No;
     }
-    // A chord shorter than twice the slack begins and ends at the origin, to within rounding.
-    let inward = f.dot(ray.direction) < -slack * ray.direction.length();
+    // A chord shorter than twice the tolerance begins and ends at the origin, to within rounding.
+    let inward = f.dot(ray.direction) < -tolerance * ray.direction.length();
     if inward { SphereDeparture::Inward } else { SphereDeparture::Outward }
 }
 
-/// A bound of what counts as rounding for every ray that starts, and every surface that stands,
-/// within `reach` of the origin on each axis; so [`sphere_departure`] need be asked only about a sphere
-/// whose |f|² − r², f from its centre to the ray's origin, is at most slack·(2r + slack).
+/// The greatest tolerance for rays and surfaces whose coordinates are all at most `max_coordinate`; so
+/// [`sphere_departure`] need be asked only about a sphere whose |f|² − r², f from its centre to the ray's
+/// origin, is at most tolerance·(2r + tolerance).
 #[cfg(feature = "embree")]
-pub(in crate::intersect) fn greatest_slack(reach: f64) -> f64 {
-    // Twice, for what the sums that lead to `reach` and to the comparison round.
-    2.0 * ROUNDING * f64::EPSILON * reach
+pub(in crate::intersect) fn max_tolerance(max_coordinate: f64) -> f64 {
+    // Twice, for what the sums that lead to `max_coordinate` and to the comparison round.
+    2.0 * ROUNDING * f64::EPSILON * max_coordinate
 }
 
-/// The largest absolute coordinate of any surface of the scene, of which what is finite stands
-/// within `bounds`; of a plane, that of its point.
+/// The largest absolute coordinate of any surface of the scene, whose finite surfaces lie within
+/// `bounds`; of a plane, that of its point.
 #[cfg(feature = "embree")]
-pub(in crate::intersect) fn scene_reach(scene: &Scene, bounds: &Bounds) -> f64 {
+pub(in crate::intersect) fn max_coordinate(scene: &Scene, bounds: &Bounds) -> f64 {
     let planes = scene.planes.iter().map(|p| p.point.abs().max_element());
     planes.fold(bounds.max_abs(), f64::max)
 }
 
-/// Whether `ray` was spawned in plane `index`, to within rounding, and so does not meet it.
+/// True if `ray` was spawned in plane `index`, to within rounding, and so does not hit it.
 ///
 /// # Panics
 /// When the plane, or what the ray left, is not in the scene.
 #[inline]
 pub fn starts_on_plane(scene: &Scene, index: u32, ray: &Ray) -> bool {
-    let Some(from) = ray.departure else { return false };
+    let Some(departure) = ray.departure else { return false };
     let plane = &scene.planes[index as usize];
     let height = plane.normal.dot(ray.origin - plane.point).abs();
-    from.id == PrimitiveId::plane(index)
-        || height <= slack(scene, ray, from.id, plane.point.abs().max_element())
+    departure.id == PrimitiveId::plane(index)
+        || height <= tolerance(scene, ray, departure.id, plane.point.abs().max_element())
 }
 
-/// Whether `ray` was spawned in the plane of the triangle with these corners, to within rounding,
-/// and so does not meet it.
+/// True if `ray` was spawned in the plane of the triangle with these vertices, to within rounding,
+/// and so does not hit it.
 ///
 /// # Panics
 /// When what the ray left is not in the scene.
 #[inline]
-pub fn starts_on_triangle(scene: &Scene, corners: [DVec3; 3], ray: &Ray) -> bool {
-    let Some(from) = ray.departure else { return false };
-    let [a, b, c] = from_longest_side(corners);
+pub fn starts_on_triangle(scene: &Scene, vertices: [DVec3; 3], ray: &Ray) -> bool {
+    let Some(departure) = ray.departure else { return false };
+    let [a, b, c] = from_longest_side(vertices);
     let (e, g, w) = (b - a, c - a, ray.origin - a);
     let normal = e.cross(g);
     let height = normal.dot(w).abs();
@@ -119,11 +119,13 @@ pub fn starts_on_triangle(scene: &Scene, corners: [DVec3; 3], ray: &Ray) -> bool
     // w and the dot product by 2 ε |e||g||w|. In a triangle with a very flat angle that is more
     // than the rounding of the origin.
     let computed = 5.0 * f64::EPSILON * e.length() * g.length() * w.length();
-    height <= slack(scene, ray, from.id, reach(corners)) * normal.length() + computed
+    height
+        <= tolerance(scene, ray, departure.id, triangle_extent(vertices)) * normal.length()
+            + computed
 }
 
-/// The corners, beginning with the one opposite the longest side: so the two sides that span the
-/// triangle are its shorter ones, and a needle's are at a wide angle.
+/// Returns the vertices, beginning with the one opposite the longest side: so the two sides that span
+/// the triangle are its shorter ones, and a needle's are at a wide angle.
 #[inline]
 fn from_longest_side([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     let [opposite_a, opposite_b, opposite_c] = [c - b, a - c, b - a].map(DVec3::length_squared);
@@ -136,24 +138,25 @@ fn from_longest_side([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     }
 }
 
-/// 32 ε S for a ray that left `from` and a surface that reaches out to `other`.
+/// The tolerance, 32 ε S, for a ray that left `departure` and a surface whose largest coordinate is `other`.
 #[inline]
-fn slack(scene: &Scene, ray: &Ray, from: PrimitiveId, other: f64) -> f64 {
-    let index = from.primitive as usize;
-    let left = match from.geometry {
-        Geometry::Spheres => extent(&scene.spheres[index]),
+fn tolerance(scene: &Scene, ray: &Ray, departure: PrimitiveId, other: f64) -> f64 {
+    let index = departure.primitive as usize;
+    let left = match departure.geometry {
+        Geometry::Spheres => sphere_extent(&scene.spheres[index]),
         Geometry::Planes => scene.planes[index].point.abs().max_element(),
-        Geometry::Mesh(_) => reach(scene.triangle_vertices(from)),
+        Geometry::Mesh(_) => triangle_extent(scene.triangle_vertices(departure)),
     };
     ROUNDING * f64::EPSILON * left.max(other).max(ray.origin.abs().max_element())
 }
 
-/// The largest absolute coordinate of some corners.
-fn reach(corners: [DVec3; 3]) -> f64 {
-    corners.iter().fold(0.0, |largest, c| c.abs().max_element().max(largest))
+/// The largest absolute coordinate of the vertices of a triangle.
+fn triangle_extent(vertices: [DVec3; 3]) -> f64 {
+    vertices.iter().fold(0.0, |largest, c| c.abs().max_element().max(largest))
 }
 
-fn extent(sphere: &Sphere) -> f64 {
+/// The largest absolute coordinate of a sphere.
+fn sphere_extent(sphere: &Sphere) -> f64 {
     sphere.center.abs().max_element() + sphere.radius
 }
 
@@ -182,12 +185,12 @@ mod tests {
         Ray { departure: Some(Departure { id, side }), ..Ray::new(origin, direction) }
     }
 
-    fn off_the_floor(origin: DVec3, direction: DVec3) -> Ray {
+    fn from_floor(origin: DVec3, direction: DVec3) -> Ray {
         from(PrimitiveId::triangle(0, 0, 0), Side::Front, origin, direction)
     }
 
     #[test]
-    fn ray_that_left_nothing_starts_on_nothing() {
+    fn a_ray_without_departure_starts_on_nothing() {
         let (scene, ray) = (scene(), Ray::new(DVec3::ZERO, DVec3::Y));
         let corners = scene.triangle_vertices(PrimitiveId::triangle(0, 0, 0));
         assert_eq!(sphere_departure(&scene, 0, &ray), SphereDeparture::No);
@@ -196,7 +199,7 @@ mod tests {
 
     #[test]
     fn plane_in_the_floor_is_left_with_it() {
-        let off = |height: f64| off_the_floor(DVec3::new(5.0, height, 0.1), DVec3::Y);
+        let off = |height: f64| from_floor(DVec3::new(5.0, height, 0.1), DVec3::Y);
         assert!(starts_on_plane(&scene(), 0, &off(3e-15)));
         assert!(!starts_on_plane(&scene(), 0, &off(1e-9)));
     }
@@ -204,7 +207,7 @@ mod tests {
     #[test]
     fn coplanar_triangle_is_left_though_no_vertex_is_shared() {
         let beside = [DVec3::X, DVec3::Z, DVec3::new(3.0, 0.0, 4.0)];
-        let off = |height: f64| off_the_floor(DVec3::new(5.0, height, 0.1), DVec3::Y);
+        let off = |height: f64| from_floor(DVec3::new(5.0, height, 0.1), DVec3::Y);
         assert!(starts_on_triangle(&scene(), beside, &off(3e-15)));
         assert!(!starts_on_triangle(&scene(), beside, &off(1e-9)));
     }
@@ -215,7 +218,7 @@ mod tests {
         for turn in 0..3 {
             let mut corners = needle;
             corners.rotate_left(turn);
-            let off = |height: f64| off_the_floor(DVec3::new(5.0, height, 0.0), DVec3::Y);
+            let off = |height: f64| from_floor(DVec3::new(5.0, height, 0.0), DVec3::Y);
             assert!(starts_on_triangle(&scene(), corners, &off(3e-15)));
             assert!(!starts_on_triangle(&scene(), corners, &off(1e-12)));
         }
@@ -224,7 +227,7 @@ mod tests {
     #[test]
     fn ball_that_touches_is_met_at_its_far_side_or_not_at_all() {
         let (scene, up) = (scene(), DVec3::new(1e-3, 1.0, 0.0));
-        let toward = |d: DVec3| sphere_departure(&scene, 0, &off_the_floor(DVec3::ZERO, d));
+        let toward = |d: DVec3| sphere_departure(&scene, 0, &from_floor(DVec3::ZERO, d));
         assert_eq!(
             (toward(up), toward(DVec3::X)),
             (SphereDeparture::Inward, SphereDeparture::Outward)
@@ -233,7 +236,7 @@ mod tests {
 
     #[test]
     fn ball_above_the_origin_is_not_left() {
-        let ray = off_the_floor(DVec3::new(0.0, -1e-9, 0.0), DVec3::Y);
+        let ray = from_floor(DVec3::new(0.0, -1e-9, 0.0), DVec3::Y);
         assert_eq!(sphere_departure(&scene(), 0, &ray), SphereDeparture::No);
     }
 

@@ -1,5 +1,5 @@
-//! What an importer reads, drops or changes, counted by reason, so that nothing is lost in silence
-//! and a broken file doesn't print a million lines.
+//! The warnings of an importer, counted by reason, so that nothing is lost in silence and a broken file
+//! doesn't print a million lines.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -7,31 +7,35 @@ use std::path::Path;
 use crate::load::report::{DropReason, LoadReport};
 use crate::scene::Scene;
 
-/// Counts, by reason, with the first place of each.
+/// The warnings about a file so far, and the faces that were read and dropped.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
     entries: Vec<Entry>,
-    /// Where among them each reason stands.
-    known: HashMap<String, usize>,
-    /// How many sentences of each kind there are.
-    sentences: [u64; 3],
+    /// The index of the entry of each reason.
+    indices: HashMap<String, usize>,
+    /// The number of different reasons of each kind.
+    reasons: [u64; 3],
     report: LoadReport,
 }
 
-/// The most sentences of a kind that are said of a file; who wants more can mend these first.
-const MAX_SENTENCES: u64 = 100;
+/// The most warnings of a kind about a file.
+const MAX_WARNINGS: u64 = 100;
 
+/// A warning, and how often there was a reason for it.
 #[derive(Debug)]
 struct Entry {
     kind: Kind,
+    /// The text, with `{}` where the count belongs.
     reason: String,
     count: u64,
-    first: String,
+    /// The place of the first; empty for a warning about no place.
+    first_place: String,
 }
 
-/// Where, beside the warnings, a sentence belongs.
+/// The kind of a warning: the list of the load report in which it stands beside the warnings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
+    /// None of them.
     Note,
     Unsupported,
     Placeholder,
@@ -43,7 +47,7 @@ impl Diagnostics {
         self.report.read += faces;
     }
 
-    /// Counts faces that were read and are dropped; `place` says where the first of them is.
+    /// Counts faces that were read and are dropped; `place` returns the place of the first of them.
     pub fn drop(&mut self, reason: DropReason, faces: u64, place: impl FnOnce() -> String) {
         if faces > 0 {
             *self.report.dropped.entry(reason).or_default() += faces;
@@ -51,81 +55,85 @@ impl Diagnostics {
         }
     }
 
-    /// Adds `count` to a reason that something is changed, or is odd. The text has `{}` where the
-    /// number belongs; `place` says where.
+    /// Adds `count` to a warning that something is changed, or is odd. Its text has `{}` where the number
+    /// belongs; `place` returns the place of the first.
     pub fn add(&mut self, reason: &str, count: u64, place: impl FnOnce() -> String) {
         self.count(Kind::Note, reason, count, place);
     }
 
-    /// As [`Diagnostics::add`], of a feature that a file uses and that is not supported.
+    /// Adds `count` to a warning about a feature that is not supported, as [`Diagnostics::add`].
     pub fn unsupported(&mut self, reason: &str, count: u64, place: impl FnOnce() -> String) {
         self.count(Kind::Unsupported, reason, count, place);
     }
 
-    /// Adds a sentence that stands alone, once however often it is said.
-    pub fn say(&mut self, sentence: impl Into<String>) {
+    /// Adds a warning that is not counted: it is given once, however often it is added.
+    pub fn note(&mut self, sentence: impl Into<String>) {
         self.count(Kind::Note, &sentence.into(), 1, String::new);
     }
 
-    /// As [`Diagnostics::add`], of pictures or materials in whose place a placeholder stands.
+    /// Adds `count` to a warning about images or materials that have a placeholder, as
+    /// [`Diagnostics::add`].
     pub fn placeholders(&mut self, reason: &str, count: u64, place: impl FnOnce() -> String) {
         self.count(Kind::Placeholder, reason, count, place);
     }
 
-    /// As [`Diagnostics::say`], of a picture or materials in whose place a placeholder stands.
+    /// Adds a warning about an image or materials that have a placeholder, as [`Diagnostics::note`].
     pub fn placeholder(&mut self, sentence: impl Into<String>) {
         self.count(Kind::Placeholder, &sentence.into(), 1, String::new);
     }
 
+    /// Adds `count` to a warning.
     fn count(&mut self, kind: Kind, reason: &str, count: u64, place: impl FnOnce() -> String) {
         if count == 0 {
             return;
         }
-        if let Some(&known) = self.known.get(reason) {
-            self.entries[known].count += count;
+        if let Some(&index) = self.indices.get(reason) {
+            self.entries[index].count += count;
             return;
         }
-        self.sentences[kind as usize] += 1;
-        if self.sentences[kind as usize] <= MAX_SENTENCES {
-            let first = place();
-            self.known.insert(reason.to_owned(), self.entries.len());
-            self.entries.push(Entry { kind, reason: reason.to_owned(), count, first });
+        self.reasons[kind as usize] += 1;
+        if self.reasons[kind as usize] <= MAX_WARNINGS {
+            self.indices.insert(reason.to_owned(), self.entries.len());
+            let (reason, first_place) = (reason.to_owned(), place());
+            self.entries.push(Entry { kind, reason, count, first_place });
         }
     }
 
-    /// Adds what another one has counted, which comes after.
+    /// Appends the diagnostics of a later part of the file.
     pub fn append(&mut self, later: Self) {
-        for (own, all) in self.sentences.iter_mut().zip(later.sentences) {
-            *own += all.saturating_sub(MAX_SENTENCES);
+        for (own, all) in self.reasons.iter_mut().zip(later.reasons) {
+            *own += all.saturating_sub(MAX_WARNINGS);
         }
         for entry in later.entries {
-            self.count(entry.kind, &entry.reason, entry.count, || entry.first);
+            self.count(entry.kind, &entry.reason, entry.count, || entry.first_place);
         }
         self.report.add(later.report);
     }
 
-    /// The load report of a file that was imported as `scene`, with one warning for each reason,
+    /// Returns the load report of a file that was imported as `scene`, with one warning for each reason,
     /// which begins with the file's name. Meshes without an instance are counted as dropped.
-    pub fn finish(mut self, file: &Path, scene: &Scene) -> LoadReport {
-        let mut stands = vec![false; scene.meshes.len()];
+    pub fn into_report(mut self, file: &Path, scene: &Scene) -> LoadReport {
+        // The faces of meshes with and without an instance.
+        let mut has_instance = vec![false; scene.meshes.len()];
         for instance in &scene.instances {
-            if let Some(stands) = stands.get_mut(instance.mesh.0 as usize) {
-                *stands = true;
+            if let Some(has_instance) = has_instance.get_mut(instance.mesh.0 as usize) {
+                *has_instance = true;
             }
         }
-        for (mesh, stands) in scene.meshes.iter().zip(stands) {
+        for (mesh, has_instance) in scene.meshes.iter().zip(has_instance) {
             let faces = mesh.triangles.len() as u64;
-            match stands {
-                true => self.report.handed_over += faces,
-                false => self.drop(DropReason::Flat, faces, || format!("mesh `{}`", mesh.name)),
+            if has_instance {
+                self.report.handed_over += faces;
+            } else {
+                self.drop(DropReason::Flat, faces, || format!("mesh `{}`", mesh.name));
             }
         }
+        // The warnings, and the number of those that were too many.
         for kind in [Kind::Note, Kind::Unsupported, Kind::Placeholder] {
-            let count = self.sentences[kind as usize].saturating_sub(MAX_SENTENCES);
-            let (reason, first) =
-                ("{} more warnings like these are left out".to_owned(), String::new());
+            let count = self.reasons[kind as usize].saturating_sub(MAX_WARNINGS);
+            let reason = "{} more warnings like these are left out".to_owned();
             if count > 0 {
-                self.entries.push(Entry { kind, reason, count, first });
+                self.entries.push(Entry { kind, reason, count, first_place: String::new() });
             }
         }
         for entry in self.entries {
@@ -141,24 +149,25 @@ impl Diagnostics {
         self.report
     }
 
-    /// What it says, without a scene to say it of.
+    /// Returns the warnings, for a file without a scene.
     #[cfg(test)]
-    pub fn sentences(self, file: &Path) -> Vec<String> {
-        self.finish(file, &Scene::default()).warnings
+    pub fn warnings(self, file: &Path) -> Vec<String> {
+        self.into_report(file, &Scene::default()).warnings
     }
 }
 
 impl Entry {
+    /// Returns the warning as a sentence.
     fn sentence(&self, file: &Path) -> String {
         let text = match self.count {
             // One place says it: "1 faces" would be wrong, and "first at" what there are more of.
             1 => self.reason.replacen("{} ", "", 1),
             count => self.reason.replacen("{}", &count.to_string(), 1),
         };
-        match (self.first.is_empty(), self.count) {
+        match (self.first_place.is_empty(), self.count) {
             (true, _) => format!("{}: {text}", file.display()),
-            (false, 1) => format!("{}: {text}, at {}", file.display(), self.first),
-            (false, _) => format!("{}: {text}, first at {}", file.display(), self.first),
+            (false, 1) => format!("{}: {text}, at {}", file.display(), self.first_place),
+            (false, _) => format!("{}: {text}, first at {}", file.display(), self.first_place),
         }
     }
 }
@@ -170,47 +179,47 @@ mod tests {
 
     #[test]
     fn a_reason_is_counted_and_keeps_its_first_place() {
-        let mut tally = Diagnostics::default();
-        tally.add("{} normals mended", 2, || "meshes[0]".into());
-        tally.add("{} normals mended", 3, || "meshes[1]".into());
-        let said = tally.sentences(Path::new("a.glb"));
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.add("{} normals mended", 2, || "meshes[0]".into());
+        diagnostics.add("{} normals mended", 3, || "meshes[1]".into());
+        let said = diagnostics.warnings(Path::new("a.glb"));
         assert_eq!(said, ["a.glb: 5 normals mended, first at meshes[0]"]);
     }
 
     #[test]
-    fn a_sentence_is_said_once() {
-        let mut tally = Diagnostics::default();
-        tally.say("animations are not played");
-        tally.say("animations are not played");
-        assert_eq!(tally.sentences(Path::new("a")), ["a: animations are not played"]);
+    fn a_note_is_given_once() {
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.note("animations are not played");
+        diagnostics.note("animations are not played");
+        assert_eq!(diagnostics.warnings(Path::new("a")), ["a: animations are not played"]);
     }
 
     #[test]
-    fn what_is_said_over_and_over_in_other_words_is_counted() {
-        let mut tally = Diagnostics::default();
-        (0..MAX_SENTENCES + 7).for_each(|i| tally.say(format!("picture {i} is missing")));
-        let said = tally.sentences(Path::new("a"));
-        assert_eq!(said.len() as u64, MAX_SENTENCES + 1);
+    fn notes_beyond_the_most_are_counted() {
+        let mut diagnostics = Diagnostics::default();
+        (0..MAX_WARNINGS + 7).for_each(|i| diagnostics.note(format!("picture {i} is missing")));
+        let said = diagnostics.warnings(Path::new("a"));
+        assert_eq!(said.len() as u64, MAX_WARNINGS + 1);
         assert_eq!(said.last().unwrap(), "a: 7 more warnings like these are left out");
     }
 
     #[test]
-    fn nothing_counted_is_nothing_said() {
-        let mut tally = Diagnostics::default();
-        tally.add("{} normals mended", 0, || unreachable!());
-        tally.drop(DropReason::Degenerate, 0, || unreachable!());
-        assert!(tally.sentences(Path::new("a")).is_empty());
+    fn a_count_of_zero_is_no_warning() {
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.add("{} normals mended", 0, || unreachable!());
+        diagnostics.drop(DropReason::Degenerate, 0, || unreachable!());
+        assert!(diagnostics.warnings(Path::new("a")).is_empty());
     }
 
     #[test]
     fn the_report_has_what_is_lost_and_not_what_is_only_odd() {
-        let mut tally = Diagnostics::default();
-        tally.read(3);
-        tally.drop(DropReason::NotFinite, 3, || "meshes[0]".into());
-        tally.add("{} normals mended", 1, || "meshes[0]".into());
-        tally.unsupported("{} meshes are knitted", 1, || "meshes[1]".into());
-        tally.placeholder("images[0] is not there");
-        let report = tally.finish(Path::new("a"), &Scene::default());
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.read(3);
+        diagnostics.drop(DropReason::NotFinite, 3, || "meshes[0]".into());
+        diagnostics.add("{} normals mended", 1, || "meshes[0]".into());
+        diagnostics.unsupported("{} meshes are knitted", 1, || "meshes[1]".into());
+        diagnostics.placeholder("images[0] is not there");
+        let report = diagnostics.into_report(Path::new("a"), &Scene::default());
         assert_eq!(report.warnings.len(), 4);
         assert_eq!(report.unsupported, ["a: meshes are knitted, at meshes[1]"]);
         assert_eq!(report.placeholders, ["a: images[0] is not there"]);
@@ -218,16 +227,16 @@ mod tests {
     }
 
     #[test]
-    fn faces_of_a_mesh_that_stands_nowhere_are_dropped() {
-        let mut tally = Diagnostics::default();
-        tally.read(1);
+    fn faces_of_a_mesh_without_an_instance_are_dropped() {
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.read(1);
         let mut scene = Scene::default();
         scene.add_mesh(Mesh {
             positions: vec![[0.0; 3]],
             triangles: vec![[0; 3]],
             ..Mesh::default()
         });
-        let report = tally.finish(Path::new("a"), &scene);
+        let report = diagnostics.into_report(Path::new("a"), &scene);
         assert_eq!(report.dropped, [(DropReason::Flat, 1)].into());
     }
 }

@@ -1,49 +1,49 @@
-//! How much a load may make of what it reads: files from strangers can ask for anything.
+//! The limits on what a load may read, unpack and build: files from strangers can ask for anything.
 
 use std::str::FromStr;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Remedy, Result};
 
-/// Something that a load has no more of than its [`Limits`] say, whatever number of files it reads.
+/// A quantity that is limited, over all files of a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Limit {
-    /// Bytes of all files that are read, and those of views that are packed in them
+    /// The bytes of all files that are read, and those of views that are packed in them
     /// (EXT_meshopt_compression).
     Bytes,
-    /// Bytes of memory that the JSON of a glTF file is estimated to take: 640 for each object, 128
+    /// The bytes of memory that the JSON of a glTF file is estimated to take: 640 for each object, 128
     /// for each list, 32 for each value.
     Json,
-    /// Nodes of glTF files.
+    /// The nodes of glTF files.
     Nodes,
-    /// Nodes of a glTF file that stand one below the other.
+    /// The nodes of a glTF file that stand one below the other.
     Depth,
-    /// What stands in the scene: meshes, each time that they stand there, and the lights, cameras
-    /// and movements of models.
+    /// The objects of the scene: instances of meshes, and the lights, cameras and animated objects of
+    /// models.
     Instances,
-    /// Stored vertices.
+    /// The stored vertices.
     Vertices,
-    /// Stored triangles.
+    /// The stored triangles.
     Triangles,
-    /// Vertices of the copies that nodes have of the meshes that they skin or morph.
+    /// The vertices of the copies that nodes have of the meshes that they skin or morph.
     Deformed,
-    /// Elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
+    /// The elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
     /// without a buffer view, and those that several accessors read from the same bytes. A triangle
     /// that Draco has packed counts as four.
     Elements,
-    /// Keys of glTF files' animations, those of all channels together; a channel of weights has
+    /// The keys of glTF files' animations, those of all channels together; a channel of weights has
     /// one for each morph target and time.
     Keys,
-    /// Decoded pictures.
+    /// The decoded images.
     Pictures,
-    /// Pixels of all pictures beyond 16 for each byte of their files, so that what counts are
-    /// pictures that are much larger than their files. A pixel of 16-bit numbers counts twice, one
+    /// The pixels of all images beyond 16 for each byte of their files, so that only images count that
+    /// are much larger than their files. A pixel of 16-bit numbers counts twice, one
     /// of floats four times.
     Pixels,
 }
 
 impl Limit {
-    /// All limits, in the order in which they are listed.
+    /// All limits, in the order in which messages list them.
     pub const ALL: [Self; 12] = [
         Self::Bytes,
         Self::Json,
@@ -59,99 +59,83 @@ impl Limit {
         Self::Pixels,
     ];
 
-    /// What it is called in flags and messages.
+    /// Returns its name in options and messages.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Bytes => "bytes",
-            Self::Json => "json",
-            Self::Nodes => "nodes",
-            Self::Depth => "depth",
-            Self::Instances => "instances",
-            Self::Vertices => "vertices",
-            Self::Triangles => "triangles",
-            Self::Deformed => "deformed",
-            Self::Elements => "elements",
-            Self::Keys => "keys",
-            Self::Pictures => "pictures",
-            Self::Pixels => "pixels",
-        }
+        self.properties().0
     }
 
-    /// What it is unless somebody says otherwise. With these a small file takes less than 1 GiB,
-    /// whatever it says.
+    /// Returns its default. With the defaults a small file takes less than 1 GiB of memory, whatever it
+    /// asks for.
     pub const fn default(self) -> u64 {
-        match self {
-            Self::Bytes => 1 << 30,
-            Self::Json => 1 << 29,
-            Self::Nodes | Self::Instances => 1 << 20,
-            Self::Depth => 1 << 12,
-            Self::Vertices | Self::Triangles => 1 << 27,
-            Self::Deformed => 1 << 22,
-            Self::Elements => 1 << 25,
-            Self::Keys => 1 << 22,
-            Self::Pictures => 1 << 14,
-            Self::Pixels => 1 << 26,
-        }
+        self.properties().1
     }
 
-    /// What is counted, for messages.
-    const fn counted(self) -> &'static str {
+    /// Returns its name, its default, and the plural of what is counted, for messages.
+    const fn properties(self) -> (&'static str, u64, &'static str) {
         match self {
-            Self::Bytes => "bytes to read",
-            Self::Json => "bytes that the JSON is estimated to take",
-            Self::Nodes => "nodes",
-            Self::Depth => "nodes one below the other",
-            Self::Instances => "instances",
-            Self::Vertices => "vertices",
-            Self::Triangles => "triangles",
-            Self::Deformed => "vertices of copies that are skinned or morphed",
-            Self::Elements => "elements of accessors beyond the bytes of the buffers",
-            Self::Keys => "keys of an animation",
-            Self::Pictures => "pictures",
-            Self::Pixels => "pixels beyond 16 for each byte of the pictures' files",
+            Self::Bytes => ("bytes", 1 << 30, "bytes to read"),
+            Self::Json => ("json", 1 << 29, "bytes that the JSON is estimated to take"),
+            Self::Nodes => ("nodes", 1 << 20, "nodes"),
+            Self::Depth => ("depth", 1 << 12, "nodes one below the other"),
+            Self::Instances => ("instances", 1 << 20, "instances"),
+            Self::Vertices => ("vertices", 1 << 27, "vertices"),
+            Self::Triangles => ("triangles", 1 << 27, "triangles"),
+            Self::Deformed => {
+                ("deformed", 1 << 22, "vertices of copies that are skinned or morphed")
+            }
+            Self::Elements => {
+                ("elements", 1 << 25, "elements of accessors beyond the bytes of the buffers")
+            }
+            Self::Keys => ("keys", 1 << 22, "keys of an animation"),
+            Self::Pictures => ("pictures", 1 << 14, "images"),
+            Self::Pixels => {
+                ("pixels", 1 << 26, "pixels beyond 16 for each byte of the images' files")
+            }
         }
     }
 }
 
-/// The most of each [`Limit`].
+/// The maximum of each [`Limit`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits([u64; Limit::ALL.len()]);
 
 impl Default for Limits {
-    /// [`Limit::default`] of each.
+    /// Returns [`Limit::default`] of each.
     fn default() -> Self {
         Self(Limit::ALL.map(Limit::default))
     }
 }
 
 impl Limits {
-    /// The most of something.
+    /// Returns the maximum of something.
     pub const fn get(&self, limit: Limit) -> u64 {
         self.0[limit as usize]
     }
 
-    /// The same, but with this much of something.
+    /// Sets the maximum of something.
     #[must_use]
-    pub const fn with(mut self, limit: Limit, most: u64) -> Self {
-        self.0[limit as usize] = most;
+    pub const fn with_limit(mut self, limit: Limit, max: u64) -> Self {
+        self.0[limit as usize] = max;
         self
     }
 
-    /// Checks that there is no more of something than the limit.
+    /// Checks an amount of something against its limit.
     ///
     /// # Errors
-    /// When there is.
+    /// When it is more.
     pub fn check(&self, limit: Limit, found: u64) -> Result<()> {
-        let (most, name) = (self.get(limit), limit.name());
-        if found <= most {
+        let max = self.get(limit);
+        if found <= max {
             return Ok(());
         }
-        Err(Error::input(format!("{found} {} are more than the limit of {most}", limit.counted()))
-            .help(format!("`--limit {name}={found}` allows so many, if you trust the file")))
+        let (name, _, noun) = limit.properties();
+        Err(Error::input(format!("{found} {noun} are more than the limit of {max}"))
+            .help(format!("raise the limit `{name}` to {found} if you trust the file"))
+            .remedied_by(Remedy::RaiseLimit { name, least: Some(found) }))
     }
 }
 
-/// One limit as a flag names it: `NAME=NUMBER`.
+/// A limit and its maximum, written as `NAME=NUMBER`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NamedLimit(pub Limit, pub u64);
 
@@ -181,17 +165,19 @@ mod tests {
     #[test]
     fn a_limit_is_the_most_that_there_may_be() {
         for limit in Limit::ALL {
-            let limits = Limits::default().with(limit, 7);
+            let limits = Limits::default().with_limit(limit, 7);
             assert!(limits.check(limit, 7).is_ok());
             let error = limits.check(limit, 8).unwrap_err();
-            let allows = format!("`--limit {}=8`", limit.name());
+            let remedy = Remedy::RaiseLimit { name: limit.name(), least: Some(8) };
+            assert_eq!(error.remedy(), Some(remedy));
+            let allows = format!("the limit `{}` to 8 ", limit.name());
             assert!(error.advice().is_some_and(|advice| advice.contains(&allows)), "{error}");
         }
     }
 
     #[test]
     fn other_limits_stay_as_they_are() {
-        let limits = Limits::default().with(Limit::Nodes, 7);
+        let limits = Limits::default().with_limit(Limit::Nodes, 7);
         for limit in Limit::ALL.into_iter().filter(|limit| *limit != Limit::Nodes) {
             assert_eq!(limits.get(limit), limit.default());
         }

@@ -1,102 +1,105 @@
-//! What importers do alike to a mesh just read: make it valid, and count what that cost.
+//! The repair of meshes that importers read: it makes them valid, and counts what that changes.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::diagnostics::Diagnostics;
-use crate::load::report::DropReason;
+use super::report::DropReason;
 use crate::scene::{GRAIN, Mesh};
 
-/// Drops triangles that cannot be had, and mends normals, texture coordinates and colours, so
-/// that the mesh is valid.
-pub fn repair(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
-    let at = || place.to_owned();
+/// Drops triangles that are not valid, and repairs normals, texture coordinates, colours and
+/// tangents, so that the mesh is valid.
+pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, path: &str) {
+    let place = || path.to_owned();
     let count = mesh.positions.len();
-    if !mesh.has_all_vertices() {
-        let before = mesh.triangles.len();
-        mesh.triangles.retain(|t| t.iter().all(|&i| (i as usize) < count));
-        let dropped = (before - mesh.triangles.len()) as u64;
-        tally.drop(DropReason::IndexOutOfRange, dropped, at);
-    }
-    if !mesh.is_finite() {
-        let finite: Vec<bool> =
-            mesh.positions.iter().map(|p| p.iter().all(|x| x.is_finite())).collect();
-        let before = mesh.triangles.len();
-        mesh.triangles.retain(|t| t.iter().all(|&i| finite.get(i as usize) == Some(&true)));
-        let dropped = (before - mesh.triangles.len()) as u64;
-        tally.drop(DropReason::NotFinite, dropped, at);
-        for (position, finite) in mesh.positions.iter_mut().zip(finite) {
-            if !finite {
-                *position = [0.0; 3];
-            }
-        }
-    }
-    drop_degenerate(mesh, tally, place);
     for length in [mesh.normals.len(), mesh.uvs.len(), mesh.colors.len(), mesh.tangents.len()] {
         debug_assert!(length == 0 || length == count);
     }
-    mend_normals(mesh, tally, place);
-    let bad = mend_uvs(&mut mesh.uvs) + mend_uvs(&mut mesh.second_uvs);
-    tally.add("{} texture coordinates are not finite and become 0", bad, at);
-    let mut bad = 0;
-    let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
-    for color in colors.filter(|x| !(x.is_finite() && **x >= 0.0)) {
-        *color = 0.0;
-        bad += 1;
+
+    // Triangles whose corners are missing or not finite.
+    if !mesh.has_all_vertices() {
+        let is_there = |t: &[u32; 3]| t.iter().all(|&i| (i as usize) < count);
+        let dropped = retain(&mut mesh.triangles, is_there);
+        diagnostics.drop(DropReason::IndexOutOfRange, dropped, place);
     }
-    tally.add("{} vertex colours are negative or not finite and become 0", bad, at);
-    let is_sound = |t: &[f32; 4]| {
-        let [x, y, z, sign] = *t;
+    if !mesh.is_finite() {
+        let is_finite: Vec<bool> =
+            mesh.positions.iter().map(|p| p.iter().all(|x| x.is_finite())).collect();
+        let all_finite = |t: &[u32; 3]| t.iter().all(|&i| is_finite[i as usize]);
+        let dropped = retain(&mut mesh.triangles, all_finite);
+        diagnostics.drop(DropReason::NotFinite, dropped, place);
+        for (position, _) in mesh.positions.iter_mut().zip(&is_finite).filter(|(_, is)| !**is) {
+            *position = [0.0; 3];
+        }
+    }
+    let dropped = drop_degenerate(mesh);
+    diagnostics.drop(DropReason::Degenerate, dropped, place);
+
+    // Attributes.
+    let bad = repair_normals(mesh);
+    let reason = "{} normals have no direction; the surface's own take their place";
+    diagnostics.add(reason, bad, place);
+    let bad = repair_uvs(&mut mesh.uvs) + repair_uvs(&mut mesh.second_uvs);
+    diagnostics.add("{} texture coordinates are not finite and become 0", bad, place);
+    let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
+    let bad = colors.filter(|x| !(x.is_finite() && **x >= 0.0)).map(|x| *x = 0.0).count();
+    let reason = "{} vertex colours are negative or not finite and become 0";
+    diagnostics.add(reason, bad as u64, place);
+    let is_valid = |&[x, y, z, sign]: &[f32; 4]| {
         let length = Vec3::new(x, y, z).length_squared();
         length > 0.0 && length.is_finite() && sign.abs() == 1.0
     };
-    let bad = mesh.tangents.iter().filter(|t| !is_sound(t)).count();
-    tally.add(
-        "{} tangents have no direction or no sign; all of the mesh are made anew",
-        bad as u64,
-        at,
-    );
+    let bad = mesh.tangents.iter().filter(|t| !is_valid(t)).count();
+    let reason = "{} tangents have no direction or no sign; all of the mesh are made anew";
+    diagnostics.add(reason, bad as u64, place);
     if bad > 0 {
         mesh.tangents.clear();
     }
 }
 
-/// Replaces texture coordinates that are not finite with 0, and counts them.
-fn mend_uvs(uvs: &mut [[f32; 2]]) -> u64 {
-    // Nearly always there are none, which is told fast.
-    let finite =
+/// Retains some of the triangles, and returns the number of the others.
+fn retain(triangles: &mut Vec<[u32; 3]>, is_retained: impl Fn(&[u32; 3]) -> bool) -> u64 {
+    let before = triangles.len();
+    triangles.retain(is_retained);
+    (before - triangles.len()) as u64
+}
+
+/// Drops triangles with two corners at one place, and returns their number. Those whose corners are
+/// only collinear are kept: they close the seams between large faces and several small ones.
+fn drop_degenerate(mesh: &mut Mesh) -> u64 {
+    let Mesh { positions, triangles, .. } = mesh;
+    let is_degenerate = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| positions[i as usize]);
+        (a == b) | (b == c) | (c == a)
+    };
+    // Nearly always there are none, which is found in parallel.
+    if !triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
+        return 0;
+    }
+    retain(triangles, |t| !is_degenerate(t))
+}
+
+/// Replaces texture coordinates that are not finite with 0, and returns their number.
+fn repair_uvs(uvs: &mut [[f32; 2]]) -> u64 {
+    // Nearly always there are none, which is found in parallel.
+    let all_finite =
         |uvs: &[[f32; 2]]| uvs.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
-    if uvs.par_chunks(GRAIN).all(finite) {
+    if uvs.par_chunks(GRAIN).all(all_finite) {
         return 0;
     }
     let bad = uvs.iter_mut().flatten().filter(|x| !x.is_finite());
     bad.map(|x| *x = 0.0).count() as u64
 }
 
-/// Drops triangles with two corners at one place. Those whose corners only stand in line are kept:
-/// they close the seams between large faces and several small ones.
-fn drop_degenerate(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
-    let Mesh { positions, triangles, .. } = mesh;
-    let is_degenerate = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
-        (a == b) | (b == c) | (c == a)
-    };
-    if triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
-        let before = triangles.len();
-        triangles.retain(|t| !is_degenerate(t));
-        let dropped = (before - triangles.len()) as u64;
-        tally.drop(DropReason::Degenerate, dropped, || place.to_owned());
-    }
-}
-
-/// Gives a normal of length 0 (or none at all) the mean of the triangles around its vertex.
-fn mend_normals(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
+/// Replaces normals without a direction with the mean normal of the triangles at their vertex, and
+/// returns their number; if no normal has a direction, the mesh has none afterwards.
+fn repair_normals(mesh: &mut Mesh) -> u64 {
     let is_bad = |n: &[f32; 3]| {
         let length = Vec3::from(*n).length_squared();
         !(length > 0.0 && length.is_finite())
     };
     if !mesh.normals.par_chunks(GRAIN).any(|normals| normals.iter().any(is_bad)) {
-        return;
+        return 0;
     }
     // An unnormalised normal can be tiny or huge and still have a direction.
     for normal in mesh.normals.iter_mut().filter(|n| is_bad(n)) {
@@ -106,32 +109,22 @@ fn mend_normals(mesh: &mut Mesh, tally: &mut Diagnostics, place: &str) {
         }
     }
     let bad = mesh.normals.iter().filter(|n| is_bad(n)).count();
-    if bad == 0 {
-        return;
-    }
-    let at = || place.to_owned();
-    tally.add("{} normals have no direction; the surface's own take their place", bad as u64, at);
     if bad == mesh.normals.len() {
         mesh.normals.clear();
-        return;
-    }
-    let mut sums = vec![glam::DVec3::ZERO; mesh.positions.len()];
-    for triangle in &mesh.triangles {
-        let corners = triangle.map(|i| {
-            let p = mesh.positions.get(i as usize).copied().unwrap_or_default();
-            glam::DVec3::from(p.map(f64::from))
-        });
-        let [a, b, c] = corners;
-        let normal = (b - a).cross(c - a);
-        for &i in triangle {
-            if let Some(sum) = sums.get_mut(i as usize) {
-                *sum += normal;
-            }
+    } else if bad > 0 {
+        // Sums of the triangles' normals, weighted by area.
+        let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
+        for triangle in &mesh.triangles {
+            let [a, b, c] =
+                triangle.map(|i| DVec3::from(mesh.positions[i as usize].map(f64::from)));
+            let normal = (b - a).cross(c - a);
+            triangle.iter().for_each(|&i| sums[i as usize] += normal);
+        }
+        for (normal, sum) in mesh.normals.iter_mut().zip(sums).filter(|(n, _)| is_bad(n)) {
+            *normal = sum.try_normalize().unwrap_or(DVec3::Y).as_vec3().to_array();
         }
     }
-    for (normal, sum) in mesh.normals.iter_mut().zip(sums).filter(|(n, _)| is_bad(n)) {
-        *normal = sum.try_normalize().unwrap_or(glam::DVec3::Y).as_vec3().to_array();
-    }
+    bad as u64
 }
 
 #[cfg(test)]
@@ -147,9 +140,9 @@ mod tests {
     }
 
     fn repaired(mut mesh: Mesh) -> (Mesh, Vec<String>) {
-        let mut tally = Diagnostics::default();
-        repair(&mut mesh, &mut tally, "here");
-        (mesh, tally.sentences(std::path::Path::new("m")))
+        let mut diagnostics = Diagnostics::default();
+        repair(&mut mesh, &mut diagnostics, "here");
+        (mesh, diagnostics.warnings(std::path::Path::new("m")))
     }
 
     #[test]

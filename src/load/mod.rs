@@ -23,7 +23,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::scene::watertight;
 
-pub use defaults::auto_lighting::add_ground;
+pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits, NamedLimit};
 pub use report::{DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
@@ -86,14 +86,14 @@ impl LoadOptions {
     /// unless the options say otherwise; and when no file has the variant.
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
         let path = path.as_ref();
-        let guard = Sandbox::new(path, self.allow_outside, self.limits)?;
-        let file = guard.open_named(path)?;
+        let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;
+        let file = sandbox.open_named(path)?;
         let is_scene_file = extension(path) == "toml";
         let Loaded { mut scene, mut report } = if is_scene_file {
-            scene_file::load(file, &guard, self)?
+            scene_file::load(file, &sandbox, self)?
         } else {
             let variant = self.variant.as_deref();
-            model(file, &guard, &Choice { animation: None, variant, pictures: true })?
+            model(file, &sandbox, &ModelOptions { animation: None, variant, needs_images: true })?
         };
         if let Some(variant) = &self.variant {
             check_variant(variant, &report).map_err(|e| e.at(path))?;
@@ -102,14 +102,14 @@ impl LoadOptions {
             scene.film.size = size;
         }
         // Defaults for what the file leaves out.
-        defaults::auto_camera::frame(&mut scene);
+        defaults::auto_camera::add_camera(&mut scene);
         if !is_scene_file {
             scene.film.spp = BARE_MODEL_SPP;
-            defaults::auto_lighting::light(&mut scene);
+            defaults::auto_lighting::add_lights(&mut scene);
         }
-        defaults::materials::settle(&mut scene);
+        defaults::complete(&mut scene);
         scene.check().map_err(|e| e.at(path))?;
-        report.warnings.extend(watertight::warn_of_open_dielectrics(&scene));
+        report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })
     }
 }
@@ -130,24 +130,24 @@ pub fn load(path: impl AsRef<Path>) -> Result<Loaded> {
     LoadOptions::default().load(path)
 }
 
-/// What of a model file is to be loaded.
-struct Choice<'a> {
-    /// Its animation of this name; or the first.
+/// The options of loading a model file.
+struct ModelOptions<'a> {
+    /// The name of the animation; none for the first.
     animation: Option<&'a str>,
-    /// Its variant of this name, where it has that; or its default materials.
+    /// The name of the variant of its materials, if it has that; none for the default materials.
     variant: Option<&'a str>,
-    /// Whether its pictures are read, or only named.
-    pictures: bool,
+    /// True if its images are read, rather than only named.
+    needs_images: bool,
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.
-fn model(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
+fn model(file: OpenedFile, sandbox: &Sandbox, options: &ModelOptions) -> Result<Loaded> {
     match extension(&file.path).as_str() {
-        "gltf" | "glb" | "vrm" => gltf::load(file, guard, choice),
-        "obj" if choice.animation.is_some() => Err(Error::input("an OBJ file has no animations")
+        "gltf" | "glb" | "vrm" => gltf::load(file, sandbox, options),
+        "obj" if options.animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),
-        "obj" => obj::load(file, guard, choice.pictures),
+        "obj" => obj::load(file, sandbox, options.needs_images),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),
@@ -157,12 +157,12 @@ fn model(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
     }
 }
 
-/// Checks that files have a variant of this name.
-fn check_variant(name: &str, of: &LoadReport) -> Result<()> {
-    if of.variants.contains(name) {
+/// Checks that a file has a variant of this name.
+fn check_variant(name: &str, report: &LoadReport) -> Result<()> {
+    if report.variants.contains(name) {
         return Ok(());
     }
-    let names: Vec<&str> = of.variants.iter().map(String::as_str).collect();
+    let names: Vec<&str> = report.variants.iter().map(String::as_str).collect();
     let help = match &names[..] {
         [] => "no model has variants of its materials: leave it out".to_owned(),
         names => spelling::choice(name, names, "variants"),
@@ -170,7 +170,7 @@ fn check_variant(name: &str, of: &LoadReport) -> Result<()> {
     Err(Error::input(format!("there is no variant `{name}`")).help(help))
 }
 
-/// The extension in lower case, or nothing.
+/// Returns the extension in lower case; empty if there is none.
 fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }

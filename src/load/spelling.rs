@@ -1,133 +1,80 @@
-//! "Did you mean …?"
+//! The suggestions for misspelt names: "did you mean …?"
 
-/// What people write, and what they may mean by it; the first that can stand there is meant.
-const HABITS: &[(&str, &[&str])] = &[
-    ("albedo", &["diffuse"]),
-    ("alpha", &["shininess"]),
-    ("ambient", &["emission"]),
-    ("angle", &["outer_angle", "fov_y"]),
-    ("antialiasing", &["spp"]),
-    ("at", &["look_at"]),
-    ("basecolor", &["diffuse"]),
-    ("bg", &["background"]),
-    ("brightness", &["intensity"]),
-    ("color", &["color", "diffuse", "background", "colors"]),
-    ("colour", &["color", "diffuse", "background", "colors"]),
-    ("colours", &["colors"]),
-    ("centre", &["center"]),
-    ("curve", &["tone"]),
-    ("dimensions", &["size"]),
-    ("dir", &["direction", "directional"]),
-    ("distance", &["directional"]),
-    ("distant", &["directional"]),
-    ("emissive", &["emission"]),
-    ("eye", &["position", "camera"]),
-    ("filmic", &["aces"]),
-    ("ev", &["exposure"]),
-    ("exponent", &["shininess"]),
-    ("floor", &["plane"]),
-    ("fov", &["fov_y"]),
-    ("focal", &["focal_px"]),
-    ("focallength", &["focal_px"]),
-    ("forward", &["direction"]),
-    ("from", &["position"]),
-    ("gamma", &["transfer"]),
-    ("ground", &["plane"]),
-    ("height", &["size", "ortho_height"]),
-    ("image", &["film", "diffuse_map"]),
-    ("kd", &["diffuse"]),
-    ("ke", &["emission"]),
-    ("transparency", &["transmit"]),
-    ("transparent", &["transmit"]),
-    ("transmission", &["transmit"]),
-    ("transmittance", &["transmit"]),
-    ("glass", &["transmit"]),
-    ("opacity", &["transmit"]),
-    ("refraction", &["ior"]),
-    ("refractionindex", &["ior"]),
-    ("refractiveindex", &["ior"]),
-    ("indexofrefraction", &["ior"]),
-    ("eta", &["ior"]),
-    ("n", &["ior"]),
-    ("attenuation", &["absorption"]),
-    ("extinction", &["absorption"]),
-    ("metal", &["reflect"]),
-    ("metallic", &["reflect"]),
-    ("mirror", &["reflect"]),
-    ("reflection", &["reflect"]),
-    ("reflective", &["reflect"]),
-    ("reflectivity", &["reflect"]),
-    ("depth", &["max_depth"]),
-    ("bounces", &["max_depth"]),
-    ("maxbounces", &["max_depth"]),
-    ("keyframe", &["track"]),
-    ("keyframes", &["track"]),
-    ("framerate", &["fps"]),
-    ("rate", &["fps"]),
-    ("duration", &["frames", "period"]),
-    ("easing", &["interpolation"]),
-    ("keytimes", &["times"]),
-    ("id", &["name"]),
-    ("ks", &["specular"]),
-    ("linear", &["none"]),
-    ("location", &["position", "center", "translate"]),
-    ("lookingat", &["look_at"]),
-    ("mesh", &["model"]),
-    ("mode", &["kind"]),
-    ("ns", &["shininess"]),
-    ("object", &["model"]),
-    ("omni", &["point"]),
-    ("origin", &["position", "center", "point"]),
-    ("orthographic", &["ortho_height"]),
-    ("path", &["file"]),
-    ("point", &["position", "center"]),
-    ("pos", &["position", "center", "point", "translate"]),
-    ("position", &["center", "point", "translate"]),
-    ("power", &["intensity"]),
-    ("quadratic", &["inverse_square"]),
-    ("r", &["radius"]),
-    ("render", &["film"]),
-    ("resolution", &["size"]),
-    ("rotation", &["rotate"]),
-    ("roughness", &["shininess"]),
-    ("samples", &["spp"]),
-    ("shadow", &["casts_shadow", "shadow"]),
-    ("shadows", &["casts_shadow", "shadow"]),
-    ("castsshadow", &["shadow"]),
-    ("castshadow", &["casts_shadow", "shadow"]),
-    ("size", &["radius", "scale"]),
-    ("source", &["file"]),
-    ("src", &["file"]),
-    ("sun", &["directional"]),
-    ("target", &["look_at", "object"]),
-    ("texture", &["diffuse_map"]),
-    ("bump", &["normal_map"]),
-    ("bumpmap", &["normal_map"]),
-    ("normal", &["normal", "normal_map"]),
-    ("blend", &["alpha_mode"]),
-    ("cutoff", &["cutoff", "alpha_cutoff"]),
-    ("mipmaps", &["filter", "mipmap"]),
-    ("trilinear", &["mipmap"]),
-    ("bilinear", &["linear"]),
-    ("to", &["look_at"]),
-    ("tonemap", &["tone"]),
-    ("tonemapping", &["tone"]),
-    ("translation", &["translate"]),
-    ("type", &["kind"]),
-    ("url", &["file"]),
-    ("view", &["camera", "direction"]),
-    ("width", &["size"]),
+/// The names of keys and values, each with the words that people write for it. Of several names for a
+/// word the first counts that can stand there.
+const SYNONYMS: &[(&str, &str)] = &[
+    ("absorption", "attenuation extinction"),
+    ("aces", "filmic"),
+    ("alpha_mode", "blend"),
+    ("casts_shadow", "shadow shadows castshadow"),
+    ("color", "color colour"),
+    ("cutoff", "cutoff"),
+    ("alpha_cutoff", "cutoff"),
+    ("diffuse", "albedo basecolor color colour kd"),
+    ("background", "bg color colour"),
+    ("colors", "color colour colours"),
+    ("emission", "ambient emissive ke"),
+    ("exposure", "ev"),
+    ("file", "path source src url"),
+    ("film", "image render"),
+    ("diffuse_map", "image texture"),
+    ("filter", "mipmaps"),
+    ("focal_px", "focal focallength"),
+    ("fps", "framerate rate"),
+    ("frames", "duration"),
+    ("intensity", "brightness power"),
+    ("interpolation", "easing"),
+    ("inverse_square", "quadratic"),
+    ("ior", "refraction refractionindex refractiveindex indexofrefraction eta n"),
+    ("kind", "mode type"),
+    ("linear", "bilinear"),
+    ("look_at", "at lookingat target to"),
+    ("max_depth", "depth bounces maxbounces"),
+    ("mipmap", "mipmaps trilinear"),
+    ("model", "mesh object"),
+    ("name", "id"),
+    ("none", "linear"),
+    ("normal", "normal"),
+    ("normal_map", "bump bumpmap normal"),
+    ("object", "target"),
+    ("outer_angle", "angle"),
+    ("fov_y", "angle fov"),
+    ("period", "duration"),
+    ("plane", "floor ground"),
+    ("position", "eye from location origin point pos"),
+    ("camera", "eye view"),
+    ("center", "centre location origin point pos position"),
+    ("direction", "dir forward view"),
+    ("directional", "dir distance distant sun"),
+    ("point", "omni origin pos position"),
+    ("radius", "r size"),
+    ("reflect", "metal metallic mirror reflection reflective reflectivity"),
+    ("rotate", "rotation"),
+    ("scale", "size"),
+    ("shadow", "shadow shadows castsshadow castshadow"),
+    ("shininess", "alpha exponent ns roughness"),
+    ("size", "dimensions height resolution width"),
+    ("ortho_height", "height orthographic"),
+    ("specular", "ks"),
+    ("spp", "antialiasing samples"),
+    ("times", "keytimes"),
+    ("tone", "curve tonemap tonemapping"),
+    ("track", "keyframe keyframes"),
+    ("transfer", "gamma"),
+    ("translate", "location pos position translation"),
+    ("transmit", "transparency transparent transmission transmittance glass opacity"),
 ];
 
-/// The one of `candidates` that `found` was probably meant to be.
+/// Returns the one of `candidates` that `found` was probably meant to be.
 pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
     let folded = fold(found);
-    let habit = HABITS.iter().find(|(habit, _)| *habit == folded);
-    let meant =
-        habit.and_then(|(_, meant)| meant.iter().find_map(|m| candidates.iter().find(|c| *c == m)));
-    if let Some(meant) = meant {
-        return Some(meant);
+    // A word that means one of them.
+    let means = |words: &str| words.split(' ').any(|word| word == folded);
+    let mut meant = SYNONYMS.iter().filter(|(_, words)| means(words));
+    if let Some(name) = meant.find_map(|(name, _)| candidates.iter().find(|c| *c == name)) {
+        return Some(name);
     }
+    // The nearest by typing errors, if these are few.
     let distance = |candidate: &str| strsim::damerau_levenshtein(&folded, &fold(candidate));
     let (nearest, distance) =
         candidates.iter().map(|c| (*c, distance(c))).min_by_key(|(_, distance)| *distance)?;
@@ -135,7 +82,7 @@ pub fn closest<'a>(found: &str, candidates: &[&'a str]) -> Option<&'a str> {
         .then_some(nearest)
 }
 
-/// "did you mean `x`?", or what there is to choose from.
+/// Returns "did you mean `x`?", or the names to choose from.
 pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     match closest(found, candidates) {
         Some(meant) => format!("did you mean `{meant}`?"),
@@ -143,7 +90,8 @@ pub fn advice(found: &str, candidates: &[&str], kind: &str) -> String {
     }
 }
 
-/// As [`advice`], with what there is to choose from in either case: of names that somebody gave.
+/// Returns the names to choose from, and before them "did you mean `x`?", where that is likely: for
+/// names that somebody gave.
 pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
     let all = list(candidates);
     match closest(found, candidates) {
@@ -152,19 +100,19 @@ pub fn choice(found: &str, candidates: &[&str], kinds: &str) -> String {
     }
 }
 
-/// `a`, `b` and `c`; the first of many.
+/// Returns "`a`, `b` and `c`"; of many names the first.
 pub fn list(names: &[&str]) -> String {
-    const MOST: usize = 20;
-    let quoted: Vec<String> = names.iter().take(MOST).map(|n| format!("`{n}`")).collect();
+    const MAX_NAMES: usize = 20;
+    let quoted: Vec<String> = names.iter().take(MAX_NAMES).map(|n| format!("`{n}`")).collect();
     match &quoted[..] {
         [] => String::new(),
         [only] => only.clone(),
-        all if names.len() > MOST => format!("{} …", all.join(", ")),
+        all if names.len() > MAX_NAMES => format!("{} …", all.join(", ")),
         [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }
 
-/// Case and separators are where most misspellings differ.
+/// Folds a name: without case and separators, by which most misspellings differ.
 fn fold(name: &str) -> String {
     name.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
 }
@@ -181,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn a_habit_means_what_can_stand_there() {
+    fn a_synonym_means_what_can_stand_there() {
         assert_eq!(closest("colour", &["kind", "color"]), Some("color"));
         assert_eq!(closest("colour", &["name", "diffuse"]), Some("diffuse"));
     }
@@ -198,9 +146,9 @@ mod tests {
     }
 
     #[test]
-    fn habits_are_folded() {
-        for (habit, _) in HABITS {
-            assert_eq!(*habit, fold(habit));
+    fn synonyms_are_folded() {
+        for word in SYNONYMS.iter().flat_map(|(_, words)| words.split(' ')) {
+            assert_eq!(word, fold(word));
         }
     }
 }

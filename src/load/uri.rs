@@ -1,4 +1,4 @@
-//! What the URIs of a glTF file name.
+//! The URIs of a glTF file.
 
 use base64::Engine;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
@@ -6,7 +6,7 @@ use percent_encoding::percent_decode_str;
 
 use crate::error::{Error, Result};
 
-/// Base64 with or without its padding, as files have both.
+/// The decoder of Base64, with or without its padding, as files have both.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
     &base64::alphabet::STANDARD,
     GeneralPurposeConfig::new()
@@ -14,12 +14,12 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
         .with_decode_allow_trailing_bits(true),
 );
 
-/// What a URI names.
+/// A parsed URI.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Uri {
-    /// Bytes in the URI itself.
+    /// The bytes in the URI itself.
     Data(Vec<u8>),
-    /// A file, by the first of these names that there is.
+    /// A file, by the first of these names that exists.
     File(Vec<String>),
 }
 
@@ -30,7 +30,7 @@ impl Uri {
     /// When it is an address elsewhere, or data that cannot be decoded.
     pub fn parse(uri: &str) -> Result<Self> {
         if let Some(rest) = strip_prefix_ignoring_case(uri, "data:") {
-            return data(rest).map(Self::Data);
+            return decode_data(rest).map(Self::Data);
         }
         let path = match scheme(uri) {
             None => uri,
@@ -60,8 +60,8 @@ impl Uri {
     }
 }
 
-/// The bytes of a data URI, without its `data:`.
-fn data(uri: &str) -> Result<Vec<u8>> {
+/// Decodes the bytes of a data URI, without its `data:`.
+fn decode_data(uri: &str) -> Result<Vec<u8>> {
     let (head, payload) = uri
         .split_once(',')
         .ok_or_else(|| Error::input("the data URI has no comma").help("`data:TYPE;base64,DATA`"))?;
@@ -78,14 +78,14 @@ fn strip_prefix_ignoring_case<'s>(text: &'s str, prefix: &str) -> Option<&'s str
     head.eq_ignore_ascii_case(prefix).then(|| &text[prefix.len()..])
 }
 
-/// A URI's scheme. One letter is a Windows drive, not a scheme.
+/// Returns the scheme of a URI. One letter is a Windows drive, not a scheme.
 fn scheme(uri: &str) -> Option<&str> {
     let (scheme, _) = uri.split_once(':')?;
-    let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
-    let is_one = scheme.len() > 1
+    let is_allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '+' | '-' | '.');
+    let is_scheme = scheme.len() > 1
         && scheme.starts_with(|c: char| c.is_ascii_alphabetic())
-        && scheme.chars().all(fits);
-    is_one.then_some(scheme)
+        && scheme.chars().all(is_allowed);
+    is_scheme.then_some(scheme)
 }
 
 #[cfg(test)]
@@ -101,13 +101,13 @@ mod tests {
 
     #[test]
     fn base64_needs_no_padding() {
-        assert_eq!(data("x/y;base64,QUI").unwrap(), b"AB");
-        assert_eq!(data("x/y;base64,QUI=").unwrap(), b"AB");
+        assert_eq!(decode_data("x/y;base64,QUI").unwrap(), b"AB");
+        assert_eq!(decode_data("x/y;base64,QUI=").unwrap(), b"AB");
     }
 
     #[test]
     fn data_without_base64_is_percent_encoded() {
-        assert_eq!(data("text/plain,a%20b%FF").unwrap(), b"a b\xFF");
+        assert_eq!(decode_data("text/plain,a%20b%FF").unwrap(), b"a b\xFF");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! One picture against another: RMSE, PSNR, largest difference.
+//! The comparison of two pictures: RMSE, PSNR and the largest difference.
 
 use std::path::Path;
 
@@ -8,27 +8,28 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::write::Format;
 
-/// A picture read back from a file.
+/// A picture as it is stored in a PNG or EXR file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Width and height.
+    /// The width and height in pixels.
     pub size: [u32; 2],
     /// The channels' names, in the order of their values.
     pub channels: Vec<String>,
-    /// For each pixel a value for each channel: a PNG's bytes over 255, an EXR's floats.
+    /// The values of each pixel's channels: a PNG's bytes over 255, an EXR's floats.
     pub values: Vec<f32>,
 }
 
-/// How much two pictures differ.
+/// The differences of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Root of the mean squared difference of the values.
+    /// The root-mean-square difference of the values.
     pub rmse: f64,
-    /// −20 log₁₀ rmse, in dB, for a peak of 1; infinite (null in JSON) when the pictures are equal.
+    /// The peak signal-to-noise ratio for a peak of 1, −20 log₁₀ rmse in dB; infinite (null in JSON)
+    /// when the pictures are equal.
     pub psnr: f64,
-    /// Largest difference of two values.
+    /// The largest difference of two values.
     pub max: f64,
-    /// Pixels of which some value differs by more than the tolerance.
+    /// The number of pixels with a value that differs by more than the tolerance.
     pub pixels_differing: u64,
 }
 
@@ -42,8 +43,8 @@ impl Picture {
         let damaged = |e: &dyn std::fmt::Display| {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
-        match Format::of(path)? {
-            Format::Gif | Format::Apng => Err(Error::input("animated pictures are not compared")
+        match Format::from_path(path)? {
+            Format::Gif | Format::Apng => Err(Error::input("animated pictures cannot be compared")
                 .at(path)
                 .help("compare their frames: render them as `-o frame-####.png`")),
             Format::Png => {
@@ -80,17 +81,17 @@ impl Picture {
     }
 }
 
-/// Compares two pictures of one size and with the same channels. Values that are the same
-/// infinity, or both not a number, do not differ; one that is finite in one picture only differs
+/// Computes the differences of two pictures of the same size and channels. Values that are the same
+/// infinity, or both NaN, do not differ; a value that is finite in one picture only differs
 /// infinitely.
 ///
 /// # Errors
-/// When sizes or channels differ.
-pub fn compare(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comparison> {
+/// When the sizes or the channels differ.
+pub fn compare_pictures(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comparison> {
     if a.size != b.size {
-        let [w, h] = a.size;
-        let [v, g] = b.size;
-        return Err(Error::input(format!("{w}x{h} and {v}x{g} pixels cannot be compared")));
+        let [size, other] =
+            [a, b].map(|picture| format!("{}x{}", picture.size[0], picture.size[1]));
+        return Err(Error::input(format!("{size} and {other} pixels cannot be compared")));
     }
     if a.channels != b.channels {
         let (a, b) = (a.channels.join(", "), b.channels.join(", "));
@@ -135,31 +136,31 @@ mod tests {
     #[test]
     fn equal_pictures_have_no_error_and_infinite_psnr() {
         let a = grey(&[0.5, f32::INFINITY, f32::NAN]);
-        let c = compare(&a, &a, 0.0).unwrap();
+        let c = compare_pictures(&a, &a, 0.0).unwrap();
         assert_eq!((c.rmse, c.psnr, c.pixels_differing), (0.0, f64::INFINITY, 0));
     }
 
     #[test]
     fn rmse_and_psnr_of_a_known_difference() {
-        let c = compare(&grey(&[0.0, 0.0]), &grey(&[0.1, 0.1]), 0.0).unwrap();
+        let c = compare_pictures(&grey(&[0.0, 0.0]), &grey(&[0.1, 0.1]), 0.0).unwrap();
         assert!((c.rmse - 0.1).abs() < 1e-7 && (c.psnr - 20.0).abs() < 1e-5, "{c:?}");
     }
 
     #[test]
     fn tolerance_decides_which_pixels_differ() {
-        let c = compare(&grey(&[0.0, 0.0, 0.0]), &grey(&[0.0, 0.1, 0.2]), 0.15).unwrap();
+        let c = compare_pictures(&grey(&[0.0, 0.0, 0.0]), &grey(&[0.0, 0.1, 0.2]), 0.15).unwrap();
         assert_eq!(c.pixels_differing, 1);
     }
 
     #[test]
     fn a_value_that_is_finite_in_one_picture_only_differs_infinitely() {
-        let c = compare(&grey(&[f32::NAN]), &grey(&[0.0]), 1.0).unwrap();
+        let c = compare_pictures(&grey(&[f32::NAN]), &grey(&[0.0]), 1.0).unwrap();
         assert_eq!((c.max, c.pixels_differing), (f64::INFINITY, 1));
     }
 
     #[test]
     fn sizes_that_differ_are_an_error() {
-        let error = compare(&grey(&[0.0]), &grey(&[0.0, 0.0]), 0.0).unwrap_err();
+        let error = compare_pictures(&grey(&[0.0]), &grey(&[0.0, 0.0]), 0.0).unwrap_err();
         assert_eq!(error.message(), "1x1 and 2x1 pixels cannot be compared");
     }
 }

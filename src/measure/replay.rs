@@ -1,4 +1,4 @@
-//! One ray again, asked of every intersector.
+//! The replay of one ray with every intersector.
 
 use std::fmt;
 
@@ -7,66 +7,71 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::geometry::{Geometry, Hit, Ray};
+#[cfg(feature = "embree")]
+use crate::intersect::Backend;
 use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use crate::measure::oracle::Oracle;
+use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
 use crate::scene::Scene;
 use crate::scene::check::MAX_COORDINATE;
 use crate::surface::Surface;
 
-/// What everyone says of a ray.
+/// The answers of all intersectors for one ray.
 #[derive(Clone, Debug, Serialize)]
 pub struct Replay {
-    /// The ray, as [`ray_from_text`] takes it.
+    /// The ray, as [`ray_from_text`] parses it.
     pub ray: String,
     /// The answers; the first one is the reference.
     pub answers: Vec<Answer>,
 }
 
-/// What one intersector says of a ray, and of the shadow rays from what the reference hits.
+/// The answer of one intersector for a ray, and for the shadow rays from the reference's hit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
-    /// Who says so.
+    /// The name of the intersector and its precision.
     pub name: &'static str,
     /// The closest hit; null for none.
-    pub hit: Option<Met>,
-    /// How far t is from the reference, in units in the last place; null where the two do not hit
+    pub hit: Option<ReplayedHit>,
+    /// The difference of t from the reference, in units in the last place; null unless the two hit
     /// the same primitive.
     pub t_error_ulp: Option<u64>,
-    /// Whether each light that casts shadows is hidden from the point that the reference hits.
-    pub hidden: Vec<Hidden>,
+    /// The occlusion of each light that casts shadows, seen from the reference's hit.
+    #[serde(rename = "hidden")]
+    pub lights: Vec<LightOcclusion>,
 }
 
-/// A hit in words and numbers.
+/// A hit as it is printed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Met {
+pub struct ReplayedHit {
     /// `sphere`, `plane` or `triangle`.
     pub kind: &'static str,
-    /// Its index; a triangle's within its mesh.
+    /// The index of the primitive; of a triangle its index in the mesh.
     pub primitive: u32,
-    /// The mesh and the instance of a triangle; null for spheres and planes.
+    /// The index of a triangle's mesh; null for spheres and planes.
     pub mesh: Option<u32>,
-    /// See `mesh`.
+    /// The index of a triangle's instance; null for spheres and planes.
     pub instance: Option<u32>,
-    /// Distance, in units of the direction's length.
+    /// The distance, in units of the ray's |direction|.
     pub t: f64,
-    /// Weight of a triangle's second corner.
+    /// The weight of a triangle's second vertex.
     pub u: f64,
-    /// Weight of a triangle's third corner.
+    /// The weight of a triangle's third vertex.
     pub v: f64,
 }
 
-/// Whether a light is hidden.
+/// The occlusion of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct Hidden {
-    /// The light's index.
+pub struct LightOcclusion {
+    /// The index of the light.
     pub light: usize,
-    /// Whether something stands before it.
-    pub blocked: bool,
+    /// True if something blocks the shadow ray.
+    #[serde(rename = "blocked")]
+    pub is_occluded: bool,
 }
 
-/// Asks the exact oracle, brute force, the BVH and, where it is built in, Embree, in both
-/// precisions, what `ray` meets in `scene`. The oracle and brute force try every primitive.
+/// Traces `ray` with the exact oracle, brute force, the BVH and, if it is built in, Embree, in both
+/// precisions. The oracle and brute force test every primitive.
 ///
 /// # Errors
 /// When the scene is not valid, or Embree cannot be started.
@@ -74,52 +79,35 @@ pub fn replay(scene: &Scene, ray: &Ray) -> Result<Replay> {
     use Precision::{Certified, Fast};
     scene.check()?;
     render::in_pool(0, || {
-        let others: [Named<'_>; 5] = [
+        let intersectors: Vec<Named<'_>> = vec![
             ("oracle", Box::new(Oracle::new(scene))),
             ("brute certified", Box::new(BruteForce::new(scene, Certified))),
             ("brute fast", Box::new(BruteForce::new(scene, Fast))),
             ("rust certified", Box::new(Bvh::build(scene, Certified))),
             ("rust fast", Box::new(Bvh::build(scene, Fast))),
+            #[cfg(feature = "embree")]
+            ("embree certified", Backend::Embree.build(scene, Certified, 0)?),
+            #[cfg(feature = "embree")]
+            ("embree fast", Backend::Embree.build(scene, Fast, 0)?),
         ];
-        let asked = others.into_iter().chain(embree(scene)?).collect::<Vec<_>>();
-        let asked: Vec<(&'static str, &dyn Intersector)> =
-            asked.iter().map(|(name, intersector)| (*name, &**intersector)).collect();
-        Ok(ask(scene, ray, &asked))
+        Ok(replay_with(scene, ray, &intersectors))
     })
 }
 
-/// An intersector, and what it is called here.
+/// An intersector and its name in the replay.
 type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
 
-/// Embree in both precisions, where it is built in.
-#[cfg(feature = "embree")]
-fn embree(scene: &Scene) -> Result<Vec<Named<'_>>> {
-    let names = [("embree certified", Precision::Certified), ("embree fast", Precision::Fast)];
-    let build = |(name, precision)| -> Result<Named<'_>> {
-        Ok((name, crate::intersect::Backend::Embree.build(scene, precision, 0)?))
-    };
-    names.into_iter().map(build).collect()
-}
-
-/// Embree, which this build is without.
-#[cfg(not(feature = "embree"))]
-fn embree(_: &Scene) -> Result<[Named<'_>; 0]> {
-    Ok([])
-}
-
-/// Asks each of `asked`; the first one is the reference.
-fn ask(scene: &Scene, ray: &Ray, asked: &[(&'static str, &dyn Intersector)]) -> Replay {
-    let hits: Vec<Option<Hit>> = asked
+/// Traces a ray with the intersectors, the first of which is the reference.
+fn replay_with(scene: &Scene, ray: &Ray, intersectors: &[Named<'_>]) -> Replay {
+    let hits: Vec<Option<Hit>> = intersectors
         .iter()
-        .map(|(_, intersector)| {
-            let mut hit = [None];
-            intersector.closest(&[*ray], Coherence::Coherent, &mut hit);
-            hit[0]
-        })
+        .map(|(_, intersector)| closest(&**intersector, &[*ray], Coherence::Coherent)[0])
         .collect();
+
+    // The shadow rays from the reference's hit.
     let reference = hits.first().copied().flatten();
     let surface = reference.map(|hit| Surface::new(scene, ray, &hit));
-    let shadows: Vec<(usize, Ray)> = (0..)
+    let shadow_rays: Vec<(usize, Ray)> = (0..)
         .zip(&scene.lights)
         .filter(|(_, light)| light.casts_shadow())
         .filter_map(|(i, light)| {
@@ -127,24 +115,24 @@ fn ask(scene: &Scene, ray: &Ray, asked: &[(&'static str, &dyn Intersector)]) -> 
             Some((i, surface.shadow_ray(&light.incident(surface.position)?)))
         })
         .collect();
-    let answers = asked.iter().zip(&hits).map(|((name, intersector), hit)| {
-        let hidden = shadows.iter().map(|&(light, shadow)| {
-            let mut blocked = [false];
-            intersector.occluded(&[shadow], Coherence::Coherent, &mut blocked);
-            Hidden { light, blocked: blocked[0] }
+
+    let answers = intersectors.iter().zip(&hits).map(|((name, intersector), hit)| {
+        let lights = shadow_rays.iter().map(|&(light, ray)| {
+            let is_occluded = occluded(&**intersector, &[ray], Coherence::Coherent)[0];
+            LightOcclusion { light, is_occluded }
         });
-        let same = hit.zip(reference).filter(|(a, b)| a.id == b.id);
+        let same_primitive = hit.zip(reference).filter(|(a, b)| a.id == b.id);
         Answer {
             name,
-            hit: hit.map(Met::from),
-            t_error_ulp: same.map(|(a, b)| a.t.to_bits().abs_diff(b.t.to_bits())),
-            hidden: hidden.collect(),
+            hit: hit.map(ReplayedHit::from),
+            t_error_ulp: same_primitive.map(|(a, b)| ulps_between(a.t, b.t)),
+            lights: lights.collect(),
         }
     });
     Replay { ray: ray_to_text(ray), answers: answers.collect() }
 }
 
-impl From<Hit> for Met {
+impl From<Hit> for ReplayedHit {
     fn from(hit: Hit) -> Self {
         let (kind, mesh) = match hit.id.geometry {
             Geometry::Spheres => ("sphere", None),
@@ -166,9 +154,9 @@ impl fmt::Display for Replay {
                 (Some(hit), None) => write!(f, "{hit}")?,
                 (Some(hit), Some(ulp)) => write!(f, "{hit}  {ulp} ulp")?,
             }
-            for Hidden { light, blocked } in &answer.hidden {
-                let seen = if *blocked { "hidden" } else { "in sight" };
-                write!(f, "  light {light} {seen}")?;
+            for LightOcclusion { light, is_occluded } in &answer.lights {
+                let visibility = if *is_occluded { "hidden" } else { "in sight" };
+                write!(f, "  light {light} {visibility}")?;
             }
             writeln!(f)?;
         }
@@ -176,40 +164,40 @@ impl fmt::Display for Replay {
     }
 }
 
-impl fmt::Display for Met {
+impl fmt::Display for ReplayedHit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.kind, self.primitive)?;
         if let (Some(mesh), Some(instance)) = (self.mesh, self.instance) {
             write!(f, " of mesh {mesh} in instance {instance}")?;
         }
-        // As Debug, so that the shortest digits that give the number back stand there.
+        // Debug prints the shortest digits from which the number is read back exactly.
         write!(f, "  t {:?}", self.t)?;
         if self.mesh.is_some() { write!(f, "  u {:?}  v {:?}", self.u, self.v) } else { Ok(()) }
     }
 }
 
-/// A ray as six numbers with commas between them, origin and direction: the shortest decimals that
-/// give every bit back.
+/// Returns a ray as six numbers with commas between them, origin and direction: the shortest
+/// decimals from which every bit is read back.
 pub fn ray_to_text(ray: &Ray) -> String {
     let numbers = [ray.origin, ray.direction].map(|v| v.to_array()).concat();
     numbers.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(",")
 }
 
-/// An unbounded ray that left no surface, from what [`ray_to_text`] writes.
+/// Parses an unbounded ray without a departure, as [`ray_to_text`] writes it.
 ///
 /// # Errors
-/// What is wrong, in words: it is not six finite numbers, the origin is beyond what a scene may
-/// reach, or the direction is zero.
+/// A message, when the text is not six finite numbers, the origin is beyond the limit of a scene's
+/// coordinates, or the direction is zero.
 pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
-    let form = "expected ox,oy,oz,dx,dy,dz: six numbers, origin and direction";
+    let expected = "expected ox,oy,oz,dx,dy,dz: six numbers, origin and direction";
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let parts: [&str; 6] =
-        parts.try_into().map_err(|p: Vec<_>| format!("{form}; found {} parts", p.len()))?;
+        parts.try_into().map_err(|p: Vec<_>| format!("{expected}; found {} parts", p.len()))?;
     let mut numbers = [0.0; 6];
     for (number, part) in numbers.iter_mut().zip(parts) {
-        *number = part.parse().map_err(|_| format!("{form}; `{part}` is not a number"))?;
+        *number = part.parse().map_err(|_| format!("{expected}; `{part}` is not a number"))?;
         if !f64::is_finite(*number) {
-            return Err(format!("{form}; `{part}` is not finite"));
+            return Err(format!("{expected}; `{part}` is not finite"));
         }
     }
     let [ox, oy, oz, dx, dy, dz] = numbers;
@@ -247,27 +235,27 @@ mod tests {
     }
 
     #[test]
-    fn everyone_is_asked_and_agrees_on_an_easy_ray() {
+    fn all_intersectors_agree_on_an_easy_ray() {
         let ray = Ray::new(DVec3::new(2.0, 2.0, 0.0), DVec3::new(-1.0, -1.0, 0.0));
         let found = replay(&scene(), &ray).unwrap();
         assert_eq!(found.answers.len(), if cfg!(feature = "embree") { 7 } else { 5 });
         for answer in &found.answers {
             let hit = answer.hit.as_ref().unwrap();
             assert_eq!((hit.kind, hit.t, answer.t_error_ulp), ("plane", 2.0, Some(0)));
-            assert_eq!(answer.hidden, [Hidden { light: 0, blocked: true }]);
+            assert_eq!(answer.lights, [LightOcclusion { light: 0, is_occluded: true }]);
         }
     }
 
     #[test]
-    fn what_hits_another_primitive_than_the_reference_has_no_error_of_t() {
+    fn a_hit_of_another_primitive_than_the_reference_has_no_error_of_t() {
         let (with, mut without) = (scene(), scene());
         without.spheres.clear();
         let ray = Ray::new(DVec3::Y * 9.0, DVec3::NEG_Y);
-        let asked: [(_, &dyn Intersector); 2] = [
-            ("with", &BruteForce::new(&with, Precision::Fast)),
-            ("without", &BruteForce::new(&without, Precision::Fast)),
+        let intersectors: [Named<'_>; 2] = [
+            ("with", Box::new(BruteForce::new(&with, Precision::Fast))),
+            ("without", Box::new(BruteForce::new(&without, Precision::Fast))),
         ];
-        let found = ask(&with, &ray, &asked);
+        let found = replay_with(&with, &ray, &intersectors);
         let errors: Vec<_> = found.answers.iter().map(|a| a.t_error_ulp).collect();
         assert_eq!(errors, [Some(0), None]);
     }

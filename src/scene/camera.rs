@@ -1,32 +1,33 @@
-//! The eye.
+//! The camera, and the primary rays that it generates.
 
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
 use crate::geometry::{LANES, Lanes, Ray, Ray16};
 
-/// How much a camera sees; exactly one of the ways to say it.
+/// The projection of a camera, with its field of view.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
-    /// The angle between the lower and the upper edge, in radians, in (0, π).
+    /// A perspective with this angle between the lower and the upper edge, in radians, in (0, π).
     FovY(f64),
-    /// The angle between the left and the right edge, in radians, in (0, π).
+    /// A perspective with this angle between the left and the right edge, in radians, in (0, π).
     FovX(f64),
-    /// The tutorial's D: the distance to the picture in pixels of a picture `width` wide. A
-    /// picture of another width has its distance scaled with it, so that it sees as much.
+    /// A perspective with this focal length, the tutorial's D, in pixels of a picture `width` wide. For
+    /// a picture of another width it is scaled, so that the field of view stays.
     FocalPx {
-        /// The distance, above 0, in pixels.
+        /// The focal length, above 0, in pixels.
         focal: f64,
-        /// The width that it refers to, in pixels.
+        /// The width of the picture that it refers to, in pixels.
         width: u32,
     },
-    /// Parallel rays; the height of what is seen, above 0, in world units.
+    /// An orthographic projection with this height of the view, above 0, in world units.
     OrthoHeight(f64),
 }
 
 impl Projection {
-    /// The same kind of lens with another angle, in radians, distance or height.
-    pub fn with(self, value: f64) -> Self {
+    /// The same kind of projection with another angle (in radians), focal length or height.
+    pub fn with_value(self, value: f64) -> Self {
         match self {
             Projection::FovY(_) => Projection::FovY(value),
             Projection::FovX(_) => Projection::FovX(value),
@@ -39,26 +40,31 @@ impl Projection {
 /// A pinhole or orthographic camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
-    /// Its name, or nothing.
+    /// The name, which may be empty.
     pub name: String,
-    /// Where it stands, in world space.
+    /// The position, in world space.
     pub position: DVec3,
-    /// Where it looks, of length 1.
+    /// The viewing direction, of length 1.
     pub forward: DVec3,
-    /// The picture's right, of length 1 and orthogonal to `forward`.
+    /// The direction to the right of the picture, of length 1 and orthogonal to `forward`.
     pub right: DVec3,
-    /// The picture's up, `right × forward`.
+    /// The direction to the top of the picture, `right × forward`.
     pub up: DVec3,
-    /// How much it sees.
-    pub lens: Projection,
+    /// The projection.
+    pub projection: Projection,
 }
 
 impl Camera {
-    /// A camera at `position` that looks at `target` with `up` as upward as can be.
+    /// A camera at `position` that looks at `target`, with `up` as upward in the picture as can be.
     ///
     /// # Errors
     /// When `target` is the position, or `up` is zero or points along the view.
-    pub fn look_at(position: DVec3, target: DVec3, up: DVec3, lens: Projection) -> Result<Self> {
+    pub fn look_at(
+        position: DVec3,
+        target: DVec3,
+        up: DVec3,
+        projection: Projection,
+    ) -> Result<Self> {
         let forward = (target - position).try_normalize().ok_or_else(|| {
             Error::input("the camera looks at the point where it stands")
                 .help("`look_at` must differ from `position`")
@@ -70,52 +76,47 @@ impl Camera {
         }
         let right = right.normalize();
         let up = right.cross(forward);
-        Ok(Self { name: String::new(), position, forward, right, up, lens })
+        Ok(Self { name: String::new(), position, forward, right, up, projection })
     }
 
-    /// The camera moved and turned, so that it sees the placed scene as it saw the scene; only a
-    /// mirror or a shear it does not follow. None when the transform is too uneven to leave it an
-    /// up.
-    pub fn placed(&self, transform: &DAffine3) -> Option<Self> {
+    /// The camera transformed, so that it sees the transformed scene as it saw the scene before; it does
+    /// not follow reflections and shears. `None` when the transform is too uneven to leave it an upward
+    /// direction.
+    pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
         let forward = transform.transform_vector3(self.forward).try_normalize()?;
         let up = transform.transform_vector3(self.up);
-        let lens = match self.lens {
+        let projection = match self.projection {
             Projection::OrthoHeight(height) => Projection::OrthoHeight(height * up.length()),
-            lens => lens,
+            perspective => perspective,
         };
-        let placed = Self::look_at(DVec3::ZERO, forward, up, lens).ok()?;
+        let turned = Self::look_at(DVec3::ZERO, forward, up, projection).ok()?;
         let position = transform.transform_point3(self.position);
-        Some(Self { name: self.name.clone(), position, ..placed })
+        Some(Self { name: self.name.clone(), position, ..turned })
     }
 
-    /// The rays of a picture of `size` pixels.
-    pub fn rays(&self, size: [u32; 2]) -> RayGenerator {
+    /// The generator of the primary rays of a picture of `size` pixels.
+    pub fn ray_generator(&self, size: [u32; 2]) -> RayGenerator {
         let [width, height] = size.map(f64::from);
-        let focal = match self.lens {
-            Projection::FovY(angle) => height * 0.5 / (angle * 0.5).tan(),
-            Projection::FovX(angle) => width * 0.5 / (angle * 0.5).tan(),
-            Projection::FocalPx { focal, width: of } => focal * width / f64::from(of),
-            Projection::OrthoHeight(world) => {
-                return RayGenerator {
-                    origin: self.position,
-                    per_pixel: [self.right, -self.up].map(|axis| axis * (world / height)),
-                    forward: self.forward,
-                    middle: [width * 0.5, height * 0.5],
-                    parallel: true,
-                };
+        // The distance to the picture in pixels and, for parallel rays, the size of a pixel.
+        let (focal, pixel) = match self.projection {
+            Projection::FovY(angle) => (height * 0.5 / (angle * 0.5).tan(), 1.0),
+            Projection::FovX(angle) => (width * 0.5 / (angle * 0.5).tan(), 1.0),
+            Projection::FocalPx { focal, width: nominal } => {
+                (focal * width / f64::from(nominal), 1.0)
             }
+            Projection::OrthoHeight(world) => (1.0, world / height),
         };
         RayGenerator {
             origin: self.position,
-            per_pixel: [self.right, -self.up],
+            per_pixel: [self.right, -self.up].map(|axis| axis * pixel),
             forward: self.forward * focal,
             middle: [width * 0.5, height * 0.5],
-            parallel: false,
+            is_parallel: matches!(self.projection, Projection::OrthoHeight(_)),
         }
     }
 }
 
-/// The rays of one picture: from the eye through each point of it.
+/// A generator of primary rays: through each point of a picture, from the camera.
 ///
 /// The direction of a perspective ray is measured in pixels, as the tutorial's `direction(x, y)`:
 /// (x − width/2, y − height/2, D) in the camera's own axes, and not of length 1.
@@ -125,19 +126,20 @@ pub struct RayGenerator {
     per_pixel: [DVec3; 2],
     forward: DVec3,
     middle: [f64; 2],
-    parallel: bool,
+    is_parallel: bool,
 }
 
 impl RayGenerator {
-    /// The one point that all rays start from, if there is one.
+    /// The point from which all rays start; none for an orthographic camera.
     pub fn eye(&self) -> Option<DVec3> {
-        (!self.parallel).then_some(self.origin)
+        (!self.is_parallel).then_some(self.origin)
     }
 
-    /// The width of a pixel one unit of a ray's t away, and where the ray starts, in world units.
-    pub fn pixel(&self) -> [f64; 2] {
+    /// The growth of a pixel's width per unit of a ray's t, and its width at the ray's origin, in world
+    /// units.
+    pub fn pixel_size(&self) -> [f64; 2] {
         let width = self.per_pixel[0].length();
-        if self.parallel { [0.0, width] } else { [width, 0.0] }
+        if self.is_parallel { [0.0, width] } else { [width, 0.0] }
     }
 
     /// The ray through (x, y), in pixels from the upper left corner of the picture.
@@ -145,23 +147,21 @@ impl RayGenerator {
     pub fn ray(&self, x: f64, y: f64) -> Ray {
         let offset =
             self.per_pixel[0] * (x - self.middle[0]) + self.per_pixel[1] * (y - self.middle[1]);
-        let (moved, turned) = match self.parallel {
-            true => (offset, DVec3::ZERO),
-            false => (DVec3::ZERO, offset),
-        };
-        Ray::new(self.origin + moved, turned + self.forward)
+        let (shift, turn) =
+            if self.is_parallel { (offset, DVec3::ZERO) } else { (DVec3::ZERO, offset) };
+        Ray::new(self.origin + shift, turn + self.forward)
     }
 
-    /// The rays through sixteen points of the picture, as [`RayGenerator::ray`].
+    /// Generates the rays through sixteen points of the picture, as [`RayGenerator::ray`].
     #[inline(always)]
-    pub fn ray16(&self, x: &Lanes<f64>, y: &Lanes<f64>, lines: &mut Ray16) {
+    pub fn ray16(&self, x: &Lanes<f64>, y: &Lanes<f64>, rays: &mut Ray16) {
         for i in 0..LANES {
             let ray = self.ray(x[i], y[i]);
             for axis in 0..3 {
-                lines.origin[axis][i] = ray.origin[axis];
-                lines.direction[axis][i] = ray.direction[axis];
+                rays.origin[axis][i] = ray.origin[axis];
+                rays.direction[axis][i] = ray.direction[axis];
             }
-            lines.tmax[i] = ray.tmax;
+            rays.tmax[i] = ray.tmax;
         }
     }
 }
@@ -175,7 +175,7 @@ mod tests {
     fn tutorial_camera_gives_the_tutorials_directions() {
         let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, -DVec3::Y, lens).unwrap();
-        let ray = camera.rays([1000, 500]).ray(3.0, 7.0);
+        let ray = camera.ray_generator([1000, 500]).ray(3.0, 7.0);
         assert_eq!(ray.direction, DVec3::new(3.0 - 500.0, 7.0 - 250.0, 500.0));
     }
 
@@ -190,7 +190,7 @@ mod tests {
     fn ninety_degrees_see_as_far_up_as_ahead() {
         let camera =
             Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::FovY(FRAC_PI_2)).unwrap();
-        let top = camera.rays([200, 100]).ray(100.0, 0.0).direction.normalize();
+        let top = camera.ray_generator([200, 100]).ray(100.0, 0.0).direction.normalize();
         assert!((top.y + top.z).abs() < 1e-15, "{top}");
     }
 
@@ -198,7 +198,7 @@ mod tests {
     fn focal_length_scales_with_the_width() {
         let lens = Projection::FocalPx { focal: 500.0, width: 1000 };
         let camera = Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::Y, lens).unwrap();
-        let corner = |w: u32| camera.rays([w, w / 2]).ray(0.0, 0.0).direction.normalize();
+        let corner = |w: u32| camera.ray_generator([w, w / 2]).ray(0.0, 0.0).direction.normalize();
         assert!((corner(1000) - corner(250)).length() < 1e-15);
     }
 
@@ -207,7 +207,7 @@ mod tests {
         let camera =
             Camera::look_at(DVec3::ZERO, -DVec3::Z, DVec3::Y, Projection::OrthoHeight(2.0))
                 .unwrap();
-        let rays = camera.rays([100, 100]);
+        let rays = camera.ray_generator([100, 100]);
         let (a, b) = (rays.ray(0.0, 0.0), rays.ray(100.0, 50.0));
         assert_eq!(a.direction, b.direction);
         assert_eq!((a.origin, b.origin), (DVec3::new(-1.0, 1.0, 0.0), DVec3::X));

@@ -1,26 +1,52 @@
-//! What surfaces cover: alpha, and the holes that a mask cuts.
+//! Alpha coverage: where a surface is solid, cut out or see-through.
 
 use crate::geometry::{Geometry, PrimitiveId};
-use crate::scene::{AlphaMode, Coverage, Scene, Texture, TexturePoint};
+use crate::scene::{Channel, Scene, Texture, TexturePoint};
+
+/// The share of what lies behind it that a surface covers: its alpha, which is `alpha` times the map
+/// times the alpha of a mesh's vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coverage {
+    /// The factor, in \[0, 1\].
+    pub alpha: f32,
+    /// The map that it is multiplied with.
+    pub map: Option<Channel>,
+    /// The meaning of alpha.
+    pub mode: AlphaMode,
+}
+
+/// The meaning of alpha.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum AlphaMode {
+    /// A mask: where alpha is below the cutoff no ray hits the surface; for meshes only.
+    Mask {
+        /// The least alpha at which the surface is solid.
+        cutoff: f32,
+    },
+    /// A blend: the surface is seen by its share alpha, and what lies behind it by the rest. Its
+    /// material is `thin`, has an `ior` of 1 and no `transmit` of its own.
+    Blend,
+}
 
 impl Coverage {
-    /// The alpha at a point, where that of the mesh's vertices is `vertex`.
+    /// Evaluates alpha at a point, where that of the mesh's vertices is `vertex`.
     #[inline]
-    pub fn at(&self, textures: &[Texture], point: &TexturePoint, vertex: f32) -> f32 {
+    pub fn evaluate(&self, textures: &[Texture], point: &TexturePoint, vertex: f32) -> f32 {
         let map = self.map.map_or(1.0, |map| {
-            textures[map.texture.0 as usize].at(point)[usize::from(map.channel)]
+            textures[map.texture.0 as usize].sample(point)[usize::from(map.channel)]
         });
         let alpha = self.alpha * map * vertex;
-        // What is not a number becomes 0.
+        // A NaN becomes 0.
         if alpha > 0.0 { alpha.min(1.0) } else { 0.0 }
     }
 }
 
 impl Scene {
-    /// Whether the mask of its material cuts the point (`u`, `v`) out of a triangle, so that no ray
-    /// meets it there: the one alpha test, for every intersector.
+    /// True if the mask of its material cuts the point (`u`, `v`) out of a triangle, so that no ray
+    /// hits it there: the one alpha test of all intersectors.
     ///
-    /// The alpha is that of the picture itself, whatever is averaged where it is shaded.
+    /// Alpha is sampled without mipmaps, whatever shading averages.
     ///
     /// # Panics
     /// When `id` is not a primitive of this scene.
@@ -37,10 +63,10 @@ impl Scene {
         let weights = [1.0 - u - v, u, v];
         let uv = mesh.uv(id.primitive, weights);
         let point = TexturePoint { uv, ..TexturePoint::default() };
-        coverage.at(&self.textures, &point, mesh.alpha(id.primitive, weights)) < cutoff
+        coverage.evaluate(&self.textures, &point, mesh.alpha(id.primitive, weights)) < cutoff
     }
 
-    /// Whether the material of an instance cuts holes into its mesh.
+    /// True if the material of an instance cuts holes into its mesh.
     pub(crate) fn is_masked(&self, instance: u32) -> bool {
         let material = self.instances[instance as usize].material.0 as usize;
         self.materials.get(material).is_some_and(|m| m.is_masked())
@@ -56,7 +82,7 @@ mod tests {
     /// A triangle whose picture is solid on its left half only.
     fn half() -> Scene {
         let mut scene = Scene::default();
-        let image = Image::bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);
+        let image = Image::from_bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);
         let texture = Texture { filter: Filter::Nearest, ..Texture::new(image.into()) };
         let map = Some(Channel { texture: scene.add_texture(texture), channel: 3 });
         let coverage = Coverage { alpha: 1.0, map, mode: AlphaMode::Mask { cutoff: 0.5 } };

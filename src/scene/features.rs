@@ -1,47 +1,47 @@
-//! What work a scene needs, and why the rest can be left out.
+//! The features that a scene uses; work for all others is left out.
 
 use glam::Vec3;
 
 use crate::scene::{Image, Material, Mesh, Scene, TextureId};
 
-/// A kind of work that not every scene needs.
+/// A feature that not every scene uses, and that costs work where one does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(u8)]
 pub enum Feature {
-    /// A geometry of spheres, which every ray is tried against.
+    /// Spheres, a user geometry.
     Spheres,
-    /// Spaces of their own for meshes.
+    /// Meshes with more than one instance.
     Instances,
-    /// Planes, which every ray is tried against.
+    /// Planes, which every ray is tested against.
     Planes,
-    /// Reading and decoding pictures.
+    /// Images, which are read and decoded.
     Pictures,
     /// Texture coordinates.
     Uv,
-    /// How much of a picture each ray sees.
+    /// Mipmaps, for which every ray has a footprint.
     Mipmaps,
-    /// Normals from pictures.
+    /// Normal maps.
     NormalMaps,
-    /// Alpha, where a mask cuts holes into a mesh.
+    /// Alpha tests, where a mask cuts holes into a mesh.
     AlphaTests,
-    /// Checkers on planes.
+    /// Checkerboards on planes.
     Checkers,
-    /// Colours of vertices.
+    /// Vertex colours.
     VertexColors,
-    /// Normals of vertices.
+    /// Smooth shading by vertex normals.
     SmoothNormals,
     /// Phong's highlights.
     Highlights,
-    /// Rays to lights.
+    /// Shadow rays.
     Shadows,
-    /// Rays off mirrors and glass.
+    /// Reflected rays.
     Reflection,
-    /// Rays through glass, and the bodies that they are in.
+    /// Refracted rays, and the transparent bodies that they are in.
     Refraction,
 }
 
 impl Feature {
-    /// All kinds, in the order in which they are listed.
+    /// All features, in the order of reports.
     pub const ALL: [Self; 15] = [
         Self::Spheres,
         Self::Instances,
@@ -60,133 +60,145 @@ impl Feature {
         Self::Refraction,
     ];
 
-    /// What it is called in flags and reports.
+    /// The name in reports.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Spheres => "spheres",
-            Self::Instances => "instances",
-            Self::Planes => "planes",
-            Self::Pictures => "pictures",
-            Self::Uv => "uv",
-            Self::Mipmaps => "mipmaps",
-            Self::NormalMaps => "normal-maps",
-            Self::AlphaTests => "alpha-tests",
-            Self::Checkers => "checkers",
-            Self::VertexColors => "vertex-colors",
-            Self::SmoothNormals => "smooth-normals",
-            Self::Highlights => "highlights",
-            Self::Shadows => "shadows",
-            Self::Reflection => "reflection",
-            Self::Refraction => "refraction",
-        }
+        self.words().name
+    }
+
+    /// The words for it in reports.
+    const fn words(self) -> Words {
+        let (name, objects, predicate) = match self {
+            Self::Spheres => ("spheres", "spheres", "are user geometry"),
+            Self::Instances => ("instances", "meshes", "stand more than once"),
+            Self::Planes => ("planes", "planes", "are tried"),
+            Self::Pictures => ("pictures", "pictures", "are on a material in use"),
+            Self::Uv => ("uv", "materials in use", "have a picture"),
+            Self::Mipmaps => ("mipmaps", "materials in use", "have a picture with mipmaps"),
+            Self::NormalMaps => ("normal-maps", "materials in use", "have a normal map"),
+            Self::AlphaTests => ("alpha-tests", "materials in use", "have a mask"),
+            Self::Checkers => ("checkers", "planes", "have a checker"),
+            Self::VertexColors => ("vertex-colors", "meshes", "have colours"),
+            Self::SmoothNormals => ("smooth-normals", "meshes", "have normals"),
+            Self::Highlights => ("highlights", "materials in use", "have a highlight"),
+            Self::Shadows => ("shadows", "lights", "cast shadows"),
+            Self::Reflection => ("reflection", "materials in use", "are mirrors or glass"),
+            Self::Refraction => ("refraction", "materials in use", "let light through"),
+        };
+        Words { name, objects, predicate }
     }
 }
 
-/// What of the work a scene needs.
+/// The words for a feature in reports.
+struct Words {
+    name: &'static str,
+    /// The objects that may use the feature.
+    objects: &'static str,
+    /// The predicate of those that do.
+    predicate: &'static str,
+}
+
+/// The features that a scene uses; what is absent costs nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneFeatures {
-    /// For each kind of work, how many things need it, and of how many.
-    counts: [(u64, u64); Feature::ALL.len()],
+    usage: [Usage; Feature::ALL.len()],
+}
+
+/// The number of objects that use a feature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Usage {
+    users: usize,
+    /// The number of objects that could.
+    total: usize,
 }
 
 impl SceneFeatures {
-    /// What a checked scene needs.
-    pub fn of(scene: &Scene) -> Self {
+    /// Detects the features of a checked scene.
+    pub fn from_scene(scene: &Scene) -> Self {
         let materials: Vec<&Material> = scene.materials_in_use().collect();
-        let mut uses = vec![0u64; scene.meshes.len()];
-        scene.instances.iter().for_each(|i| uses[i.mesh.0 as usize] += 1);
-        let standing = || scene.meshes.iter().zip(&uses).filter(|(_, uses)| **uses > 0);
-        let shown = pictures(scene, materials.iter().copied()).len() as u64;
-        let made_of = |is: fn(&Material) -> bool| {
-            (materials.iter().filter(|m| is(m)).count() as u64, materials.len() as u64)
+        let mut instances = vec![0; scene.meshes.len()];
+        scene.instances.iter().for_each(|i| instances[i.mesh.0 as usize] += 1);
+        let meshes = scene.meshes.iter().zip(&instances).filter(|(_, count)| **count > 0);
+        let meshes: Vec<&Mesh> = meshes.map(|(mesh, _)| &**mesh).collect();
+
+        let all = |count: usize| Usage { users: count, total: count };
+        let of_materials = |uses: &dyn Fn(&Material) -> bool| Usage {
+            users: materials.iter().filter(|m| uses(m)).count(),
+            total: materials.len(),
         };
-        let count = |n: usize| (n as u64, n as u64);
-        let among = |some: usize, all: usize| (some as u64, all as u64);
-        let meshes = standing().count();
-        let counts = Feature::ALL.map(|work| match work {
-            Feature::Spheres => count(scene.spheres.len()),
-            Feature::Instances => among(uses.iter().filter(|&&n| n > 1).count(), meshes),
-            Feature::Planes => count(scene.planes.len()),
-            Feature::Pictures => (shown, pictures(scene, scene.materials.iter()).len() as u64),
-            Feature::Uv => made_of(Material::is_textured),
-            Feature::Mipmaps => {
-                let averaged = |id: TextureId| scene.textures[id.0 as usize].mipmap;
-                let some = materials.iter().filter(|m| m.textures().any(averaged)).count();
-                among(some, materials.len())
+        let of_meshes = |uses: fn(&Mesh) -> bool| Usage {
+            users: meshes.iter().filter(|mesh| uses(mesh)).count(),
+            total: meshes.len(),
+        };
+        let usage = Feature::ALL.map(|feature| match feature {
+            Feature::Spheres => all(scene.spheres.len()),
+            Feature::Instances => Usage {
+                users: instances.iter().filter(|&&count| count > 1).count(),
+                total: meshes.len(),
+            },
+            Feature::Planes => all(scene.planes.len()),
+            Feature::Pictures => Usage {
+                users: images_in(scene, materials.iter().copied()).len(),
+                total: images_in(scene, scene.materials.iter()).len(),
+            },
+            Feature::Uv => of_materials(&Material::is_textured),
+            Feature::Mipmaps => of_materials(&|m| {
+                m.textures().any(|id: TextureId| scene.textures[id.0 as usize].mipmap)
+            }),
+            Feature::NormalMaps => of_materials(&|m| m.normal_map.is_some()),
+            Feature::AlphaTests => of_materials(&Material::is_masked),
+            Feature::Checkers => Usage {
+                users: scene.planes.iter().filter(|p| p.checker.is_some()).count(),
+                total: scene.planes.len(),
+            },
+            Feature::VertexColors => of_meshes(|m| !(m.colors.is_empty() && m.alphas.is_empty())),
+            Feature::SmoothNormals => of_meshes(|m| !m.normals.is_empty()),
+            Feature::Highlights => {
+                of_materials(&|m| m.specular != Vec3::ZERO || m.metallic.is_some())
             }
-            Feature::NormalMaps => made_of(|m| m.normal_map.is_some()),
-            Feature::AlphaTests => made_of(Material::is_masked),
-            Feature::Checkers => {
-                let checkers = scene.planes.iter().filter(|p| p.checker.is_some());
-                among(checkers.count(), scene.planes.len())
-            }
-            Feature::VertexColors => {
-                let has = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
-                among(standing().filter(|(mesh, _)| has(mesh)).count(), meshes)
-            }
-            Feature::SmoothNormals => {
-                among(standing().filter(|(mesh, _)| !mesh.normals.is_empty()).count(), meshes)
-            }
-            Feature::Highlights => made_of(|m| m.specular != Vec3::ZERO || m.metallic.is_some()),
-            Feature::Shadows => {
-                let casting = scene.lights.iter().filter(|light| light.casts_shadow());
-                among(casting.count(), scene.lights.len())
-            }
-            Feature::Reflection => made_of(Material::spawns_rays),
-            Feature::Refraction => made_of(Material::may_transmit),
+            Feature::Shadows => Usage {
+                users: scene.lights.iter().filter(|light| light.casts_shadow()).count(),
+                total: scene.lights.len(),
+            },
+            Feature::Reflection => of_materials(&Material::spawns_rays),
+            Feature::Refraction => of_materials(&Material::may_transmit),
         });
-        Self { counts }
+        Self { usage }
     }
 
-    /// Whether the scene needs a kind of work.
-    pub fn uses(&self, work: Feature) -> bool {
-        self.counts[work as usize].0 > 0
+    /// True if the scene uses a feature.
+    pub fn uses(&self, feature: Feature) -> bool {
+        self.usage[feature as usize].users > 0
     }
 
-    /// The work that is done though the scene may have no need of it, with what it is done for.
-    pub fn done(&self) -> impl Iterator<Item = (Feature, String)> {
+    /// The features that the scene uses, with the number of objects that do.
+    pub fn used(&self) -> impl Iterator<Item = (Feature, String)> {
         self.filtered(true)
     }
 
-    /// The work that is left out, with why it may be.
+    /// The features that the scene does not use, with the reason.
     pub fn skipped(&self) -> impl Iterator<Item = (Feature, String)> {
         self.filtered(false)
     }
 
-    fn filtered(&self, done: bool) -> impl Iterator<Item = (Feature, String)> {
-        let chosen = Feature::ALL.into_iter().filter(move |&work| self.uses(work) == done);
-        chosen.map(|work| (work, self.reason(work)))
+    /// The features that are used, or those that are not.
+    fn filtered(&self, used: bool) -> impl Iterator<Item = (Feature, String)> {
+        let chosen = Feature::ALL.into_iter().filter(move |&feature| self.uses(feature) == used);
+        chosen.map(|feature| (feature, self.reason(feature)))
     }
 
-    /// How many things of the scene need it.
-    fn reason(&self, work: Feature) -> String {
-        let (some, all) = self.counts[work as usize];
-        let of = |what: &str, does: &str| match all {
-            0 => format!("there are no {what}"),
-            _ => format!("{some} of {all} {what} {does}"),
-        };
-        match work {
-            Feature::Spheres => of("spheres", "are user geometry"),
-            Feature::Instances => of("meshes", "stand more than once"),
-            Feature::Planes => of("planes", "are tried"),
-            Feature::Pictures => of("pictures", "are on a material in use"),
-            Feature::Uv => of("materials in use", "have a picture"),
-            Feature::Mipmaps => of("materials in use", "have a picture with mipmaps"),
-            Feature::NormalMaps => of("materials in use", "have a normal map"),
-            Feature::AlphaTests => of("materials in use", "have a mask"),
-            Feature::Checkers => of("planes", "have a checker"),
-            Feature::VertexColors => of("meshes", "have colours"),
-            Feature::SmoothNormals => of("meshes", "have normals"),
-            Feature::Highlights => of("materials in use", "have a highlight"),
-            Feature::Shadows => of("lights", "cast shadows"),
-            Feature::Reflection => of("materials in use", "are mirrors or glass"),
-            Feature::Refraction => of("materials in use", "let light through"),
+    /// A sentence with the number of objects that use a feature.
+    fn reason(&self, feature: Feature) -> String {
+        let Usage { users, total } = self.usage[feature as usize];
+        let Words { objects, predicate, .. } = feature.words();
+        if total == 0 {
+            return format!("there are no {objects}");
         }
+        format!("{users} of {total} {objects} {predicate}")
     }
 }
 
-/// The pictures that materials show, each once.
-pub(in crate::scene) fn pictures<'a>(
+/// The images of some materials, each once.
+fn images_in<'a>(
     scene: &'a Scene,
     materials: impl Iterator<Item = &'a Material>,
 ) -> Vec<&'a Image> {
@@ -204,7 +216,7 @@ mod tests {
     use glam::{DAffine3, DVec3};
 
     fn skipped(scene: &Scene) -> Vec<&'static str> {
-        SceneFeatures::of(scene).skipped().map(|(work, _)| work.name()).collect()
+        SceneFeatures::from_scene(scene).skipped().map(|(work, _)| work.name()).collect()
     }
 
     fn ball() -> Scene {
@@ -215,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_has_its_own_place_and_name() {
+    fn each_feature_has_its_own_place_and_name() {
         let mut names = std::collections::BTreeSet::new();
         for (i, work) in Feature::ALL.into_iter().enumerate() {
             assert_eq!(work as usize, i);
@@ -225,13 +237,13 @@ mod tests {
 
     #[test]
     fn an_empty_scene_needs_nothing() {
-        assert_eq!(SceneFeatures::of(&Scene::default()).done().count(), 0);
+        assert_eq!(SceneFeatures::from_scene(&Scene::default()).used().count(), 0);
     }
 
     #[test]
     fn a_ball_needs_user_geometry_and_no_more() {
-        let needs = SceneFeatures::of(&ball());
-        let done: Vec<_> = needs.done().collect();
+        let needs = SceneFeatures::from_scene(&ball());
+        let done: Vec<_> = needs.used().collect();
         assert_eq!(done, [(Feature::Spheres, "1 of 1 spheres are user geometry".to_owned())]);
     }
 

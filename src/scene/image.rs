@@ -1,4 +1,4 @@
-//! Pictures as they are stored.
+//! The decoded images of textures.
 
 use std::sync::OnceLock;
 
@@ -6,47 +6,53 @@ use super::mipmap::Mipmap;
 use super::texels::{Texel, Texels};
 use crate::scene::Transfer;
 
-/// A decoded picture; or one that was not read, since nothing shows it.
+/// A decoded image, or a reference to one that was not read because no material in use shows it.
 #[derive(Clone, Debug)]
 pub struct Image {
-    /// Where it came from, for messages.
+    /// The name of its source, for messages.
     pub name: String,
-    /// Width in pixels, at least 1; 0 for one that was not read.
+    /// The width in pixels, at least 1; 0 for one that was not read.
     pub width: u32,
-    /// Height in pixels, at least 1; 0 for one that was not read.
+    /// The height in pixels, at least 1; 0 for one that was not read.
     pub height: u32,
-    /// `width · height` pixels.
+    /// The `width · height` pixels.
     pub texels: Texels,
-    /// The reduced pictures, by how colours are encoded: sRGB, linear. Made when first asked for.
-    reduced: [OnceLock<Mipmap>; 2],
+    /// The mipmaps by the encoding of colours, in the order of [`Transfer`]; built when first asked for.
+    mipmaps: [OnceLock<Mipmap>; 2],
 }
 
 impl Image {
-    /// A picture of `width` times `height` pixels.
+    /// An image of `width` times `height` pixels.
     pub fn new(name: impl Into<String>, [width, height]: [u32; 2], texels: Texels) -> Self {
-        Self { name: name.into(), width, height, texels, reduced: Default::default() }
+        Self {
+            name: name.into(),
+            width,
+            height,
+            texels,
+            mipmaps: [OnceLock::new(), OnceLock::new()],
+        }
     }
 
-    /// A picture of 8 bits a channel.
-    pub fn bytes(name: impl Into<String>, size: [u32; 2], texels: Vec<Texel>) -> Self {
+    /// An image of 8 bits per channel.
+    pub fn from_bytes(name: impl Into<String>, size: [u32; 2], texels: Vec<Texel>) -> Self {
         Self::new(name, size, Texels::Bytes(texels))
     }
 
-    /// A picture that was not read. A scene in which a material in use shows it is not valid.
+    /// An image that was not read. A scene in which a material in use shows it is not valid.
     pub fn unread(name: impl Into<String>) -> Self {
-        Self::bytes(name, [0; 2], Vec::new())
+        Self::from_bytes(name, [0; 2], Vec::new())
     }
 
-    /// Whether it was read.
+    /// True if it was read.
     pub fn is_read(&self) -> bool {
         self.width > 0 && self.height > 0
     }
 
-    /// Whether a channel (0 to 3) is at its full value everywhere.
+    /// True if a channel (0 to 3) has its greatest value everywhere.
     ///
     /// # Panics
     /// When there is no such channel.
-    pub fn is_full(&self, channel: usize) -> bool {
+    pub fn is_channel_full(&self, channel: usize) -> bool {
         match &self.texels {
             Texels::Bytes(texels) => texels.iter().all(|t| t[channel] == u8::MAX),
             Texels::Words(texels) => texels.iter().all(|t| t[channel] == u16::MAX),
@@ -54,13 +60,10 @@ impl Image {
         }
     }
 
-    /// Ever smaller copies of it, for colours that are encoded so.
-    pub fn reduced(&self, transfer: Transfer) -> &Mipmap {
-        let of = match transfer {
-            Transfer::Srgb => &self.reduced[0],
-            Transfer::None => &self.reduced[1],
-        };
-        of.get_or_init(|| Mipmap::of(&self.texels, [self.width, self.height], transfer))
+    /// The mipmap of the image, its colours encoded by `transfer`.
+    pub(crate) fn mipmap(&self, transfer: Transfer) -> &Mipmap {
+        self.mipmaps[transfer as usize]
+            .get_or_init(|| Mipmap::new(&self.texels, [self.width, self.height], transfer))
     }
 }
 
@@ -77,7 +80,7 @@ mod tests {
 
     #[test]
     fn a_channel_is_full_where_no_pixel_has_less() {
-        let image = Image::bytes("", [2, 1], vec![[255, 0, 0, 255], [255, 0, 0, 254]]);
-        assert_eq!([0, 3].map(|channel| image.is_full(channel)), [true, false]);
+        let image = Image::from_bytes("", [2, 1], vec![[255, 0, 0, 255], [255, 0, 0, 254]]);
+        assert_eq!([0, 3].map(|channel| image.is_channel_full(channel)), [true, false]);
     }
 }

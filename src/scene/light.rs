@@ -1,12 +1,13 @@
-//! Lights.
+//! The lights, and the light that arrives from them at a point.
 
 use glam::{DAffine3, DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// How light from a point or a spot weakens with distance.
+/// The falloff of a point light or spot with distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Falloff {
     /// Not at all, as in the tutorial.
     #[default]
@@ -15,103 +16,173 @@ pub enum Falloff {
     InverseSquare,
 }
 
-/// What kind of light, and where it is.
+/// The kind of a light, with its position and direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum LightKind {
-    /// Light from everywhere, reaching every point alike: Phong's ambient term.
+    /// Light from all directions, the same at every point: Phong's ambient term.
     Ambient,
     /// Light from very far away.
     Directional {
-        /// Where the light travels, of length 1.
+        /// The direction in which the light travels, of length 1.
         direction: DVec3,
     },
-    /// Light from a point to all sides.
+    /// Light from a point in all directions.
     Point {
-        /// Where it stands, in world space.
+        /// The position, in world space.
         position: DVec3,
-        /// How it weakens with distance.
+        /// The falloff with distance.
         falloff: Falloff,
-        /// The distance at which it has faded to nothing, or infinity.
+        /// The distance at which the light has faded to nothing, or infinity.
         range: f64,
     },
     /// Light from a point within a cone, fading from the inner to the outer angle.
     Spot {
-        /// Where it stands, in world space.
+        /// The position, in world space.
         position: DVec3,
-        /// The cone's axis: where the light travels, of length 1.
+        /// The axis of the cone, along which the light travels, of length 1.
         direction: DVec3,
-        /// How it weakens with distance.
+        /// The falloff with distance.
         falloff: Falloff,
-        /// The distance at which it has faded to nothing, or infinity.
+        /// The distance at which the light has faded to nothing, or infinity.
         range: f64,
-        /// Half-angle within which the light is whole, in radians, in \[0, outer).
+        /// The half-angle within which the light is whole, in radians, in \[0, outer).
         inner_angle: f64,
-        /// Half-angle beyond which there is none, in radians, in (inner, π/2\].
+        /// The half-angle beyond which there is no light, in radians, in (inner, π/2\].
         outer_angle: f64,
     },
 }
 
-/// What keeps a light from what lies behind it.
+/// The shadows that a light casts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Shadow {
-    /// Nothing: every point that faces the light is lit.
+    /// No shadows: every point that faces the light is lit.
     None,
-    /// What stands in the way; glass lets through what its colour leaves. The light goes straight
-    /// on through it, since a path that bends would have to be searched for.
+    /// Shadows that transparent objects tint. Light goes straight through these, since a refracted
+    /// path would have to be searched for.
     #[default]
     Tinted,
-    /// What stands in the way, glass like anything else.
+    /// Shadows of transparent objects like those of any other.
     Opaque,
 }
 
 /// A light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Light {
-    /// Its name, or nothing.
+    /// The name, which may be empty.
     pub name: String,
-    /// What kind, and where.
+    /// The kind, with position and direction.
     pub kind: LightKind,
-    /// Colour times intensity, linear Rec. 709: what a white diffuse surface that faces the light
-    /// reflects (at distance 1 with `inverse_square`).
+    /// The colour times the intensity, linear Rec. 709: what a white diffuse surface that faces the
+    /// light reflects (at distance 1 with `inverse_square`).
     pub intensity: Vec3,
-    /// What keeps it from what lies behind it.
+    /// The shadows that it casts.
     pub shadow: Shadow,
 }
 
-/// The light that reaches a point.
+/// The light that arrives at a point, before it is known whether it is blocked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IncidentLight {
-    /// From the point to the light; its end is the light's position, or far away for a
-    /// directional light, whose shadow rays have no end.
+    /// The vector from the point to the light or, for a directional light, toward it.
     pub toward: DVec3,
-    /// Whether a shadow ray ends at `toward` rather than going on.
-    pub bounded: bool,
-    /// What arrives, falloff and cone included.
+    /// True if the light is at the end of `toward`, where shadow rays end.
+    pub is_bounded: bool,
+    /// The intensity that arrives, with falloff and cone applied.
     pub intensity: Vec3,
 }
 
+/// White lights of intensity 1 with tinted shadows.
+///
+/// ```
+/// use envers::scene::{Falloff, Light, Shadow};
+/// use glam::{DVec3, Vec3};
+///
+/// let lamp = Light::point(DVec3::Y * 2.0)
+///     .with_falloff(Falloff::InverseSquare)
+///     .with_intensity(Vec3::splat(8.0))
+///     .with_name("lamp");
+/// assert_eq!(lamp.incident(DVec3::ZERO).unwrap().intensity, Vec3::splat(2.0));
+/// let sun = Light::sun(DVec3::new(1.0, -2.0, 0.5)).with_shadow(Shadow::Opaque);
+/// assert!(!sun.is_bounded());
+/// ```
 impl Light {
-    /// Whether anything keeps it from what lies behind; ambient light comes from no direction in
-    /// which something could stand.
+    /// An ambient light of this intensity.
+    pub fn ambient(intensity: Vec3) -> Self {
+        Self::new(LightKind::Ambient).with_intensity(intensity)
+    }
+
+    /// A directional light that travels in `direction`, of any length but zero.
+    pub fn sun(direction: DVec3) -> Self {
+        Self::new(LightKind::Directional { direction: direction.normalize() })
+    }
+
+    /// A point light without falloff and with infinite range.
+    pub fn point(position: DVec3) -> Self {
+        let (falloff, range) = (Falloff::None, f64::INFINITY);
+        Self::new(LightKind::Point { position, falloff, range })
+    }
+
+    /// A spot without falloff and with infinite range, which shines in `direction`, of any length but
+    /// zero; the half-angles of its cone are in radians, 0 ≤ inner < outer ≤ π/2.
+    pub fn spot(position: DVec3, direction: DVec3, inner_angle: f64, outer_angle: f64) -> Self {
+        let (direction, falloff, range) = (direction.normalize(), Falloff::None, f64::INFINITY);
+        Self::new(LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle })
+    }
+
+    /// A white light of intensity 1 with tinted shadows.
+    pub fn new(kind: LightKind) -> Self {
+        Self { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() }
+    }
+
+    /// Sets the intensity, linear Rec. 709.
+    #[must_use]
+    pub fn with_intensity(self, intensity: Vec3) -> Self {
+        Self { intensity, ..self }
+    }
+
+    /// Sets the name.
+    #[must_use]
+    pub fn with_name(self, name: impl Into<String>) -> Self {
+        Self { name: name.into(), ..self }
+    }
+
+    /// Sets the shadows.
+    #[must_use]
+    pub fn with_shadow(self, shadow: Shadow) -> Self {
+        Self { shadow, ..self }
+    }
+
+    /// Sets the falloff of a point light or spot; other lights have none.
+    #[must_use]
+    pub fn with_falloff(mut self, new: Falloff) -> Self {
+        if let LightKind::Point { falloff, .. } | LightKind::Spot { falloff, .. } = &mut self.kind {
+            *falloff = new;
+        }
+        self
+    }
+
+    /// True if it casts shadows; ambient light has no direction in which anything could block it.
     pub fn casts_shadow(&self) -> bool {
         self.shadow != Shadow::None && self.kind != LightKind::Ambient
     }
 
-    /// Whether its light comes from somewhere, rather than from infinitely far.
+    /// True if it has a position, rather than being infinitely far away or ambient.
     #[inline]
     pub fn is_bounded(&self) -> bool {
         matches!(self.kind, LightKind::Point { .. } | LightKind::Spot { .. })
     }
 
-    /// Whether it is a point that sends the same light everywhere: without falloff, range or cone.
+    /// True if the same intensity arrives from it at all points: a point light without falloff and
+    /// range.
     #[inline]
     pub fn has_constant_intensity(&self) -> bool {
         matches!(self.kind, LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. })
     }
 
-    /// The light moved and turned. Its intensity and its range stay as they are under any scale, as
-    /// KHR_lights_punctual has it.
-    pub fn placed(&self, transform: &DAffine3) -> Self {
+    /// The light with its position and direction transformed. Intensity and range do not scale, as
+    /// in KHR_lights_punctual.
+    pub fn transformed(&self, transform: &DAffine3) -> Self {
         let turned = |v: DVec3| transform.transform_vector3(v).normalize();
         let mut light = self.clone();
         match &mut light.kind {
@@ -126,15 +197,15 @@ impl Light {
         light
     }
 
-    /// What arrives at `point`, shadows aside; `None` when nothing does, and for ambient light,
-    /// which comes from no direction.
+    /// The light that arrives at `point` if nothing blocks it; `None` when no light does, and for
+    /// ambient light, which has no direction.
     pub fn incident(&self, point: DVec3) -> Option<IncidentLight> {
         let (position, falloff, range) = match self.kind {
             LightKind::Ambient => return None,
             LightKind::Directional { direction } => {
                 return Some(IncidentLight {
                     toward: -direction,
-                    bounded: false,
+                    is_bounded: false,
                     intensity: self.intensity,
                 });
             }
@@ -146,32 +217,32 @@ impl Light {
         if distance_squared == 0.0 {
             return None;
         }
+
+        // The share that falloff, range and cone leave.
         let mut share = match falloff {
             Falloff::None => 1.0,
             Falloff::InverseSquare => 1.0 / distance_squared,
         };
-        share *= window(distance_squared, range);
+        share *= range_attenuation(distance_squared, range);
         if let LightKind::Spot { direction, inner_angle, outer_angle, .. } = self.kind {
-            share *=
-                cone(-direction.dot(toward) / distance_squared.sqrt(), inner_angle, outer_angle);
+            let cosine = -direction.dot(toward) / distance_squared.sqrt();
+            share *= cone_attenuation(cosine, inner_angle, outer_angle);
         }
-        (share > 0.0).then(|| IncidentLight {
-            toward,
-            bounded: true,
-            intensity: self.intensity * share as f32,
-        })
+        let intensity = self.intensity * share as f32;
+        (share > 0.0).then_some(IncidentLight { toward, is_bounded: true, intensity })
     }
 }
 
-/// Fades to nothing at `range`: max(min(1 − (d/range)⁴, 1), 0), as KHR_lights_punctual recommends.
-fn window(distance_squared: f64, range: f64) -> f64 {
+/// The attenuation toward `range`, where it is 0: max(min(1 − (d/range)⁴, 1), 0), as
+/// KHR_lights_punctual recommends.
+fn range_attenuation(distance_squared: f64, range: f64) -> f64 {
     let ratio = distance_squared / (range * range);
     (1.0 - ratio * ratio).clamp(0.0, 1.0)
 }
 
-/// From 1 within the inner angle to 0 beyond the outer one: the square of a ramp over the cosine,
-/// as KHR_lights_punctual recommends.
-fn cone(cosine: f64, inner_angle: f64, outer_angle: f64) -> f64 {
+/// The attenuation from 1 within the inner angle to 0 beyond the outer one: the square of a ramp over
+/// the cosine, as KHR_lights_punctual recommends.
+fn cone_attenuation(cosine: f64, inner_angle: f64, outer_angle: f64) -> f64 {
     let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
     let ramp = ((cosine - outer) / (inner - outer).max(1e-9)).clamp(0.0, 1.0);
     ramp * ramp
@@ -188,6 +259,43 @@ mod tests {
             intensity: Vec3::splat(8.0),
             shadow: Shadow::default(),
         }
+    }
+
+    #[test]
+    fn constructors_give_white_lights_with_tinted_shadows() {
+        let white = |kind| Light {
+            name: String::new(),
+            kind,
+            intensity: Vec3::ONE,
+            shadow: Shadow::Tinted,
+        };
+        let (position, direction) = (DVec3::new(1.0, 2.0, 3.0), DVec3::NEG_Y);
+        let (falloff, range) = (Falloff::None, f64::INFINITY);
+        let (inner_angle, outer_angle) = (0.1, 0.2);
+        let spot =
+            LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle };
+        assert_eq!(Light::ambient(Vec3::ONE), white(LightKind::Ambient));
+        assert_eq!(Light::sun(direction * 4.0), white(LightKind::Directional { direction }));
+        assert_eq!(Light::point(position), white(LightKind::Point { position, falloff, range }));
+        assert_eq!(Light::spot(position, direction * 4.0, 0.1, 0.2), white(spot));
+    }
+
+    #[test]
+    fn builders_set_one_field_each() {
+        let light = Light::point(DVec3::ZERO)
+            .with_intensity(Vec3::X)
+            .with_name("lamp")
+            .with_shadow(Shadow::None)
+            .with_falloff(Falloff::InverseSquare);
+        let expected = Light {
+            name: "lamp".into(),
+            intensity: Vec3::X,
+            shadow: Shadow::None,
+            ..point_light(Falloff::InverseSquare, f64::INFINITY)
+        };
+        assert_eq!(light, expected);
+        let sun = Light::sun(DVec3::X);
+        assert_eq!(sun.clone().with_falloff(Falloff::InverseSquare), sun);
     }
 
     #[test]

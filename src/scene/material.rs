@@ -1,8 +1,8 @@
-//! What surfaces are made of.
+//! The material of a surface, by Lambert and Phong, with mirrors and glass.
 
 use glam::Vec3;
 
-use crate::scene::{Channel, MetallicMaps, ShadingParams, TextureId};
+use crate::scene::{AlphaMode, Channel, Coverage, MetallicRoughnessMaps, ShadingParams, TextureId};
 
 /// The index of a material in `Scene::materials`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -11,108 +11,119 @@ pub struct MaterialId(pub u32);
 /// A Lambert and Phong material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Its name, unique in a scene file; model files may repeat names.
+    /// The name, unique in a scene file; model files may repeat names.
     pub name: String,
-    /// Share of light scattered to all sides, linear Rec. 709; without Lambert's 1/π, as in the
-    /// tutorial.
+    /// The share of light scattered in all directions, linear Rec. 709; without Lambert's 1/π, as in
+    /// the tutorial.
     pub diffuse: Vec3,
-    /// Colours multiplied with `diffuse`, by the surface's texture coordinates.
+    /// The texture that multiplies `diffuse`.
     pub diffuse_map: Option<TextureId>,
-    /// Share of light in the highlight, linear Rec. 709.
+    /// The share of light in the highlight, linear Rec. 709.
     pub specular: Vec3,
-    /// Colours multiplied with `specular`.
+    /// The texture that multiplies `specular`.
     pub specular_map: Option<TextureId>,
-    /// The tutorial's α, above 0: the greater, the smaller the highlight.
+    /// Phong's exponent, the tutorial's α, above 0: the greater, the smaller the highlight.
     pub shininess: f32,
-    /// What changes `shininess` from point to point.
+    /// The texture that varies `shininess`.
     pub shininess_map: Option<ShininessMap>,
-    /// Radiance of its own, linear Rec. 709; it lights nothing else.
+    /// The emitted radiance, linear Rec. 709; it illuminates nothing else.
     pub emission: Vec3,
-    /// Colours multiplied with `emission`, by the surface's texture coordinates.
+    /// The texture that multiplies `emission`.
     pub emission_map: Option<TextureId>,
-    /// Whether the colours of a mesh's vertices are multiplied with `emission`: what is unlit shows
-    /// its colour as radiance.
+    /// True if the colours of a mesh's vertices multiply `emission`: an unlit surface shows its colour
+    /// as radiance.
     pub unlit: bool,
-    /// Share of what is seen in it as in a mirror, linear Rec. 709.
+    /// The share of light reflected as by a mirror, linear Rec. 709.
     pub reflect: Vec3,
-    /// Share of what is seen through it as through glass, linear Rec. 709; of it Fresnel's law
-    /// splits off what is reflected. `reflect` and `transmit` are at most 1 together.
+    /// The share of light transmitted as through glass, linear Rec. 709, of which Fresnel's law
+    /// reflects a part. `reflect` and `transmit` are at most 1 together.
     pub transmit: Vec3,
     /// The index of refraction of its inside, relative to empty space, in \[0.01, 100\].
     pub ior: f64,
-    /// What is lost in its inside for each unit of length: light falls to e^(−absorption).
+    /// The absorption coefficient of its inside: light falls to e^(−absorption) per unit of length.
     pub absorption: Vec3,
-    /// Whether it is a thin sheet with no inside: light goes straight through.
+    /// True for a thin sheet without an inside: light goes straight through.
     pub thin: bool,
-    /// Which of two things holds where both are: the one with the greater priority; of two equal
-    /// ones, the smaller thing.
+    /// The priority where transparent bodies overlap: the body with the greater priority fills the
+    /// point; of two equal ones, the smaller body.
     pub priority: i32,
-    /// Whether a sphere is lit on its inside too. Planes and meshes always are, on the side that
-    /// the viewer sees.
+    /// True if a sphere is lit on its inside too. Planes and meshes always are, on the side that the
+    /// viewer sees.
     pub double_sided: bool,
-    /// A picture of normals that bends the surface's own.
+    /// The normal map.
     pub normal_map: Option<NormalMap>,
-    /// A picture of how much of the ambient light comes to each point.
+    /// The map of ambient occlusion.
     pub occlusion_map: Option<OcclusionMap>,
-    /// How much of what lies behind it it covers, if it may be less than all.
+    /// The alpha coverage, if the surface may cover less than all that lies behind it.
     pub coverage: Option<Coverage>,
-    /// A metallic-roughness material, whose diffuse, specular, shininess, reflect and transmit stand
-    /// in place of the material's own wherever a map or a vertex colour counts.
-    pub metallic: Option<Box<MetallicMaps>>,
+    /// The metallic-roughness material from which diffuse, specular, shininess, reflect and transmit are
+    /// computed at each point where a map or a vertex colour counts.
+    pub metallic: Option<Box<MetallicRoughnessMaps>>,
 }
 
-/// A picture that changes the shininess.
+/// A texture that varies the shininess.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum ShininessMap {
-    /// It is multiplied with the channel, and at least 1.
+    /// The shininess is multiplied by the channel, and at least 1.
     Factor(Channel),
-    /// It is that of a surface of roughness 1 − factor · channel.
+    /// The shininess is that of a surface of roughness 1 − factor · channel.
     Gloss(Channel, f32),
 }
 
-/// A picture of normals in tangent space: red, green and blue from 0 to 1 are x, y and z from −1 to
-/// 1; x points along u, y up in the picture and z out of the surface, as in glTF.
+/// A texture of normals in tangent space: red, green and blue from 0 to 1 are x, y and z from −1 to
+/// 1; x points along u, y up in the image and z out of the surface, as in glTF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalMap {
-    /// The picture; its colours are linear.
+    /// The texture; its colours are linear.
     pub texture: TextureId,
-    /// What x and y are multiplied with.
+    /// The factor of x and y.
     pub scale: f32,
 }
 
-/// A picture of how much ambient light comes to each point: 1 + strength · (channel − 1) of it. Other
+/// A texture of ambient occlusion: the share 1 + strength · (channel − 1) of ambient light arrives. Other
 /// light is not affected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionMap {
-    /// The picture's channel.
+    /// The texture's channel.
     pub map: Channel,
-    /// How much it counts, in \[0, 1\].
+    /// The strength, in \[0, 1\].
     pub strength: f32,
 }
 
-/// How much a surface covers of what lies behind it: its alpha, which is `alpha` times the map times
-/// the alpha of a mesh's vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coverage {
-    /// The factor, in \[0, 1\].
-    pub alpha: f32,
-    /// The map.
-    pub map: Option<Channel>,
-    /// What alpha means.
-    pub mode: AlphaMode,
-}
-
-/// What alpha means.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum AlphaMode {
-    /// Where alpha is below the cutoff there is no surface, for any ray; for meshes only.
-    Mask {
-        /// The least alpha at which there is one.
-        cutoff: f32,
-    },
-    /// The surface is seen by its share alpha, and what lies behind it by the rest. Its material is
-    /// `thin`, has an `ior` of 1 and no `transmit` of its own.
-    Blend,
+/// An iterator over references, shared or mutable, to the ids of a material's textures.
+macro_rules! texture_ids {
+    ($material:ident, $as_ref:ident, $as_deref:ident) => {{
+        let own = [
+            $material.diffuse_map.$as_ref(),
+            $material.specular_map.$as_ref(),
+            $material.shininess_map.$as_ref().map(|map| match map {
+                ShininessMap::Factor(Channel { texture, .. })
+                | ShininessMap::Gloss(Channel { texture, .. }, _) => texture,
+            }),
+            $material.emission_map.$as_ref(),
+            $material.normal_map.$as_ref().map(|NormalMap { texture, .. }| texture),
+            $material
+                .occlusion_map
+                .$as_ref()
+                .map(|OcclusionMap { map: Channel { texture, .. }, .. }| texture),
+            $material
+                .coverage
+                .$as_ref()
+                .and_then(|coverage| coverage.map.$as_ref().map(|Channel { texture, .. }| texture)),
+        ];
+        let metallic = $material.metallic.$as_deref().map(|maps| {
+            [
+                maps.base.$as_ref(),
+                maps.specular_color.$as_ref(),
+                maps.metallic.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.roughness.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.specular.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.transmission.$as_ref().map(|Channel { texture, .. }| texture),
+            ]
+        });
+        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+    }};
 }
 
 impl Default for Material {
@@ -143,135 +154,122 @@ impl Default for Material {
     }
 }
 
+/// Materials for common surfaces.
+///
+/// ```
+/// use envers::scene::Material;
+/// use glam::Vec3;
+///
+/// let brick = Material::matte(Vec3::new(0.6, 0.2, 0.1));
+/// let (gold, window) = (Material::mirror(Vec3::new(1.0, 0.8, 0.3)), Material::glass(1.5));
+/// let lamp = Material { name: "lamp".into(), ..Material::emissive(Vec3::splat(5.0)) };
+/// assert!(!brick.spawns_rays() && !lamp.spawns_rays());
+/// assert!(gold.may_reflect() && window.is_dielectric());
+/// ```
 impl Material {
-    /// What it does with light where nothing changes it.
+    /// A matte material, which scatters this share of light in all directions (linear Rec. 709).
+    pub fn matte(color: Vec3) -> Self {
+        Self { diffuse: color, ..Self::default() }
+    }
+
+    /// A mirror, which reflects this share of light and scatters nothing.
+    pub fn mirror(color: Vec3) -> Self {
+        Self { reflect: color, ..Self::matte(Vec3::ZERO) }
+    }
+
+    /// Clear glass with this index of refraction, which is about 1.5 for window glass.
+    pub fn glass(ior: f64) -> Self {
+        Self { transmit: Vec3::ONE, ior, ..Self::matte(Vec3::ZERO) }
+    }
+
+    /// A material that emits this radiance and scatters nothing; it illuminates nothing else.
+    pub fn emissive(radiance: Vec3) -> Self {
+        Self { emission: radiance, ..Self::matte(Vec3::ZERO) }
+    }
+
+    /// The shading parameters where no texture or vertex colour changes them.
     pub fn shading_params(&self) -> ShadingParams {
         let Self { diffuse, specular, shininess, emission, reflect, transmit, .. } = *self;
         ShadingParams { diffuse, specular, shininess, emission, reflect, transmit }
     }
 
-    /// Makes it a metallic-roughness material: a plain one where its base colour is just the
-    /// diffuse one.
-    pub fn set_metallic(&mut self, maps: MetallicMaps) {
+    /// Makes it a metallic-roughness material; a plain one if nothing but its base colour varies, which
+    /// then is the diffuse colour.
+    pub fn set_metallic_roughness(&mut self, maps: MetallicRoughnessMaps) {
         let ShadingParams { diffuse, specular, shininess, reflect, transmit, .. } =
-            maps.factors.finish();
+            maps.factors.shading_params();
         (self.diffuse, self.specular, self.shininess) = (diffuse, specular, shininess);
         (self.reflect, self.transmit) = (reflect, transmit);
-        let is_plain = MetallicMaps { base: None, ..maps.clone() }
-            == MetallicMaps::new(maps.factors)
+        let is_plain = MetallicRoughnessMaps { base: None, ..maps.clone() }
+            == MetallicRoughnessMaps::new(maps.factors)
             && maps.factors.metallic == 0.0
             && maps.factors.transmission == 0.0;
-        match is_plain {
-            true => (self.diffuse_map, self.metallic) = (maps.base, None),
-            false => (self.diffuse_map, self.metallic) = (None, Some(Box::new(maps))),
-        }
+        self.diffuse_map = if is_plain { maps.base } else { None };
+        self.metallic = (!is_plain).then(|| Box::new(maps));
     }
 
-    /// Whether it is a mirror anywhere.
+    /// True if it reflects as a mirror anywhere.
     pub fn may_reflect(&self) -> bool {
         self.reflect != Vec3::ZERO || self.metallic.as_ref().is_some_and(|m| m.may_reflect())
     }
 
-    /// Whether it lets light through anywhere, but for what a mask cuts out.
+    /// True if it transmits light anywhere, other than through what a mask cuts out.
     pub fn may_transmit(&self) -> bool {
         self.transmit != Vec3::ZERO
             || self.metallic.as_ref().is_some_and(|m| m.may_transmit())
             || self.coverage.is_some_and(|c| c.mode == AlphaMode::Blend)
     }
 
-    /// Whether light goes on from it, off it or through it, anywhere.
+    /// True if it sends secondary rays anywhere: reflected or transmitted.
     pub fn spawns_rays(&self) -> bool {
         self.may_reflect() || self.may_transmit()
     }
 
-    /// Whether what it covers is a body that light goes through, with an inside.
+    /// True if its object is a transparent body with an inside.
     pub fn is_dielectric(&self) -> bool {
         self.may_transmit() && !self.thin
     }
 
-    /// Whether light that comes from a medium with index of refraction `ior`, and goes on into one,
-    /// may pass as if nothing were there.
+    /// True if light may pass through it unchanged, between two media with this index of refraction.
     pub fn is_clear_in(&self, ior: f64) -> bool {
-        let is_clear = match self.changes() {
-            true => self.may_transmit(),
-            false => self.transmit == Vec3::ONE && self.emission == Vec3::ZERO,
+        let is_clear = if self.varies() {
+            self.may_transmit()
+        } else {
+            self.transmit == Vec3::ONE && self.emission == Vec3::ZERO
         };
         is_clear && self.ior == ior
     }
 
-    /// Whether what it lets through differs from point to point.
-    fn changes(&self) -> bool {
+    /// True if what it transmits differs from point to point.
+    fn varies(&self) -> bool {
         self.metallic.is_some() || self.coverage.is_some()
     }
 
-    /// Whether it has holes that rays pass.
+    /// True if a mask cuts holes into it.
     pub fn is_masked(&self) -> bool {
         self.coverage.is_some_and(|c| matches!(c.mode, AlphaMode::Mask { .. }))
     }
 
-    /// Whether shading it needs texture coordinates.
+    /// True if it has a texture, so that shading needs texture coordinates.
     pub fn is_textured(&self) -> bool {
         self.textures().next().is_some()
     }
 
-    /// Its textures; one stands twice that it uses for two things.
-    pub fn textures(&self) -> impl Iterator<Item = TextureId> + use<> {
-        let of_channel = |channel: Option<Channel>| channel.map(|c| c.texture);
-        let shininess = self.shininess_map.map(|map| match map {
-            ShininessMap::Factor(map) | ShininessMap::Gloss(map, _) => map.texture,
-        });
-        let own = [
-            self.diffuse_map,
-            self.specular_map,
-            shininess,
-            self.emission_map,
-            self.normal_map.map(|map| map.texture),
-            of_channel(self.occlusion_map.map(|o| o.map)),
-            of_channel(self.coverage.and_then(|c| c.map)),
-        ];
-        let metallic = self.metallic.as_deref().map(|m| {
-            let channels = [m.metallic, m.roughness, m.specular, m.transmission].map(of_channel);
-            let [a, b, c, d] = channels;
-            [m.base, m.specular_color, a, b, c, d]
-        });
-        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+    /// The textures; one that is used twice is listed twice.
+    pub fn textures(&self) -> impl Iterator<Item = TextureId> {
+        texture_ids!(self, as_ref, as_deref).copied()
     }
 
-    /// The references to its textures, to be changed.
+    /// The ids of the textures, mutable.
     pub fn textures_mut(&mut self) -> impl Iterator<Item = &mut TextureId> {
-        fn of_channel(channel: &mut Option<Channel>) -> Option<&mut TextureId> {
-            channel.as_mut().map(|c| &mut c.texture)
-        }
-        let shininess = self.shininess_map.as_mut().map(|map| match map {
-            ShininessMap::Factor(map) | ShininessMap::Gloss(map, _) => &mut map.texture,
-        });
-        let own = [
-            self.diffuse_map.as_mut(),
-            self.specular_map.as_mut(),
-            shininess,
-            self.emission_map.as_mut(),
-            self.normal_map.as_mut().map(|map| &mut map.texture),
-            self.occlusion_map.as_mut().map(|o| &mut o.map.texture),
-            self.coverage.as_mut().and_then(|c| of_channel(&mut c.map)),
-        ];
-        let metallic = self.metallic.as_deref_mut().map(|m| {
-            [
-                m.base.as_mut(),
-                m.specular_color.as_mut(),
-                of_channel(&mut m.metallic),
-                of_channel(&mut m.roughness),
-                of_channel(&mut m.specular),
-                of_channel(&mut m.transmission),
-            ]
-        });
-        own.into_iter().chain(metallic.into_iter().flatten()).flatten()
+        texture_ids!(self, as_mut, as_deref_mut)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Metallic;
+    use crate::scene::MetallicRoughness;
 
     /// A material with a different texture in each place.
     fn full() -> Material {
@@ -281,7 +279,7 @@ mod tests {
             TextureId(next - 1)
         };
         let mut channel = || Channel { texture: id(), channel: 0 };
-        let factors = Metallic {
+        let factors = MetallicRoughness {
             base: Vec3::ONE,
             metallic: 1.0,
             roughness: 1.0,
@@ -298,17 +296,28 @@ mod tests {
             normal_map: Some(NormalMap { texture: channel().texture, scale: 1.0 }),
             occlusion_map: Some(OcclusionMap { map: channel(), strength: 1.0 }),
             coverage: Some(Coverage { alpha: 1.0, map: Some(channel()), mode: AlphaMode::Blend }),
-            metallic: Some(Box::new(MetallicMaps {
+            metallic: Some(Box::new(MetallicRoughnessMaps {
                 base: Some(channel().texture),
                 specular_color: Some(channel().texture),
                 metallic: Some(channel()),
                 roughness: Some(channel()),
                 specular: Some(channel()),
                 transmission: Some(channel()),
-                ..MetallicMaps::new(factors)
+                ..MetallicRoughnessMaps::new(factors)
             })),
             ..Material::default()
         }
+    }
+
+    #[test]
+    fn constructors_set_one_share_and_scatter_nothing_else() {
+        let color = Vec3::new(0.1, 0.2, 0.3);
+        let black = Material { diffuse: Vec3::ZERO, ..Material::default() };
+        assert_eq!(Material::matte(color), Material { diffuse: color, ..Material::default() });
+        assert_eq!(Material::mirror(color), Material { reflect: color, ..black.clone() });
+        assert_eq!(Material::emissive(color), Material { emission: color, ..black.clone() });
+        let glass = Material { transmit: Vec3::ONE, ior: 1.33, ..black };
+        assert_eq!(Material::glass(1.33), glass);
     }
 
     #[test]

@@ -1,5 +1,4 @@
-//! Ever smaller copies of a picture, of which a pixel stands for many (L. Williams, *Pyramidal
-//! Parametrics*, SIGGRAPH 1983).
+//! The mipmap: ever smaller copies of an image (L. Williams, *Pyramidal Parametrics*, SIGGRAPH 1983).
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -7,51 +6,51 @@ use rayon::prelude::*;
 use super::texels::Texels;
 use crate::scene::Transfer;
 
-/// A picture's smaller copies, each half as large as the one before, down to one pixel.
+/// The smaller copies of an image, each half as large as the one before, down to one pixel.
 #[derive(Clone, Debug)]
-pub struct Mipmap(Vec<MipLevel>);
+pub(crate) struct Mipmap(Vec<MipLevel>);
 
-/// One copy.
+/// One level of a mipmap.
 #[derive(Clone, Debug)]
-pub struct MipLevel {
-    /// Its width and height in pixels.
+pub(super) struct MipLevel {
+    /// The width and height in pixels.
     pub size: [u32; 2],
-    /// Its pixels.
+    /// The pixels.
     pub texels: Texels,
 }
 
 impl Mipmap {
-    /// The copies of a picture.
+    /// Builds the levels of an image.
     ///
-    /// A pixel is the mean, in linear colours, of the area that it covers, weighted by alpha: what
-    /// cannot be seen has no colour to add.
-    pub(super) fn of(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Self {
+    /// A pixel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
+    /// what cannot be seen adds no colour.
+    pub(super) fn new(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Self {
         let mut levels = Vec::new();
         let base = |i: usize| texels.linear(i, transfer);
         let mut before: Option<(Vec<Vec4>, [u32; 2])> = None;
         while before.as_ref().map_or(size, |(_, size)| *size) != [1, 1] {
             let (colors, size) = match &before {
-                Some((colors, size)) => halved(&|i| colors[i], *size),
-                None => halved(&base, size),
+                Some((colors, size)) => downsampled(&|i| colors[i], *size),
+                None => downsampled(&base, size),
             };
-            levels.push(MipLevel { size, texels: texels.like(&colors, transfer) });
+            levels.push(MipLevel { size, texels: texels.encoded_like(&colors, transfer) });
             before = Some((colors, size));
         }
         Self(levels)
     }
 
-    /// The copies from the greatest on: the first has half the picture's size.
-    pub fn levels(&self) -> &[MipLevel] {
+    /// The levels from the largest on; the first has half the image's size.
+    pub(super) fn levels(&self) -> &[MipLevel] {
         &self.0
     }
 }
 
-/// The picture at half its size, rounded down but at least 1.
-fn halved(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<Vec4>, [u32; 2]) {
+/// Returns an image at half its size, rounded down but at least 1.
+fn downsampled(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<Vec4>, [u32; 2]) {
     let half = size.map(|n| (n / 2).max(1));
-    let columns: Vec<_> = (0..half[0]).map(|x| Span::of(x, half[0], size[0])).collect();
+    let columns: Vec<_> = (0..half[0]).map(|x| Span::new(x, half[0], size[0])).collect();
     let row = |y: u32| {
-        let rows = Span::of(y, half[1], size[1]);
+        let rows = Span::new(y, half[1], size[1]);
         let mean = move |columns: &Span| {
             let (mut premultiplied, mut plain) = (Vec4::ZERO, Vec4::ZERO);
             for (y, wy) in rows.weights() {
@@ -61,17 +60,14 @@ fn halved(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<Vec4>,
                     premultiplied += color * (wx * wy * color.w);
                 }
             }
-            match plain.w > 0.0 {
-                true => (premultiplied / plain.w).truncate().extend(plain.w),
-                false => plain,
-            }
+            if plain.w > 0.0 { (premultiplied / plain.w).truncate().extend(plain.w) } else { plain }
         };
         columns.iter().map(mean).collect::<Vec<_>>()
     };
     ((0..half[1]).into_par_iter().flat_map_iter(row).collect(), half)
 }
 
-/// The pixels of a row that one of a shorter row covers: from 1 to 4 of them.
+/// The box filter of one pixel of a shorter row: the 1 to 4 pixels of the longer row that it covers.
 #[derive(Clone, Copy)]
 struct Span {
     first: usize,
@@ -79,20 +75,21 @@ struct Span {
 }
 
 impl Span {
-    /// Those of `from` that number `at` of `to` covers, with its shares of them.
-    fn of(at: u32, to: u32, from: u32) -> Self {
+    /// The filter of pixel `index` of `to` over a row of `from` pixels.
+    fn new(index: u32, to: u32, from: u32) -> Self {
         let ratio = f64::from(from) / f64::from(to);
-        let (start, end) = (f64::from(at) * ratio, f64::from(at + 1) * ratio);
+        let (start, end) = (f64::from(index) * ratio, f64::from(index + 1) * ratio);
         let first = start.floor();
         let weights = std::array::from_fn(|i| {
             let left = first + i as f64;
             let covered = (end.min(left + 1.0) - start.max(left)).max(0.0);
-            // What rounding adds at the end is no pixel.
+            // Rounding may reach beyond the last pixel.
             if left >= f64::from(from) { 0.0 } else { (covered / ratio) as f32 }
         });
         Self { first: first as usize, weights }
     }
 
+    /// The indices and weights of the covered pixels.
     fn weights(self) -> impl Iterator<Item = (usize, f32)> + Clone {
         (self.first..).zip(self.weights).filter(|(_, weight)| *weight > 1e-6)
     }
@@ -108,7 +105,7 @@ mod tests {
 
     #[test]
     fn each_level_has_half_the_size_down_to_one_pixel() {
-        let pyramid = Mipmap::of(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
+        let pyramid = Mipmap::new(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
         let sizes: Vec<_> = pyramid.levels().iter().map(|level| level.size).collect();
         assert_eq!(sizes, [[3, 2], [1, 1]]);
         assert!(
@@ -121,16 +118,16 @@ mod tests {
 
     #[test]
     fn the_mean_is_that_of_linear_colours() {
-        let pyramid = Mipmap::of(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
+        let pyramid = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
         // Half the light is 188 of 255 in sRGB.
         assert_eq!(pyramid.levels()[0].texels, grey(&[188]));
-        let plain = Mipmap::of(&grey(&[0, 255]), [2, 1], Transfer::None);
+        let plain = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::None);
         assert_eq!(plain.levels()[0].texels, grey(&[128]));
     }
 
     #[test]
     fn a_pixel_between_two_gives_half_to_each() {
-        let pyramid = Mipmap::of(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
+        let pyramid = Mipmap::new(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
         // (0 + 0 + 30/2) / 2.5 and (30/2 + 90 + 90) / 2.5.
         assert_eq!(pyramid.levels()[0].texels, grey(&[6, 78]));
     }
@@ -138,12 +135,12 @@ mod tests {
     #[test]
     fn what_cannot_be_seen_adds_no_colour() {
         let texels = Texels::Bytes(vec![[200, 0, 0, 255], [0, 200, 0, 0]]);
-        let pyramid = Mipmap::of(&texels, [2, 1], Transfer::None);
+        let pyramid = Mipmap::new(&texels, [2, 1], Transfer::None);
         assert_eq!(pyramid.levels()[0].texels, Texels::Bytes(vec![[200, 0, 0, 128]]));
     }
 
     #[test]
     fn one_pixel_has_no_smaller_copies() {
-        assert!(Mipmap::of(&grey(&[1]), [1, 1], Transfer::Srgb).levels().is_empty());
+        assert!(Mipmap::new(&grey(&[1]), [1, 1], Transfer::Srgb).levels().is_empty());
     }
 }

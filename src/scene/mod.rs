@@ -1,18 +1,35 @@
-//! The scene: plain, validated data with typed indices, and nothing that parses or traces.
+//! The scene: plain, validated data with typed indices, without any parsing or tracing.
+//!
+//! ```
+//! use envers::scene::{Camera, Light, Material, Plane, Projection, Scene, Sphere};
+//! use glam::{DVec3, Vec3};
+//!
+//! let mut scene = Scene::default();
+//! let red = scene.add_material(Material::matte(Vec3::new(0.8, 0.1, 0.1)));
+//! let mirror = scene.add_material(Material::mirror(Vec3::splat(0.9)));
+//! scene.spheres.push(Sphere::new(DVec3::Y, 1.0, mirror));
+//! scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, red));
+//! scene.lights.push(Light::point(DVec3::new(2.0, 5.0, 3.0)));
+//! let projection = Projection::FovY(45f64.to_radians());
+//! scene.cameras.push(Camera::look_at(DVec3::new(0.0, 2.0, 8.0), DVec3::Y, DVec3::Y, projection)?);
+//! scene.check()?;
+//! # Ok::<(), envers::error::Error>(())
+//! ```
 
 pub mod animation;
 mod camera;
 pub mod check;
 mod coverage;
 mod features;
-mod film;
+mod film_settings;
 mod image;
 mod light;
 mod material;
 mod mesh;
-mod metallic;
+mod metallic_roughness;
 mod mipmap;
 pub mod precision_warnings;
+mod shading_params;
 mod shapes;
 mod texels;
 mod texture;
@@ -21,17 +38,17 @@ mod triangles;
 pub mod watertight;
 
 pub use camera::{Camera, Projection, RayGenerator};
+pub use coverage::{AlphaMode, Coverage};
 pub use features::{Feature, SceneFeatures};
-pub use film::{Adaptive, FilmSettings, SamplePosition, Transfer};
+pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
 pub use light::{Falloff, IncidentLight, Light, LightKind, Shadow};
-pub use material::{
-    AlphaMode, Coverage, Material, MaterialId, NormalMap, OcclusionMap, ShininessMap,
-};
+pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShininessMap};
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
-pub use metallic::{Metallic, MetallicMaps, ShadingParams, sharpness, shininess};
-pub use mipmap::{MipLevel, Mipmap};
+pub(crate) use metallic_roughness::mirror_share;
+pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps, shininess};
+pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
 pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
@@ -43,15 +60,15 @@ use std::sync::Arc;
 use crate::geometry::{Bounds, Geometry, PrimitiveId};
 use animation::Animation;
 
-/// Everything that determines the picture.
+/// A scene: everything that determines the picture.
 ///
-/// What `load` returns is complete and checked. A scene built by hand is checked when a renderer
-/// is made of it.
+/// A scene from `load` is complete and checked. One that is built by hand is checked when it is
+/// rendered.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Size, samples, background and transfer of the picture.
+    /// The size, samples, background and transfer function of the picture.
     pub film: FilmSettings,
-    /// The cameras; the first one is used unless another is asked for.
+    /// The cameras; the first one is the default.
     pub cameras: Vec<Camera>,
     /// The materials that objects refer to.
     pub materials: Vec<Material>,
@@ -61,31 +78,31 @@ pub struct Scene {
     pub spheres: Vec<Sphere>,
     /// The infinite planes.
     pub planes: Vec<Plane>,
-    /// The meshes, each stored once; a scene shares them with itself at another time.
+    /// The meshes, each stored once, and shared by the scenes at different times of an animation.
     pub meshes: Vec<Arc<Mesh>>,
-    /// Where the meshes stand.
+    /// The instances of the meshes.
     pub instances: Vec<Instance>,
     /// The lights.
     pub lights: Vec<Light>,
-    /// How the scene changes with time. What is above is the scene as its files place it;
-    /// [`Scene::at`] says how it is at a time.
+    /// The animation, if there is one. The other fields are the scene before it is moved;
+    /// [`Scene::at_time`] gives the scene at a time.
     pub animation: Option<Animation>,
 }
 
 impl Scene {
-    /// Adds a material.
+    /// Adds a material and returns its id.
     pub fn add_material(&mut self, material: Material) -> MaterialId {
         self.materials.push(material);
         MaterialId(self.materials.len() as u32 - 1)
     }
 
-    /// Adds a texture.
+    /// Adds a texture and returns its id.
     pub fn add_texture(&mut self, texture: Texture) -> TextureId {
         self.textures.push(texture);
         TextureId(self.textures.len() as u32 - 1)
     }
 
-    /// Adds a mesh; it is seen only where an [`Instance`] of it stands.
+    /// Adds a mesh and returns its id; only an [`Instance`] makes it visible.
     pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
         self.meshes.push(Arc::new(mesh));
         MeshId(self.meshes.len() as u32 - 1)
@@ -104,8 +121,7 @@ impl Scene {
         }
     }
 
-    /// Whether a primitive keeps all light from what lies behind it: whether it casts a shadow, and
-    /// lets nothing through.
+    /// True if a primitive blocks all light: it casts a shadow and transmits nothing.
     ///
     /// # Panics
     /// When the primitive is not one of this scene.
@@ -115,7 +131,7 @@ impl Scene {
         self.casts_shadow(id) && material().is_none_or(|m| !m.may_transmit())
     }
 
-    /// Whether a primitive keeps light from what lies behind it, or some of it.
+    /// True if a primitive blocks all or some light.
     ///
     /// # Panics
     /// When the primitive is not one of this scene.
@@ -128,7 +144,7 @@ impl Scene {
         }
     }
 
-    /// The materials that anything is made of, each once.
+    /// The materials that some object has, each once.
     ///
     /// # Panics
     /// When an object has none.
@@ -141,9 +157,9 @@ impl Scene {
         self.materials.iter().zip(used).filter_map(|(material, used)| used.then_some(material))
     }
 
-    /// The corners, in world space, of the triangle that `id` names.
+    /// The vertices, in world space, of the triangle with this id.
     ///
-    /// This is the one function that bakes vertices: whoever tests a triangle in f64 tests these.
+    /// All intersections in f64 are with these vertices, which this function alone transforms.
     ///
     /// # Panics
     /// When `id` is not a triangle of this scene.
@@ -154,33 +170,34 @@ impl Scene {
         mesh.triangle_vertices(id.primitive).map(|p| instance.to_world(p))
     }
 
-    /// The box around all that is finite: spheres and instances, not planes.
+    /// The bounding box of everything finite: spheres and instances, not planes.
     pub fn bounds(&self) -> Bounds {
         self.bounds_with(&self.mesh_bounds())
     }
 
-    /// The box of each mesh, in its own space. It takes a look at every triangle.
+    /// The bounding box of each mesh, in its own space; this visits every triangle.
     pub fn mesh_bounds(&self) -> Vec<Bounds> {
         self.meshes.iter().map(|mesh| mesh.bounds()).collect()
     }
 
-    /// As [`Scene::bounds`], where the boxes of the meshes are known.
+    /// The box of [`Scene::bounds`], given the boxes of the meshes.
     ///
     /// # Panics
-    /// When a mesh that stands in the scene has no box.
+    /// When a mesh that has an instance has no box.
     pub fn bounds_with(&self, mesh_bounds: &[Bounds]) -> Bounds {
         let spheres = self.spheres.iter().map(Sphere::bounds);
-        let placed = |i: &Instance| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform);
-        spheres.chain(self.instances.iter().map(placed)).fold(Bounds::EMPTY, Bounds::union)
+        let instance = |i: &Instance| mesh_bounds[i.mesh.0 as usize].transformed(&i.transform);
+        spheres.chain(self.instances.iter().map(instance)).fold(Bounds::EMPTY, Bounds::union)
     }
 
-    /// How many primitives trees are built of: spheres, instances, and the triangles of each mesh.
+    /// The number of primitives that acceleration structures hold: spheres, instances, and the
+    /// triangles of each mesh.
     pub(crate) fn primitive_count(&self) -> u64 {
         let triangles: usize = self.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
         (triangles + self.spheres.len() + self.instances.len()) as u64
     }
 
-    /// How many triangles a ray can meet, counting each instance of a mesh.
+    /// The number of triangles that rays can hit, counted for each instance of a mesh.
     pub fn triangle_count(&self) -> u64 {
         self.instances.iter().map(|i| self.meshes[i.mesh.0 as usize].triangles.len() as u64).sum()
     }

@@ -1,25 +1,43 @@
-//! Detail that numbers cannot hold: what is too small for how large the scene is, or for how far
-//! from 0 it stands.
+//! The warnings about lost precision: detail that is too fine for the size of the scene, or for its
+//! distance from the origin.
+//!
+//! ```
+//! use envers::scene::precision_warnings::precision_warnings;
+//! use envers::scene::{MaterialId, Scene, Sphere};
+//! use glam::DVec3;
+//!
+//! let mut scene = Scene::default();
+//! scene.spheres.push(Sphere::new(DVec3::X * 1e15, 0.1, MaterialId(0)));
+//! let warnings = precision_warnings(&scene, false);
+//! assert!(warnings[0].message.starts_with("sphere 0 stands too far from the origin"));
+//! ```
 
 use rayon::prelude::*;
 
-use crate::geometry::Bounds;
 use crate::scene::{GRAIN, Instance, Mesh, Scene};
 
 /// The greatest ratio of the longest side of the scene's box to the detail of a mesh that precision
 /// `fast` supports on Embree.
 ///
-/// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/frame.rs`
+/// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/f32_space.rs`
 /// derives it), so that finer detail could not be told apart at all; but already where triangles
 /// are larger some rays meet a neighbour instead. Measured on a ball at the end of its scene, the
 /// share of rays that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at
 /// 1e6; `fast` promises 1e-4.
 pub const FAST_RATIO: f64 = 1e4;
-/// The spacing of f32 numbers, in which meshes are stored, in units of the number.
+/// The relative spacing of f32 numbers, in which meshes are stored.
 const F32_SPACING: f64 = f32::EPSILON as f64;
 
-/// Something whose detail is lost: a sentence for each kind of loss, about the object that loses
-/// most.
+/// A warning about an object whose detail is lost.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PrecisionWarning {
+    /// The warning, in one sentence.
+    pub message: String,
+    /// True if precision `certified` keeps the detail, which only f32 rays lose.
+    pub is_of_fast_only: bool,
+}
+
+/// Warns of lost detail: one warning for each kind of loss, about the object that loses most.
 ///
 /// The detail of a mesh is the square root of its triangles' mean area, that of a sphere its
 /// radius. It is lost where it is finer than
@@ -27,117 +45,108 @@ const F32_SPACING: f64 = f32::EPSILON as f64;
 ///   [`FAST_RATIO`] (meshes only);
 /// - the spacing of f32 at the mesh's own coordinates, since files and scenes store meshes in f32;
 /// - the spacing of f64 at the object's coordinates in the world.
-pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<String> {
+pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning> {
     let mesh_bounds = scene.mesh_bounds();
     let bounds = scene.bounds_with(&mesh_bounds);
     if bounds.is_empty() {
         return Vec::new();
     }
-    let meshes: Vec<Grain> = scene
-        .meshes
-        .iter()
-        .zip(&mesh_bounds)
-        .map(|(mesh, bounds)| Grain::of(mesh, bounds))
-        .collect();
-    let extent = bounds.size().max_element();
-    let mut found = Vec::new();
+    let meshes = || scene.meshes.iter().zip(&mesh_bounds);
+    let details: Vec<f64> = meshes().map(|(mesh, _)| mesh_detail(mesh)).collect();
+    let mut warnings = Vec::new();
+    let mut warn = |message: Option<String>, is_of_fast_only: bool| {
+        warnings.extend(message.map(|message| PrecisionWarning { message, is_of_fast_only }));
+    };
 
-    let in_file = meshes.iter().zip(&scene.meshes).map(|(grain, mesh)| Loss {
-        what: format!("mesh `{}`", mesh.name),
-        detail: grain.detail,
-        against: grain.reach,
+    // Meshes that f32 cannot store, in their own space.
+    let stored = meshes().zip(&details).map(|((mesh, bounds), &detail)| Loss {
+        object: format!("mesh `{}`", mesh.name),
+        detail,
+        extent: bounds.max_abs(),
     });
-    found.extend(worst(in_file, F32_SPACING).map(|Loss { what, detail, against }| {
+    let message = worst(stored, F32_SPACING).map(|Loss { object, detail, extent }| {
         format!(
-            "{what} stands too far from its file's origin: its triangles are about {detail:.1e} \
-             large at coordinates of {against:.1e}, where f32, in which meshes are stored, has \
+            "{object} stands too far from its file's origin: its triangles are about {detail:.1e} \
+             large at coordinates of {extent:.1e}, where f32, in which meshes are stored, has \
              lost them (ratio {:.1e}, supported up to {:.1e}); model it about the origin and \
              translate it",
-            against / detail,
+            extent / detail,
             1.0 / F32_SPACING
         )
-    }));
+    });
+    warn(message, false);
 
-    let placed = |instance: &Instance| {
-        let grain = &meshes[instance.mesh.0 as usize];
-        // The mean stretch; exact where it is the same along all axes.
-        grain.detail * instance.transform.matrix3.determinant().abs().cbrt()
-    };
-    let name = |i: usize, instance: &Instance| {
-        let mesh = &scene.meshes[instance.mesh.0 as usize].name;
-        format!("instance {i} (mesh `{mesh}`)")
-    };
-    let instances = || {
-        scene.instances.iter().enumerate().map(|(i, instance)| Loss {
-            what: name(i, instance),
-            detail: placed(instance),
-            against: extent,
-        })
+    // Instances that f32 rays cannot resolve in so large a scene.
+    let instances = |extent: &dyn Fn(&Instance) -> f64| {
+        let losses = scene.instances.iter().enumerate().map(|(i, instance)| {
+            let mesh = instance.mesh.0 as usize;
+            // The mean scale; exact where it is the same along all axes.
+            let scale = instance.transform.matrix3.determinant().abs().cbrt();
+            Loss {
+                object: format!("instance {i} (mesh `{}`)", scene.meshes[mesh].name),
+                detail: details[mesh] * scale,
+                extent: extent(instance),
+            }
+        });
+        losses.collect::<Vec<_>>()
     };
     if f32_rays {
-        found.extend(worst(instances(), 1.0 / FAST_RATIO).map(|Loss { what, detail, against }| {
+        let size = bounds.size().max_element();
+        let lost = worst(instances(&|_| size), 1.0 / FAST_RATIO);
+        let message = lost.map(|Loss { object, detail, extent }| {
             format!(
-                "{what} is fine for so large a scene: its triangles are about {detail:.1e} large \
-                 in {against:.1e} (ratio {:.1e}, supported up to {FAST_RATIO:.0e} in precision \
+                "{object} is fine for so large a scene: its triangles are about {detail:.1e} large \
+                 in {extent:.1e} (ratio {:.1e}, supported up to {FAST_RATIO:.0e} in precision \
                  fast on Embree), so that more than one ray in 10,000 may meet a neighbour of \
-                 the triangle in its way; --precision certified has no such limit",
-                against / detail
+                 the triangle in its way",
+                extent / detail
             )
-        }));
+        });
+        warn(message, true);
     }
 
+    // Spheres and instances that f64 cannot resolve, in world space.
     let spheres = scene.spheres.iter().enumerate().map(|(i, s)| Loss {
-        what: format!("sphere {i}"),
+        object: format!("sphere {i}"),
         detail: s.radius,
-        against: s.center.abs().max_element(),
+        extent: s.center.abs().max_element(),
     });
-    let in_world = instances().zip(&scene.instances).map(|(loss, instance)| Loss {
-        against: instance.transform.translation.abs().max_element(),
-        ..loss
-    });
-    found.extend(worst(spheres.chain(in_world), f64::EPSILON).map(|loss| {
+    let instances = instances(&|i| i.transform.translation.abs().max_element());
+    let lost = worst(spheres.chain(instances), f64::EPSILON);
+    let message = lost.map(|Loss { object, detail, extent }| {
         format!(
-            "{} stands too far from the origin: it has detail of about {:.1e} at coordinates of \
-             {:.1e}, where f64 has lost it",
-            loss.what, loss.detail, loss.against
+            "{object} stands too far from the origin: it has detail of about {detail:.1e} at \
+             coordinates of {extent:.1e}, where f64 has lost it"
         )
-    }));
-    found
+    });
+    warn(message, false);
+    warnings
 }
 
-/// A detail, and what it is small against.
+/// The detail of an object, and the extent relative to which it may be lost.
 struct Loss {
-    what: String,
+    object: String,
     detail: f64,
-    against: f64,
+    extent: f64,
 }
 
-/// The one with the least detail, if that is below `share` of what it is held against.
-fn worst(all: impl Iterator<Item = Loss>, share: f64) -> Option<Loss> {
-    all.filter(|loss| loss.detail > 0.0 && loss.detail < share * loss.against)
-        .min_by(|a, b| (a.detail / a.against).total_cmp(&(b.detail / b.against)))
+/// The loss with the least detail relative to its extent, if that is below `limit`.
+fn worst(losses: impl IntoIterator<Item = Loss>, limit: f64) -> Option<Loss> {
+    let lost = losses.into_iter().filter(|l| l.detail > 0.0 && l.detail < limit * l.extent);
+    lost.min_by(|a, b| (a.detail / a.extent).total_cmp(&(b.detail / b.extent)))
 }
 
-/// How fine a mesh is, in its own space.
-struct Grain {
-    /// The square root of the mean area of its triangles; 0 when all are degenerate.
-    detail: f64,
-    /// Its largest absolute coordinate.
-    reach: f64,
-}
-
-impl Grain {
-    fn of(mesh: &Mesh, bounds: &Bounds) -> Self {
-        let area = |t: &[u32; 3]| {
-            let corners = t.map(|i| glam::DVec3::from(mesh.positions[i as usize].map(f64::from)));
-            0.5 * crate::geometry::triangle::area_normal(corners).length()
-        };
-        // Parts that are added up in order: the same sum on any number of threads.
-        let parts: Vec<f64> =
-            mesh.triangles.par_chunks(GRAIN).map(|part| part.iter().map(area).sum()).collect();
-        let detail = (parts.iter().sum::<f64>() / mesh.triangles.len().max(1) as f64).sqrt();
-        Self { detail, reach: if bounds.is_empty() { 0.0 } else { bounds.max_abs() } }
-    }
+/// The detail of a mesh in its own space: the square root of the mean area of its triangles; 0 when
+/// all are degenerate.
+fn mesh_detail(mesh: &Mesh) -> f64 {
+    let area = |t: &[u32; 3]| {
+        let corners = t.map(|i| glam::DVec3::from(mesh.positions[i as usize].map(f64::from)));
+        0.5 * crate::geometry::triangle::area_normal(corners).length()
+    };
+    // Partial sums in a fixed order: the same sum on any number of threads.
+    let parts: Vec<f64> =
+        mesh.triangles.par_chunks(GRAIN).map(|part| part.iter().map(area).sum()).collect();
+    (parts.iter().sum::<f64>() / mesh.triangles.len().max(1) as f64).sqrt()
 }
 
 #[cfg(test)]
@@ -167,7 +176,7 @@ mod tests {
 
     #[test]
     fn an_ordinary_scene_loses_nothing() {
-        assert_eq!(precision_warnings(&beside_a_ball(0.01), true), [""; 0]);
+        assert_eq!(precision_warnings(&beside_a_ball(0.01), true), []);
     }
 
     #[test]
@@ -175,31 +184,34 @@ mod tests {
         // The square root of the area is 1 / √2 of the legs.
         let scene = beside_a_ball(1.4e-4);
         let found = precision_warnings(&scene, true);
-        assert!(found.len() == 1 && found[0].contains("instance 0 (mesh `speck`)"), "{found:?}");
-        assert!(found[0].contains("--precision certified"), "{found:?}");
-        assert_eq!(precision_warnings(&scene, false), [""; 0]);
-        assert_eq!(precision_warnings(&beside_a_ball(1.5e-4), true), [""; 0]);
+        assert!(
+            found.len() == 1 && found[0].message.contains("instance 0 (mesh `speck`)"),
+            "{found:?}"
+        );
+        assert!(found[0].is_of_fast_only);
+        assert_eq!(precision_warnings(&scene, false), []);
+        assert_eq!(precision_warnings(&beside_a_ball(1.5e-4), true), []);
     }
 
     #[test]
     fn a_mesh_far_from_its_own_origin_is_lost_in_its_file() {
         let found = precision_warnings(&scene(0.1, 1e6, DAffine3::IDENTITY), false);
-        assert!(found.len() == 1 && found[0].contains("f32, in which meshes"), "{found:?}");
-        assert_eq!(precision_warnings(&scene(0.1, 1e5, DAffine3::IDENTITY), false), [""; 0]);
+        assert!(found.len() == 1 && found[0].message.contains("f32, in which meshes"), "{found:?}");
+        assert_eq!(precision_warnings(&scene(0.1, 1e5, DAffine3::IDENTITY), false), []);
     }
 
     #[test]
     fn what_stands_too_far_out_for_f64_is_named() {
         let far = DAffine3::from_translation(DVec3::X * 1e15);
         let found = precision_warnings(&scene(0.1, 0.0, far), false);
-        assert!(found.len() == 1 && found[0].contains("f64 has lost it"), "{found:?}");
+        assert!(found.len() == 1 && found[0].message.contains("f64 has lost it"), "{found:?}");
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::X * 1e15, 0.1, MaterialId(0)));
-        assert!(precision_warnings(&scene, false)[0].starts_with("sphere 0 "));
+        assert!(precision_warnings(&scene, false)[0].message.starts_with("sphere 0 "));
     }
 
     #[test]
     fn a_scene_of_planes_has_no_detail_to_lose() {
-        assert_eq!(precision_warnings(&Scene::default(), true), [""; 0]);
+        assert_eq!(precision_warnings(&Scene::default(), true), []);
     }
 }

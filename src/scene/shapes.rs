@@ -1,4 +1,4 @@
-//! What stands in a scene: spheres, planes and instances of meshes.
+//! The objects of a scene: spheres, planes and instances of meshes.
 
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -12,9 +12,9 @@ pub struct Sphere {
     pub center: DVec3,
     /// The radius, above 0.
     pub radius: f64,
-    /// What it is made of.
+    /// The material.
     pub material: MaterialId,
-    /// Whether it keeps light from what lies behind it.
+    /// True if it casts a shadow.
     pub casts_shadow: bool,
 }
 
@@ -24,7 +24,7 @@ impl Sphere {
         Self { center, radius, material, casts_shadow: true }
     }
 
-    /// The box around it.
+    /// The bounding box.
     pub fn bounds(&self) -> Bounds {
         Bounds { lower: self.center - self.radius, upper: self.center + self.radius }
     }
@@ -33,32 +33,31 @@ impl Sphere {
 /// An infinite plane, such as the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Any point of it, in world space.
+    /// A point of the plane, in world space.
     pub point: DVec3,
-    /// Its normal, of length 1.
+    /// The normal, of length 1.
     pub normal: DVec3,
-    /// What it is made of.
+    /// The material.
     pub material: MaterialId,
-    /// A checker in place of the material's diffuse colour.
+    /// A checkerboard in place of the material's diffuse colour.
     pub checker: Option<Checker>,
-    /// The side of the square that its material's pictures take before they repeat, above 0, in
-    /// world units.
+    /// The side of the square that a texture covers before it repeats, above 0, in world units.
     pub texture_size: f64,
-    /// Whether it keeps light from what lies behind it.
+    /// True if it casts a shadow.
     pub casts_shadow: bool,
 }
 
 impl Plane {
-    /// A plane without checker that casts a shadow; `normal` may have any length but zero.
+    /// A plane without checkerboard that casts a shadow; `normal` may have any length but zero.
     pub fn new(point: DVec3, normal: DVec3, material: MaterialId) -> Self {
         let normal = normal.normalize();
         Self { point, normal, material, checker: None, texture_size: 1.0, casts_shadow: true }
     }
 
-    /// Two unit vectors that span the plane: the axes of its checker, and along which texture
-    /// coordinates u and v run. Whom the normal points to sees u run to the right where v runs
-    /// down. On a wall u is level and v points down, along −Y; on the ground, and on anything less
-    /// than 26° off it, u follows X (for normal ±Y, v is then ±Z).
+    /// Two unit vectors that span the plane: the axes of its checkerboard and of its texture
+    /// coordinates u and v. Seen from the front, u points right where v points down. On a wall u is
+    /// horizontal and v points down, along −Y; on the ground, and on planes within 26° of it, u follows
+    /// X (for normal ±Y, v is then ±Z).
     pub fn axes(&self) -> (DVec3, DVec3) {
         let across = if self.normal.y.abs() > 0.9 {
             DVec3::X - self.normal * self.normal.x
@@ -70,7 +69,7 @@ impl Plane {
     }
 }
 
-/// A checker pattern on a plane, with a corner of its squares at the plane's point.
+/// A checkerboard on a plane, with a corner of its squares at the plane's point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checker {
     /// The two diffuse colours, linear Rec. 709.
@@ -79,16 +78,16 @@ pub struct Checker {
     pub size: f64,
 }
 
-/// A mesh as it stands in the scene.
+/// An instance: one placement of a mesh in the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instance {
-    /// Which mesh.
+    /// The mesh.
     pub mesh: MeshId,
-    /// From the mesh's space to the world's; invertible.
+    /// The transform from the mesh's space to world space; invertible.
     pub transform: DAffine3,
-    /// What it is made of.
+    /// The material.
     pub material: MaterialId,
-    /// Whether it keeps light from what lies behind it.
+    /// True if it casts a shadow.
     pub casts_shadow: bool,
 }
 
@@ -98,13 +97,13 @@ impl Instance {
         Self { mesh, transform, material, casts_shadow: true }
     }
 
-    /// Whether its transform leaves no volume, and so no way back into the mesh's space.
+    /// True if its transform scales some direction to 0, and so cannot be inverted.
     pub fn is_flat(&self) -> bool {
         let determinant = self.transform.matrix3.determinant();
         determinant == 0.0 || !determinant.is_finite()
     }
 
-    /// A vertex of the mesh in world space, rounded in f64 in one fixed order of operations.
+    /// Transforms a vertex of the mesh to world space, in f64 and a fixed order of operations.
     #[inline(always)]
     pub fn to_world(&self, p: [f32; 3]) -> DVec3 {
         self.transform.transform_point3(DVec3::new(p[0] as f64, p[1] as f64, p[2] as f64))
@@ -122,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn pictures_on_a_wall_stand_upright_for_whom_it_faces() {
+    fn textures_on_a_wall_are_upright_seen_from_its_front() {
         let wall = |normal| Plane::new(DVec3::ZERO, normal, MaterialId(0)).axes();
         assert_eq!(wall(DVec3::Z), (DVec3::X, DVec3::NEG_Y));
         assert_eq!(wall(DVec3::NEG_X), (DVec3::Z, DVec3::NEG_Y));

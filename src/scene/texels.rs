@@ -1,4 +1,4 @@
-//! The pixels of pictures.
+//! The pixels of images.
 
 use std::sync::LazyLock;
 
@@ -6,28 +6,31 @@ use glam::Vec4;
 
 use crate::scene::Transfer;
 
-/// One stored pixel of 8 bits a channel: red, green, blue, alpha, as the file has them.
+/// A stored pixel of 8 bits per channel: red, green, blue, alpha, as the file has them.
 pub type Texel = [u8; 4];
 
-/// The pixels of a picture, row by row from the upper left: red, green, blue, alpha.
+/// The pixels of an image, row by row from the upper left: red, green, blue, alpha.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Texels {
-    /// 8 bits a channel.
+    /// Pixels of 8 bits per channel.
     Bytes(Vec<Texel>),
-    /// 16 bits a channel.
+    /// Pixels of 16 bits per channel.
     Words(Vec<[u16; 4]>),
     /// Linear radiance, finite and not negative; no transfer applies to it.
     Floats(Vec<[f32; 4]>),
 }
 
+/// The linear values of all sRGB bytes.
 static BYTES: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|i| Transfer::Srgb.decode(i as f32 / 255.0)));
+/// The linear values of all 16-bit sRGB values.
 static WORDS: LazyLock<Vec<f32>> = LazyLock::new(|| {
     (0..=u16::MAX).map(|i| Transfer::Srgb.decode(f32::from(i) / 65535.0)).collect()
 });
 
 impl Texels {
-    /// How many there are.
+    /// The number of pixels.
     pub fn len(&self) -> usize {
         match self {
             Self::Bytes(texels) => texels.len(),
@@ -36,7 +39,7 @@ impl Texels {
         }
     }
 
-    /// Whether there are none.
+    /// True if there are no pixels.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -47,35 +50,27 @@ impl Texels {
     /// When there is no such pixel.
     #[inline]
     pub fn linear(&self, index: usize, transfer: Transfer) -> Vec4 {
-        match self {
-            Self::Bytes(texels) => {
-                let texel = texels[index];
-                let plain = Vec4::from(texel.map(f32::from)) / 255.0;
-                match transfer {
-                    Transfer::None => plain,
-                    Transfer::Srgb => {
-                        let [r, g, b, _] = texel.map(|x| BYTES[usize::from(x)]);
-                        Vec4::new(r, g, b, plain.w)
-                    }
-                }
+        match (self, transfer) {
+            (Self::Floats(texels), _) => Vec4::from(texels[index]),
+            (Self::Bytes(texels), Transfer::None) => {
+                Vec4::from(texels[index].map(f32::from)) / 255.0
             }
-            Self::Words(texels) => {
-                let texel = texels[index];
-                let plain = Vec4::from(texel.map(f32::from)) / 65535.0;
-                match transfer {
-                    Transfer::None => plain,
-                    Transfer::Srgb => {
-                        let [r, g, b, _] = texel.map(|x| WORDS[usize::from(x)]);
-                        Vec4::new(r, g, b, plain.w)
-                    }
-                }
+            (Self::Words(texels), Transfer::None) => {
+                Vec4::from(texels[index].map(f32::from)) / 65535.0
             }
-            Self::Floats(texels) => Vec4::from(texels[index]),
+            (Self::Bytes(texels), Transfer::Srgb) => {
+                let [r, g, b, a] = texels[index].map(usize::from);
+                Vec4::new(BYTES[r], BYTES[g], BYTES[b], a as f32 / 255.0)
+            }
+            (Self::Words(texels), Transfer::Srgb) => {
+                let [r, g, b, a] = texels[index].map(usize::from);
+                Vec4::new(WORDS[r], WORDS[g], WORDS[b], a as f32 / 65535.0)
+            }
         }
     }
 
-    /// Pixels of the same kind with these linear colours.
-    pub(super) fn like(&self, colors: &[Vec4], transfer: Transfer) -> Self {
+    /// Pixels of the same storage type with these linear colours.
+    pub(super) fn encoded_like(&self, colors: &[Vec4], transfer: Transfer) -> Self {
         let encoded = |c: &Vec4| {
             let [r, g, b] = c.truncate().to_array().map(|x| transfer.encode(f64::from(x)) as f32);
             Vec4::new(r, g, b, c.w).clamp(Vec4::ZERO, Vec4::ONE)

@@ -1,4 +1,4 @@
-//! Pictures on surfaces.
+//! The textures of surfaces, and how they are sampled.
 
 use std::sync::Arc;
 
@@ -21,65 +21,66 @@ pub struct Channel {
     pub channel: u8,
 }
 
-/// What lies beyond the edges of a picture.
+/// The wrap mode: what lies beyond the edges of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Wrap {
-    /// The picture again.
+    /// The image repeats.
     #[default]
     Repeat,
-    /// The picture again, mirrored every other time.
+    /// The image repeats, mirrored every other time.
     Mirror,
-    /// Its edge.
+    /// The pixels at the edge continue.
     Clamp,
 }
 
-/// How the pixels around a point become its colour.
+/// The filter by which the pixels around a point become its colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Filter {
-    /// The pixel that holds the point.
+    /// The pixel that contains the point.
     Nearest,
-    /// The four around it, in proportion.
+    /// The bilinear mean of the four pixels around the point.
     #[default]
     Linear,
 }
 
-/// A picture, how to read it, and how it is laid on a surface.
+/// An image, how it is sampled, and how it is mapped onto a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// The picture, shared by every texture that uses it.
+    /// The image, shared by every texture that uses it.
     pub image: Arc<Image>,
-    /// How its colours are encoded; alpha never is, and float pixels are not.
+    /// The transfer function by which its colours are encoded; alpha and float pixels never are.
     pub transfer: Transfer,
-    /// What lies beyond its edges, along u and v.
+    /// The wrap modes along u and v.
     pub wrap: [Wrap; 2],
-    /// How its pixels are read where they are seen no smaller than the picture's own.
+    /// The filter where the film's pixels are no larger than the texture's.
     pub filter: Filter,
-    /// Whether what a pixel of the film sees is averaged where it holds many of the texture's.
+    /// True if it is averaged, by its mipmap, where a pixel of the film covers many of its own.
     pub mipmap: bool,
-    /// Which of a mesh's two sets of texture coordinates places it: 0 or 1. Spheres and planes have
-    /// one.
+    /// The set of a mesh's texture coordinates that maps it: 0 or 1. Spheres and planes have one set.
     pub set: u8,
-    /// From these coordinates to the picture's own.
+    /// The transform from these coordinates to the image's own.
     pub transform: Affine2,
 }
 
-/// A point of a surface in texture coordinates, and the area around it that is seen as one.
+/// A point of a surface in texture coordinates, with the footprint of the ray there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TexturePoint {
-    /// The coordinates (u, v) of both sets, (0, 0) being the upper left corner of a picture.
+    /// The coordinates (u, v) of both sets, (0, 0) being the upper left corner of an image.
     pub uv: [[f32; 2]; 2],
-    /// For both sets, how the coordinates change from one end of the area to the other, along its
-    /// greatest and its least extent; 0 where it is only a point.
+    /// For both sets, the differences of the coordinates from one end of the footprint to the other,
+    /// along its greatest and its least extent; 0 for a mere point.
     pub across: [[Vec2; 2]; 2],
 }
 
-/// So many places along the greater extent of an area are averaged at most; more would blur it
-/// less where a surface is seen at a grazing angle.
-const MOST: f32 = 16.0;
+/// The greatest number of probes along a footprint; more would blur less where a surface is seen at a
+/// grazing angle.
+const MAX_PROBES: f32 = 16.0;
 
 impl Texture {
-    /// A picture of colours in sRGB that repeats, with linear filtering and without mipmaps, by the
-    /// first set of texture coordinates.
+    /// A repeating texture of colours in sRGB, with linear filtering and without mipmaps, mapped by
+    /// the first set of texture coordinates.
     pub fn new(image: Arc<Image>) -> Self {
         Self {
             image,
@@ -92,74 +93,76 @@ impl Texture {
         }
     }
 
-    /// The linear colour and the alpha at a point, or, with mipmaps, of the area around it.
+    /// Samples the linear colour and the alpha at a point, or, with mipmaps, over its footprint.
     ///
-    /// Coordinates that are not finite read the upper left pixel.
-    pub fn at(&self, point: &TexturePoint) -> Vec4 {
+    /// Coordinates that are not finite give the upper left pixel.
+    pub fn sample(&self, point: &TexturePoint) -> Vec4 {
         let set = usize::from(self.set & 1);
         let uv = self.transform.transform_point2(Vec2::from(point.uv[set]));
         let across = point.across[set];
         if self.mipmap && across != [Vec2::ZERO; 2] {
-            return self.mean(uv, across);
+            return self.sample_anisotropic(uv, across);
         }
-        self.near(uv)
+        self.sample_base(uv)
     }
 
-    /// The colour at a point of the picture itself.
-    fn near(&self, uv: Vec2) -> Vec4 {
+    /// Samples the full-size image.
+    fn sample_base(&self, uv: Vec2) -> Vec4 {
         let size = [self.image.width, self.image.height];
         match self.filter {
             Filter::Nearest => {
-                let at = uv * Vec2::new(size[0] as f32, size[1] as f32);
-                self.texel(&self.image.texels, size, at.x.floor() as i64, at.y.floor() as i64)
+                let at = (uv * Vec2::new(size[0] as f32, size[1] as f32)).floor();
+                self.texel(&self.image.texels, size, at.x as i64, at.y as i64)
             }
-            Filter::Linear => self.linear(&self.image.texels, size, uv),
+            Filter::Linear => self.sample_bilinear(&self.image.texels, size, uv),
         }
     }
 
-    /// The mean over an area, whose extent is `across`.
+    /// Samples the mean over a footprint, whose extent is `across`.
     ///
-    /// Places along its greater extent, as far apart as its lesser one is wide, are averaged; each
-    /// is read from the two levels of the pyramid whose pixels are next to that width (J. McCormack
+    /// It averages probes along the greater extent, as far apart as the lesser one is wide; each is
+    /// interpolated between the two levels whose pixels are closest to that width (J. McCormack
     /// et al., *Feline: Fast Elliptical Lines for Anisotropic Texture Mapping*, SIGGRAPH 1999).
-    fn mean(&self, uv: Vec2, across: [Vec2; 2]) -> Vec4 {
+    fn sample_anisotropic(&self, uv: Vec2, across: [Vec2; 2]) -> Vec4 {
+        // The axes of the footprint, and their lengths in pixels of the image.
         let size = Vec2::new(self.image.width as f32, self.image.height as f32);
         let [a, b] = across.map(|x| self.transform.matrix2 * x);
         let [length_a, length_b] = [a, b].map(|x| (x * size).length());
-        let (along, greater, lesser) = match length_a >= length_b {
-            true => (a, length_a, length_b),
-            false => (b, length_b, length_a),
-        };
-        let width = lesser.max(greater / MOST).max(1.0);
-        let count = (greater / width).ceil().clamp(1.0, MOST);
+        let (along, greater, lesser) =
+            if length_a >= length_b { (a, length_a, length_b) } else { (b, length_b, length_a) };
+        // The width of a probe, and how many fill the footprint.
+        let width = lesser.max(greater / MAX_PROBES).max(1.0);
+        let count = (greater / width).ceil().clamp(1.0, MAX_PROBES);
         if !(greater.is_finite() && uv.is_finite()) || greater <= 1.0 {
-            return self.near(uv);
+            return self.sample_base(uv);
         }
         let level = width.log2();
-        let places = (0..count as u32).map(|i| {
-            let place = (i as f32 + 0.5) / count - 0.5;
-            self.between_levels(uv + along * place, level)
+        let probes = (0..count as u32).map(|i| {
+            let offset = (i as f32 + 0.5) / count - 0.5;
+            self.sample_trilinear(uv + along * offset, level)
         });
-        places.sum::<Vec4>() / count
+        probes.sum::<Vec4>() / count
     }
 
-    /// The colour at a point of the pyramid, between two of its levels; 0 is the picture itself.
-    fn between_levels(&self, uv: Vec2, level: f32) -> Vec4 {
-        let pyramid = self.image.reduced(self.transfer).levels();
-        let last = pyramid.len();
-        let of = |level: usize| match level.min(last) {
-            0 => self.linear(&self.image.texels, [self.image.width, self.image.height], uv),
-            level => self.linear(&pyramid[level - 1].texels, pyramid[level - 1].size, uv),
+    /// Samples the mipmap between two of its levels, of which 0 is the image itself.
+    fn sample_trilinear(&self, uv: Vec2, level: f32) -> Vec4 {
+        let levels = self.image.mipmap(self.transfer).levels();
+        let last = levels.len();
+        let sample = |level: usize| match level.min(last) {
+            0 => {
+                self.sample_bilinear(&self.image.texels, [self.image.width, self.image.height], uv)
+            }
+            level => self.sample_bilinear(&levels[level - 1].texels, levels[level - 1].size, uv),
         };
         let (whole, part) = (level.floor(), level.fract());
-        match part == 0.0 || whole as usize >= last {
-            true => of(whole as usize),
-            false => of(whole as usize).lerp(of(whole as usize + 1), part),
+        if part == 0.0 || whole as usize >= last {
+            return sample(whole as usize);
         }
+        sample(whole as usize).lerp(sample(whole as usize + 1), part)
     }
 
-    /// The four pixels around a point, in proportion.
-    fn linear(&self, texels: &Texels, size: [u32; 2], uv: Vec2) -> Vec4 {
+    /// Samples one level by the bilinear mean of the four pixels around a point.
+    fn sample_bilinear(&self, texels: &Texels, size: [u32; 2], uv: Vec2) -> Vec4 {
         let (x, y) = (uv.x * size[0] as f32 - 0.5, uv.y * size[1] as f32 - 0.5);
         let (x0, y0) = (x.floor(), y.floor());
         let (column, row) = (x0 as i64, y0 as i64);
@@ -173,6 +176,7 @@ impl Texture {
         top.lerp(low, fy)
     }
 
+    /// The linear colour of one pixel, with wrapping.
     fn texel(&self, texels: &Texels, size: [u32; 2], column: i64, row: i64) -> Vec4 {
         let x = wrap(column, size[0], self.wrap[0]);
         let y = wrap(row, size[1], self.wrap[1]);
@@ -180,7 +184,7 @@ impl Texture {
     }
 }
 
-/// The index, in `0..size`, that stands for `index`.
+/// Wraps an index to `0..size`.
 fn wrap(index: i64, size: u32, wrap: Wrap) -> usize {
     let size = i64::from(size);
     let inside = match wrap {
@@ -201,12 +205,12 @@ mod tests {
 
     fn texture(filter: Filter, wrap: Wrap) -> Texture {
         let texels = vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]];
-        let image = Arc::new(Image::bytes("", [2, 2], texels));
+        let image = Arc::new(Image::from_bytes("", [2, 2], texels));
         Texture { transfer: Transfer::None, wrap: [wrap; 2], filter, ..Texture::new(image) }
     }
 
     fn color(texture: &Texture, uv: [f32; 2]) -> Vec3 {
-        texture.at(&TexturePoint { uv: [uv; 2], ..TexturePoint::default() }).truncate()
+        texture.sample(&TexturePoint { uv: [uv; 2], ..TexturePoint::default() }).truncate()
     }
 
     #[test]
@@ -245,7 +249,7 @@ mod tests {
             assert!(color(&texture, [bad, bad]).is_finite());
             texture.mipmap = true;
             let across = [[Vec2::splat(bad); 2]; 2];
-            assert!(texture.at(&TexturePoint { uv: [[bad; 2]; 2], across }).is_finite());
+            assert!(texture.sample(&TexturePoint { uv: [[bad; 2]; 2], across }).is_finite());
         }
     }
 
@@ -255,18 +259,18 @@ mod tests {
         texture.set = 1;
         texture.transform = Affine2::from_translation(Vec2::new(0.5, 0.0));
         let point = TexturePoint { uv: [[0.9, 0.9], [0.1, 0.1]], ..TexturePoint::default() };
-        assert_eq!(texture.at(&point).truncate(), Vec3::Y);
+        assert_eq!(texture.sample(&point).truncate(), Vec3::Y);
     }
 
     /// A texture of 64 by 64 pixels, black and white in turn along u, with mipmaps.
     fn stripes() -> Texture {
         let texel = |i: usize| if i.is_multiple_of(2) { [0, 0, 0, 255] } else { [255; 4] };
-        let image = Image::bytes("", [64; 2], (0..64 * 64).map(texel).collect());
+        let image = Image::from_bytes("", [64; 2], (0..64 * 64).map(texel).collect());
         Texture { transfer: Transfer::None, mipmap: true, ..Texture::new(image.into()) }
     }
 
     fn over(texture: &Texture, across: [Vec2; 2]) -> f32 {
-        texture.at(&TexturePoint { uv: [[0.3; 2]; 2], across: [across; 2] }).x
+        texture.sample(&TexturePoint { uv: [[0.3; 2]; 2], across: [across; 2] }).x
     }
 
     #[test]

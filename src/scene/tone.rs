@@ -1,30 +1,31 @@
-//! How bright light is brought into the range of a picture.
+//! The tone curves, which map radiance to the range of a picture.
 
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-/// A tone curve: from linear light, exposed, to what a picture can show.
+/// A tone curve, from linear radiance (after exposure) to \[0, 1\].
 ///
-/// Each is applied to red, green and blue by itself. It never falls, and is 0 at 0.
+/// It is applied to red, green and blue separately, never decreases, and is 0 at 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
+#[non_exhaustive]
 pub enum Tone {
-    /// min(x, 1): what is brighter than white is white.
+    /// The clamp min(x, 1).
     #[default]
     None,
-    /// x / (1 + x), which reaches white nowhere. Reinhard et al., "Photographic Tone Reproduction
+    /// The curve x / (1 + x), which never reaches 1. Reinhard et al., "Photographic Tone Reproduction
     /// for Digital Images" (SIGGRAPH 2002), equation 3, for each channel.
     Reinhard,
-    /// min(x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), 1): Narkowicz, "ACES Filmic Tone Mapping
-    /// Curve" (2016), a fit to the curve of the Academy's reference transform, with more contrast
-    /// in the middle than [`Tone::Reinhard`]. White from 7.25 on.
+    /// The curve min(x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), 1): Narkowicz, "ACES Filmic Tone
+    /// Mapping Curve" (2016), a fit to the curve of the Academy's reference transform, with more contrast
+    /// in the middle than [`Tone::Reinhard`]. It is 1 from 7.25 on.
     Aces,
 }
 
 impl Tone {
-    /// The curve at `x`: in \[0, 1\], and 0 for what is negative or no number.
+    /// Evaluates the curve at `x`: in \[0, 1\], and 0 for negative numbers and NaN.
     pub fn apply(self, x: f64) -> f64 {
-        // Every curve is within 1e-9 of its limit from here on, and its squares are finite.
+        // A value whose square is finite, and from which on every curve is within 1e-9 of its limit.
         const BRIGHT: f64 = 1e9;
         // A NaN fails the comparison.
         let x = if x > 0.0 { x.min(BRIGHT) } else { 0.0 };

@@ -1,27 +1,29 @@
-//! Triangles side by side.
+//! The vertices of several triangles, side by side.
 
 use glam::DVec3;
 
 use crate::geometry::PrimitiveId16;
 use crate::scene::Scene;
 
-/// The corners of `W` triangles in world space: corner, axis, lane. Where there is no triangle they
-/// are all at one point.
+/// The vertices of `W` triangles in world space, by vertex, axis and lane. In a lane without triangle
+/// all three are at one point.
 #[repr(C, align(64))]
 pub struct Triangles<const W: usize>([[[f64; W]; 3]; 3]);
 
 impl<const W: usize> Triangles<W> {
-    /// The triangles among what these codes of [`PrimitiveId16`] name; `None` where there is none.
+    /// Gathers the triangles among the primitives with these ids, coded as in [`PrimitiveId16`];
+    /// `None` if there is no triangle.
     ///
     /// # Panics
-    /// When one is not in the scene.
+    /// When a triangle is not in the scene.
     #[inline(always)]
-    pub fn of(
+    pub fn from_ids(
         scene: &Scene,
         geometry: &[u32; W],
         primitive: &[u32; W],
         instance: &[u32; W],
     ) -> Option<Self> {
+        // The vertices in the spaces of their meshes.
         let mut local = [[[0.0f32; W]; 3]; 3];
         let mut first = None;
         let mut alike = true;
@@ -30,8 +32,8 @@ impl<const W: usize> Triangles<W> {
                 continue;
             }
             let mesh = &scene.meshes[(geometry[i] - PrimitiveId16::MESHES) as usize];
-            let corners = mesh.triangle_vertices(primitive[i]);
-            for (to, p) in local.iter_mut().zip(corners) {
+            let vertices = mesh.triangle_vertices(primitive[i]);
+            for (to, p) in local.iter_mut().zip(vertices) {
                 for axis in 0..3 {
                     to[axis][i] = p[axis];
                 }
@@ -39,25 +41,28 @@ impl<const W: usize> Triangles<W> {
             alike &= *first.get_or_insert(instance[i]) == instance[i];
         }
         let first = first?;
+
+        // Nearly always all are of one instance: one transform, in a loop that vectorises.
         let mut world = [[[0.0; W]; 3]; 3];
-        // Nearly always all stand in one instance, whose transform then is the same for all.
-        let placed = &scene.instances[first as usize];
+        let shared = &scene.instances[first as usize];
         for (to, from) in world.iter_mut().zip(&local) {
             for i in 0..W {
-                let p = placed.to_world([from[0][i], from[1][i], from[2][i]]);
+                let p = shared.to_world([from[0][i], from[1][i], from[2][i]]);
                 for axis in 0..3 {
                     to[axis][i] = p[axis];
                 }
             }
         }
+
+        // Otherwise each lane has its own transform.
         if !alike {
             for i in 0..W {
                 if geometry[i] < PrimitiveId16::MESHES {
                     continue;
                 }
-                let placed = &scene.instances[instance[i] as usize];
+                let own = &scene.instances[instance[i] as usize];
                 for (to, from) in world.iter_mut().zip(&local) {
-                    let p = placed.to_world([from[0][i], from[1][i], from[2][i]]);
+                    let p = own.to_world([from[0][i], from[1][i], from[2][i]]);
                     for axis in 0..3 {
                         to[axis][i] = p[axis];
                     }
@@ -67,11 +72,11 @@ impl<const W: usize> Triangles<W> {
         Some(Self(world))
     }
 
-    /// The corners in lane `i`.
+    /// The vertices in lane `i`.
     #[inline(always)]
-    pub fn corners(&self, i: usize) -> [DVec3; 3] {
-        let corner = |c: usize| DVec3::new(self.0[c][0][i], self.0[c][1][i], self.0[c][2][i]);
-        [corner(0), corner(1), corner(2)]
+    pub fn vertices(&self, i: usize) -> [DVec3; 3] {
+        let vertex = |v: usize| DVec3::new(self.0[v][0][i], self.0[v][1][i], self.0[v][2][i]);
+        [vertex(0), vertex(1), vertex(2)]
     }
 }
 
@@ -97,37 +102,37 @@ mod tests {
         scene
     }
 
-    /// The codes of three triangles and, third, of nothing.
-    fn faces(instances: [u32; 4], triangles: [u32; 4]) -> Option<Triangles<4>> {
+    /// Three triangles with, as the third lane of four, nothing.
+    fn gather(instances: [u32; 4], triangles: [u32; 4]) -> Option<Triangles<4>> {
         let geometry = [
             PrimitiveId16::MESHES,
             PrimitiveId16::MESHES,
             PrimitiveId16::NONE,
             PrimitiveId16::MESHES,
         ];
-        Triangles::of(&scene(), &geometry, &triangles, &instances)
+        Triangles::from_ids(&scene(), &geometry, &triangles, &instances)
     }
 
     #[test]
-    fn corners_are_those_of_the_scene_whatever_the_instances() {
+    fn vertices_are_those_of_the_scene_whatever_the_instances() {
         for instances in [[1, 1, 0, 1], [0, 1, 0, 0]] {
             let triangles = [2, 0, 0, 1];
-            let faces = faces(instances, triangles).unwrap();
+            let gathered = gather(instances, triangles).unwrap();
             for i in [0, 1, 3] {
                 let id = PrimitiveId::triangle(0, triangles[i], instances[i]);
-                assert_eq!(faces.corners(i), scene().triangle_vertices(id));
+                assert_eq!(gathered.vertices(i), scene().triangle_vertices(id));
             }
         }
     }
 
     #[test]
-    fn without_triangles_there_are_no_faces() {
+    fn without_triangles_nothing_is_gathered() {
         let geometry = [
             PrimitiveId16::NONE,
             PrimitiveId16::SPHERES,
             PrimitiveId16::PLANES,
             PrimitiveId16::NONE,
         ];
-        assert!(Triangles::of(&scene(), &geometry, &[0; 4], &[0; 4]).is_none());
+        assert!(Triangles::from_ids(&scene(), &geometry, &[0; 4], &[0; 4]).is_none());
     }
 }

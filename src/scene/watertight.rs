@@ -1,4 +1,15 @@
-//! Whether meshes are closed, as bodies that light goes through must be.
+//! The test for watertight meshes, which transparent bodies must be, and the volume of a mesh.
+//!
+//! ```
+//! use envers::scene::Mesh;
+//!
+//! let tetrahedron = Mesh {
+//!     positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+//!     triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+//!     ..Mesh::default()
+//! };
+//! assert_eq!(tetrahedron.open_edges(), 0);
+//! ```
 
 use std::collections::HashMap;
 
@@ -7,34 +18,35 @@ use glam::DVec3;
 use crate::scene::{Material, Mesh, Scene};
 
 impl Mesh {
-    /// The volume of a closed mesh: above 0 where its triangles wind counterclockwise seen from
-    /// outside, below 0 where clockwise.
+    /// The volume of a closed mesh: above 0 if its triangles wind counterclockwise seen from outside,
+    /// below 0 if clockwise.
     ///
     /// # Panics
-    /// When a triangle names a vertex that is not there.
+    /// When a triangle has the index of no vertex.
     pub fn volume(&self) -> f64 {
-        // About its middle, so that an open mesh has a sensible sign and a far one keeps its digits.
-        let middle = self.bounds().center();
-        let six = |triangle: &[u32; 3]| {
+        // Relative to the centre, so that an open mesh has a sensible sign and a far one keeps its
+        // digits.
+        let center = self.bounds().center();
+        let six_volumes = |triangle: &[u32; 3]| {
             let [a, b, c] =
-                triangle.map(|i| DVec3::from(self.positions[i as usize].map(f64::from)) - middle);
+                triangle.map(|i| DVec3::from(self.positions[i as usize].map(f64::from)) - center);
             a.cross(b).dot(c)
         };
-        self.triangles.iter().map(six).sum::<f64>() / 6.0
+        self.triangles.iter().map(six_volumes).sum::<f64>() / 6.0
     }
 
-    /// At how many edges the mesh is not closed: edges at which it does not have as many triangles
-    /// on one side, by the order of their corners, as on the other. Vertices count as one that are
-    /// within a millionth of the mesh's size of each other: there are several for the sake of
-    /// normals and textures, and programs round the poles of a sphere each by itself.
+    /// The number of edges at which the mesh is not closed: which it does not have as often in one
+    /// direction, by the order of the triangles' vertices, as in the other. Vertices within a millionth
+    /// of the mesh's size of each other count as one: there are several for the sake of normals and
+    /// textures, and programs round the poles of a sphere separately.
     ///
     /// # Panics
-    /// When a triangle names a vertex that is not there.
+    /// When a triangle has the index of no vertex.
     pub fn open_edges(&self) -> usize {
-        let place = self.places();
+        let merged = self.merged_vertices();
         let mut edges: Vec<([u32; 2], i8)> = Vec::with_capacity(3 * self.triangles.len());
         for triangle in &self.triangles {
-            let [a, b, c] = triangle.map(|i| place[i as usize]);
+            let [a, b, c] = triangle.map(|i| merged[i as usize]);
             for [from, to] in [[a, b], [b, c], [c, a]] {
                 if from != to {
                     edges.push(if from < to { ([from, to], 1) } else { ([to, from], -1) });
@@ -42,15 +54,15 @@ impl Mesh {
             }
         }
         edges.sort_unstable();
-        let balance = |of: &[([u32; 2], i8)]| of.iter().map(|&(_, way)| i64::from(way)).sum();
+        let balance = |same: &[([u32; 2], i8)]| same.iter().map(|&(_, sign)| i64::from(sign)).sum();
         edges.chunk_by(|a, b| a.0 == b.0).map(balance).filter(|&sum: &i64| sum != 0).count()
     }
 
-    /// For each vertex the first one at its place.
-    fn places(&self) -> Vec<u32> {
-        let size = self.bounds();
-        let near = ((size.upper - size.lower).max_element() * 1e-6).max(f64::MIN_POSITIVE);
-        // A place as large as its cell lies in at most two of them along each axis.
+    /// For each vertex the index of the first one at its position, to within a millionth of the size.
+    fn merged_vertices(&self) -> Vec<u32> {
+        let near = (self.bounds().size().max_element() * 1e-6).max(f64::MIN_POSITIVE);
+        // A grid whose cells are as large as the neighbourhood of a point, which then overlaps at most
+        // two of them along each axis.
         let cell = |p: DVec3| (p / (2.0 * near)).floor().to_array().map(|x| x as i64);
         let mut firsts: HashMap<[i64; 3], Vec<(DVec3, u32)>> = HashMap::new();
         let position = |&p: &[f32; 3]| DVec3::from(p.map(f64::from));
@@ -72,8 +84,8 @@ impl Mesh {
     }
 }
 
-/// Says of each mesh that is to be a body, and is not closed, that it cannot be one.
-pub fn warn_of_open_dielectrics(scene: &Scene) -> Vec<String> {
+/// Warns of each mesh that has a transparent material with an inside, and is not closed.
+pub fn open_dielectric_warnings(scene: &Scene) -> Vec<String> {
     let mut bodies: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
     for instance in &scene.instances {
         let material = &scene.materials[instance.material.0 as usize];
@@ -172,19 +184,19 @@ mod tests {
     fn an_open_body_is_told_once_however_often_it_stands() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
-        let found = warn_of_open_dielectrics(&placed(mesh, glass()));
+        let found = open_dielectric_warnings(&placed(mesh, glass()));
         assert!(found.len() == 1 && found[0].starts_with("mesh 0 (`gem`)"), "{found:?}");
         assert!(found[0].contains("3 edges") && found[0].contains("`glass` thin"), "{found:?}");
     }
 
     #[test]
-    fn only_bodies_need_be_closed() {
+    fn only_dielectrics_need_be_closed() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
         let thin = Material { thin: true, ..glass() };
         for material in [Material::default(), thin] {
-            assert_eq!(warn_of_open_dielectrics(&placed(mesh.clone(), material)), [""; 0]);
+            assert_eq!(open_dielectric_warnings(&placed(mesh.clone(), material)), [""; 0]);
         }
-        assert_eq!(warn_of_open_dielectrics(&placed(tetrahedron(), glass())), [""; 0]);
+        assert_eq!(open_dielectric_warnings(&placed(tetrahedron(), glass())), [""; 0]);
     }
 }

@@ -1,28 +1,30 @@
-//! Normals from a picture.
+//! Normal maps.
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::footprint::change_of_weights;
+use super::footprint::weight_gradients;
 use super::{Surface, cofactor};
 use crate::geometry::{Geometry, Hit};
 use crate::scene::{Scene, Texture, TexturePoint};
 
-/// The normal to shade with where the normal map of its material, if it has one, bends that of
-/// `surface`, which `hit` made.
+/// Returns the shading normal of a surface, as the normal map of its material, if it has one, bends
+/// it.
 ///
-/// It stays the surface's own where the map says so, to the bit, and where nothing says how the
-/// picture lies.
+/// It stays the surface's own, to the bit, where the map is flat, and where the surface has no tangent
+/// space.
 pub fn mapped_normal(scene: &Scene, surface: &Surface, hit: &Hit, point: &TexturePoint) -> DVec3 {
     let Some(map) = &scene.materials[surface.material.0 as usize].normal_map else {
         return surface.normal;
     };
     let texture = &scene.textures[map.texture.0 as usize];
-    let color = texture.at(point).truncate();
-    let [x, y, z] = unpacked(color, map.scale).to_array().map(f64::from);
+    let color = texture.sample(point).truncate();
+    let [x, y, z] = decode_normal(color, map.scale).to_array().map(f64::from);
     if x == 0.0 && y == 0.0 {
         return surface.normal;
     }
-    let Some(Frame { tangent, bitangent, normal }) = Frame::of(scene, surface, hit, texture) else {
+    let Some(TangentSpace { tangent, bitangent, normal }) =
+        TangentSpace::new(scene, surface, hit, texture)
+    else {
         return surface.normal;
     };
     let mapped = (tangent * x + bitangent * y + normal * z).normalize_or(surface.normal);
@@ -30,52 +32,54 @@ pub fn mapped_normal(scene: &Scene, surface: &Surface, hit: &Hit, point: &Textur
     if normal.dot(surface.normal) < 0.0 { -mapped } else { mapped }
 }
 
-/// The vector in tangent space that a colour means. Of 8 bits neither 127 nor 128 is exactly 0; who
-/// paints a flat surface writes either.
-fn unpacked(color: Vec3, scale: f32) -> Vec3 {
+/// Decodes a colour to a vector in tangent space. In 8 bits neither 127 nor 128 is exactly 0; either
+/// stands for it.
+fn decode_normal(color: Vec3, scale: f32) -> Vec3 {
     let v = color * 2.0 - 1.0;
     const FLAT: f32 = 1.01 / 255.0;
     let flat = |x: f32| if x.abs() < FLAT { 0.0 } else { x * scale };
     Vec3::new(flat(v.x), flat(v.y), v.z)
 }
 
-/// How the picture of a normal map lies on a surface: unit vectors, of which the normal is that of
-/// the surface as modelled, whoever looks.
-struct Frame {
+/// The tangent space of a normal map on a surface: unit vectors. The normal is that of the surface as
+/// modelled, from whichever side it is seen.
+struct TangentSpace {
     tangent: DVec3,
     bitangent: DVec3,
     normal: DVec3,
 }
 
-impl Frame {
-    fn of(scene: &Scene, surface: &Surface, hit: &Hit, texture: &Texture) -> Option<Self> {
+impl TangentSpace {
+    fn new(scene: &Scene, surface: &Surface, hit: &Hit, texture: &Texture) -> Option<Self> {
         let normal = surface.geometric_normal;
-        let upright = |tangent: DVec3| {
+        let from_tangent = |tangent: DVec3| {
             let tangent = tangent.try_normalize()?;
-            let placed = texture.transform.matrix2;
-            let own = Self { tangent, bitangent: normal.cross(tangent), normal };
-            own.turned(placed.x_axis, placed.y_axis)
+            let space = Self { tangent, bitangent: normal.cross(tangent), normal };
+            let uv_transform = texture.transform.matrix2;
+            space.transformed(uv_transform.x_axis, uv_transform.y_axis)
         };
         match hit.id.geometry {
-            Geometry::Spheres => upright(DVec3::new(normal.z, 0.0, -normal.x)),
-            Geometry::Planes => upright(scene.planes[hit.id.primitive as usize].axes().0),
+            Geometry::Spheres => from_tangent(DVec3::new(normal.z, 0.0, -normal.x)),
+            Geometry::Planes => from_tangent(scene.planes[hit.id.primitive as usize].axes().0),
             Geometry::Mesh(_) => Self::on_mesh(scene, surface, hit, texture),
         }
     }
 
-    /// The frame of a picture whose coordinates are a linear map of this frame's own, with these
-    /// columns; v runs down, and the bitangent up.
-    fn turned(self, x: Vec2, y: Vec2) -> Option<Self> {
+    /// Returns the tangent space for texture coordinates that are a linear map of this one's, with
+    /// these columns; v runs down, and the bitangent up.
+    fn transformed(self, x: Vec2, y: Vec2) -> Option<Self> {
         let [a, c, b, d] = [x.x, x.y, y.x, y.y].map(f64::from);
         let determinant = a * d - b * c;
-        // The directions in which the picture's own u and v grow: the columns of the inverse.
+        // The directions in which the mapped u and v grow: the columns of the inverse.
         let u = (self.tangent * d + self.bitangent * c) * determinant.signum();
         let up = (self.tangent * b + self.bitangent * a) * determinant.signum();
-        (determinant != 0.0).then(|| {
-            Some(Self { tangent: u.try_normalize()?, bitangent: up.try_normalize()?, ..self })
-        })?
+        if determinant == 0.0 {
+            return None;
+        }
+        Some(Self { tangent: u.try_normalize()?, bitangent: up.try_normalize()?, ..self })
     }
 
+    /// Returns the tangent space on a mesh.
     fn on_mesh(scene: &Scene, surface: &Surface, hit: &Hit, texture: &Texture) -> Option<Self> {
         let instance = &scene.instances[hit.id.instance as usize];
         let mesh = &scene.meshes[instance.mesh.0 as usize];
@@ -83,34 +87,37 @@ impl Frame {
         let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
         let handedness = m.determinant().signum();
         // A mirrored mesh keeps its outside, though its triangles wind the other way.
-        let normal = match mesh.normals.is_empty() {
-            true => surface.geometric_normal * handedness,
-            false => {
-                let local = mesh.at(&mesh.normals, hit.id.primitive, weights).map(f64::from);
-                (cofactor(m) * DVec3::from(local) * handedness).try_normalize()?
-            }
+        let normal = if mesh.normals.is_empty() {
+            surface.geometric_normal * handedness
+        } else {
+            let local = mesh.interpolate(&mesh.normals, hit.id.primitive, weights).map(f64::from);
+            (cofactor(m) * DVec3::from(local) * handedness).try_normalize()?
         };
-        let across = |v: DVec3| (v - normal * normal.dot(v)).try_normalize();
+        let orthogonalize = |v: DVec3| (v - normal * normal.dot(v)).try_normalize();
+        // The mesh's own tangents, where it has them.
         if !mesh.tangents.is_empty() {
             let corners = mesh.triangles[hit.id.primitive as usize];
             let sign = f64::from(mesh.tangents[corners[0] as usize][3]);
-            let [x, y, z, _] = mesh.at(&mesh.tangents, hit.id.primitive, weights).map(f64::from);
-            let tangent = across(*m * DVec3::new(x, y, z))?;
+            let [x, y, z, _] =
+                mesh.interpolate(&mesh.tangents, hit.id.primitive, weights).map(f64::from);
+            let tangent = orthogonalize(*m * DVec3::new(x, y, z))?;
             let bitangent = normal.cross(tangent) * (sign * handedness);
             return Some(Self { tangent, bitangent, normal });
         }
-        let [u, v] = gradients(scene, hit, texture)?;
+        // Otherwise the gradients of the texture coordinates.
+        let [u, v] = uv_gradients(scene, hit, texture)?;
         // u grows along the tangent, and v against the bitangent.
         let along = v.cross(surface.geometric_normal);
-        let tangent = across(along * along.dot(u).signum())?;
+        let tangent = orthogonalize(along * along.dot(u).signum())?;
         let bitangent = normal.cross(tangent);
         let sign = -bitangent.dot(v).signum();
         Some(Self { tangent, bitangent: bitangent * sign, normal })
     }
 }
 
-/// The gradients of a texture's coordinates on a triangle.
-fn gradients(scene: &Scene, hit: &Hit, texture: &Texture) -> Option<[DVec3; 2]> {
+/// Returns the gradients of a texture's coordinates on a triangle; `None` if the mesh has none, or the
+/// triangle is degenerate.
+fn uv_gradients(scene: &Scene, hit: &Hit, texture: &Texture) -> Option<[DVec3; 2]> {
     let instance = &scene.instances[hit.id.instance as usize];
     let mesh = &scene.meshes[instance.mesh.0 as usize];
     let uvs = if texture.set == 0 { &mesh.uvs } else { &mesh.second_uvs };
@@ -121,7 +128,7 @@ fn gradients(scene: &Scene, hit: &Hit, texture: &Texture) -> Option<[DVec3; 2]> 
     let [a, b, c] = corners.map(|i| {
         texture.transform.transform_point2(Vec2::from(uvs[i as usize])).to_array().map(f64::from)
     });
-    let weights = change_of_weights(scene.triangle_vertices(hit.id))?;
+    let weights = weight_gradients(scene.triangle_vertices(hit.id))?;
     let gradient = |k: usize| weights[0] * (b[k] - a[k]) + weights[1] * (c[k] - a[k]);
     Some([gradient(0), gradient(1)])
 }

@@ -1,44 +1,44 @@
-//! What a material does with light at one point, with its maps applied.
+//! Shading parameters: a material at one point, with its textures looked up.
 
 use glam::Vec3;
 
 use super::TextureContext;
 use crate::scene::{
-    AlphaMode, Channel, Material, Metallic, MetallicMaps, Scene, ShadingParams, ShininessMap,
-    TextureId, shininess,
+    AlphaMode, Channel, Material, MetallicRoughness, MetallicRoughnessMaps, Scene, ShadingParams,
+    ShininessMap, TextureId, shininess,
 };
 
-/// What a material of a scene does with light at a point of this detail.
+/// Evaluates the shading parameters of a material at a point with this texture context.
 ///
 /// # Panics
 /// When a texture of the material is not one of the scene.
 pub fn shading_params(
     scene: &Scene,
     material: &Material,
-    detail: &TextureContext,
+    context: &TextureContext,
 ) -> ShadingParams {
-    let maps = Maps { scene, detail };
-    let mut finish = match &material.metallic {
-        Some(metallic) => maps.metallic(metallic).finish(),
+    let maps = Maps { scene, context };
+    let mut params = match &material.metallic {
+        Some(metallic) => maps.metallic(metallic).shading_params(),
         None => maps.phong(material),
     };
     if material.emission != Vec3::ZERO {
-        finish.emission = material.emission * maps.color(material.emission_map);
+        params.emission = material.emission * maps.color(material.emission_map);
         if material.unlit {
-            finish.emission *= detail.tint;
+            params.emission *= context.tint;
         }
     }
     match &material.coverage {
         Some(coverage) if coverage.mode == AlphaMode::Blend => {
-            finish.covering(coverage.at(&scene.textures, &detail.point, detail.alpha))
+            params.with_alpha(coverage.evaluate(&scene.textures, &context.point, context.alpha))
         }
-        _ => finish,
+        _ => params,
     }
 }
 
-/// The share of the ambient light that comes to a point of this detail.
-pub fn occlusion(scene: &Scene, material: &Material, detail: &TextureContext) -> f32 {
-    let maps = Maps { scene, detail };
+/// Evaluates the share of the ambient light that arrives at a point with this texture context.
+pub fn occlusion(scene: &Scene, material: &Material, context: &TextureContext) -> f32 {
+    let maps = Maps { scene, context };
     material.occlusion_map.map_or(1.0, |occlusion| {
         1.0 + occlusion.strength * (maps.channel(Some(occlusion.map)) - 1.0)
     })
@@ -47,50 +47,53 @@ pub fn occlusion(scene: &Scene, material: &Material, detail: &TextureContext) ->
 /// The maps of a material at a point.
 struct Maps<'a> {
     scene: &'a Scene,
-    detail: &'a TextureContext,
+    context: &'a TextureContext,
 }
 
 impl Maps<'_> {
+    /// Looks up a colour; white without a map.
     fn color(&self, map: Option<TextureId>) -> Vec3 {
         map.map_or(Vec3::ONE, |id| {
-            self.scene.textures[id.0 as usize].at(&self.detail.point).truncate()
+            self.scene.textures[id.0 as usize].sample(&self.context.point).truncate()
         })
     }
 
+    /// Looks up a channel; 1 without a map.
     fn channel(&self, map: Option<Channel>) -> f32 {
         map.map_or(1.0, |map| {
-            let color = self.scene.textures[map.texture.0 as usize].at(&self.detail.point);
+            let color = self.scene.textures[map.texture.0 as usize].sample(&self.context.point);
             color[usize::from(map.channel & 3)]
         })
     }
 
+    /// Evaluates a Lambert and Phong material.
     fn phong(&self, material: &Material) -> ShadingParams {
-        let plain = material.shading_params();
-        let diffuse = self.detail.checker.unwrap_or(plain.diffuse);
+        let factors = material.shading_params();
+        let diffuse = self.context.checker.unwrap_or(factors.diffuse);
         ShadingParams {
-            diffuse: diffuse * self.color(material.diffuse_map) * self.detail.tint,
-            specular: plain.specular * self.color(material.specular_map),
+            diffuse: diffuse * self.color(material.diffuse_map) * self.context.tint,
+            specular: factors.specular * self.color(material.specular_map),
             shininess: match material.shininess_map {
-                None => plain.shininess,
+                None => factors.shininess,
                 Some(ShininessMap::Factor(map)) => {
-                    (plain.shininess * self.channel(Some(map))).max(1.0)
+                    (factors.shininess * self.channel(Some(map))).max(1.0)
                 }
                 Some(ShininessMap::Gloss(map, factor)) => {
                     shininess(1.0 - factor * self.channel(Some(map)))
                 }
             },
             emission: Vec3::ZERO,
-            ..plain
+            ..factors
         }
     }
 
-    /// The parameters here; those that are shares at most 1, whatever a float picture says.
-    fn metallic(&self, maps: &MetallicMaps) -> Metallic {
+    /// Evaluates a metallic-roughness material. Shares are at most 1, also from a float texture.
+    fn metallic(&self, maps: &MetallicRoughnessMaps) -> MetallicRoughness {
         let share = |factor: f32, map| (factor * self.channel(map)).min(1.0);
         let factors = &maps.factors;
-        let base = self.detail.checker.unwrap_or(factors.base);
-        Metallic {
-            base: base * self.color(maps.base) * self.detail.tint,
+        let base = self.context.checker.unwrap_or(factors.base);
+        MetallicRoughness {
+            base: base * self.color(maps.base) * self.context.tint,
             metallic: share(factors.metallic, maps.metallic),
             roughness: share(factors.roughness, maps.roughness),
             specular: share(factors.specular, maps.specular),

@@ -1,104 +1,79 @@
-//! Sixteen surfaces side by side: what [`Surface::new`] gives, to the bit.
+//! The surfaces that sixteen rays hit, side by side; each is, to the bit, what [`Surface::new`] gives.
 
 use glam::DVec3;
 
-use super::{Surface, flat_face, normal_of_sphere, on_the_plane, smooth_normal};
+use super::{Surface, project_to_plane, smooth_normal, sphere_normal, triangle_point};
 use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId, PrimitiveId16, Ray16, RayBatch, Side};
 use crate::scene::{MaterialId, Plane, Scene, Sphere, Triangles};
 
-/// The points of surfaces that sixteen rays hit; any numbers where a ray hit nothing. The fields
-/// are those of [`Surface`].
-#[derive(Clone, Debug)]
+/// The surfaces that sixteen rays hit; any numbers where a ray hit nothing. The fields are those of
+/// [`Surface`].
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub struct Surface16 {
-    /// The points, axis by axis.
+    /// The positions, axis by axis.
     pub position: [Lanes<f64>; 3],
-    /// The surfaces' own normals, axis by axis.
+    /// The geometric normals, axis by axis.
     pub geometric_normal: [Lanes<f64>; 3],
-    /// The normals to shade with, axis by axis.
+    /// The shading normals, axis by axis.
     pub normal: [Lanes<f64>; 3],
-    /// Whether the viewer sees the side that the geometric normal does not point to.
+    /// True where the viewer sees the back.
     pub is_back: Lanes<bool>,
-    /// What they are made of.
+    /// The materials.
     pub material: Lanes<MaterialId>,
-    /// What kinds of primitives are among them.
-    pub kinds: GeometryKinds,
-}
-
-/// Kinds of primitives.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GeometryKinds {
-    /// Whether there is a sphere.
-    pub spheres: bool,
-    /// Whether there is a plane.
-    pub planes: bool,
-    /// Whether there is a triangle.
-    pub triangles: bool,
-}
-
-impl GeometryKinds {
-    /// Those among `ids`.
-    #[inline(always)]
-    fn of(ids: &PrimitiveId16) -> Self {
-        let mut kinds = Self::default();
-        for i in 0..LANES {
-            kinds.spheres |= ids.geometry[i] == PrimitiveId16::SPHERES;
-            kinds.planes |= ids.geometry[i] == PrimitiveId16::PLANES;
-            kinds.triangles |= ids.geometry[i] >= PrimitiveId16::MESHES;
-        }
-        kinds
-    }
-
-    /// Whether there is anything.
-    #[inline(always)]
-    pub fn any(self) -> bool {
-        self.spheres | self.planes | self.triangles
-    }
-}
-
-impl Default for Surface16 {
-    fn default() -> Self {
-        Self {
-            position: [[0.0; LANES]; 3],
-            geometric_normal: [[0.0; LANES]; 3],
-            normal: [[0.0; LANES]; 3],
-            is_back: [false; LANES],
-            material: [MaterialId(0); LANES],
-            kinds: GeometryKinds::default(),
-        }
-    }
+    /// True if a sphere is among what was hit.
+    pub has_spheres: bool,
+    /// True if a plane is among what was hit.
+    pub has_planes: bool,
+    /// True if a triangle is among what was hit.
+    pub has_triangles: bool,
 }
 
 impl Surface16 {
-    /// Works out what `found`, which sixteen rays of a batch hit in `scene`, means; `block` is
-    /// their number in the batch. Without `SMOOTH` no mesh that was hit may have normals.
+    /// Sets it to the surfaces that sixteen rays of a batch hit; `block` is the number of these in
+    /// the batch. Without `SMOOTH_NORMALS` no mesh that was hit may have normals.
     ///
     /// # Panics
     /// When a hit is not one of this scene.
     #[inline(always)]
-    pub fn set<const SMOOTH: bool>(
+    pub fn set<const SMOOTH_NORMALS: bool>(
         &mut self,
         scene: &Scene,
         rays: &RayBatch,
         block: usize,
-        found: &Hit16,
+        hits: &Hit16,
     ) {
-        let lines = &rays.blocks()[block];
-        self.kinds = GeometryKinds::of(&found.id);
-        if self.kinds.spheres {
-            self.set_spheres(scene, lines, found);
+        let ray16 = &rays.blocks()[block];
+        // The kinds of primitives; each kind is computed for all lanes alike.
+        let (mut has_spheres, mut has_planes, mut has_triangles) = (false, false, false);
+        for i in 0..LANES {
+            has_spheres |= hits.id.geometry[i] == PrimitiveId16::SPHERES;
+            has_planes |= hits.id.geometry[i] == PrimitiveId16::PLANES;
+            has_triangles |= hits.id.geometry[i] >= PrimitiveId16::MESHES;
         }
-        if self.kinds.planes {
-            self.set_planes(scene, lines, found);
+        self.has_spheres = has_spheres;
+        self.has_planes = has_planes;
+        self.has_triangles = has_triangles;
+        if self.has_spheres {
+            self.set_spheres(scene, ray16, hits);
         }
-        if self.kinds.triangles {
-            self.set_triangles::<SMOOTH>(scene, found);
+        if self.has_planes {
+            self.set_planes(scene, ray16, hits);
         }
-        self.turn(scene, rays, block, found);
+        if self.has_triangles {
+            self.set_triangles::<SMOOTH_NORMALS>(scene, hits);
+        }
+        self.set_sides(scene, rays, block, hits);
+    }
+
+    /// True if any ray hit anything.
+    #[inline(always)]
+    pub fn has_hits(&self) -> bool {
+        self.has_spheres | self.has_planes | self.has_triangles
     }
 
     #[inline(always)]
-    fn put(&mut self, i: usize, position: DVec3, normal: DVec3) {
+    fn set_lane(&mut self, i: usize, position: DVec3, normal: DVec3) {
         for axis in 0..3 {
             self.position[axis][i] = position[axis];
             self.geometric_normal[axis][i] = normal[axis];
@@ -107,21 +82,21 @@ impl Surface16 {
     }
 
     #[inline(always)]
-    fn set_spheres(&mut self, scene: &Scene, lines: &Ray16, found: &Hit16) {
+    fn set_spheres(&mut self, scene: &Scene, ray16: &Ray16, hits: &Hit16) {
         // Lanes that hit no sphere take the first, so that all are computed alike.
-        let is_sphere = |i: usize| found.id.geometry[i] == PrimitiveId16::SPHERES;
-        let of = |i| if is_sphere(i) { found.id.primitive[i] } else { 0 };
-        let spheres: Lanes<&Sphere> = std::array::from_fn(|i| &scene.spheres[of(i) as usize]);
+        let is_sphere = |i: usize| hits.id.geometry[i] == PrimitiveId16::SPHERES;
+        let index = |i| if is_sphere(i) { hits.id.primitive[i] } else { 0 };
+        let spheres: Lanes<&Sphere> = std::array::from_fn(|i| &scene.spheres[index(i) as usize]);
         let center: [Lanes<f64>; 3] =
             std::array::from_fn(|axis| std::array::from_fn(|i| spheres[i].center[axis]));
         let radius: Lanes<f64> = std::array::from_fn(|i| spheres[i].radius);
         for i in 0..LANES {
-            let (origin, direction) = lines.origin_and_direction(i);
-            let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
-            let normal = normal_of_sphere(center, origin + direction * found.t[i]);
+            let (origin, direction) = ray16.origin_and_direction(i);
+            let center = lane(&center, i);
+            let normal = sphere_normal(center, origin + direction * hits.t[i]);
             let position = center + normal * radius[i];
             if is_sphere(i) {
-                self.put(i, position, normal);
+                self.set_lane(i, position, normal);
             }
         }
         for i in 0..LANES {
@@ -130,21 +105,20 @@ impl Surface16 {
     }
 
     #[inline(always)]
-    fn set_planes(&mut self, scene: &Scene, lines: &Ray16, found: &Hit16) {
-        let is_plane = |i: usize| found.id.geometry[i] == PrimitiveId16::PLANES;
-        let of = |i| if is_plane(i) { found.id.primitive[i] } else { 0 };
-        let planes: Lanes<&Plane> = std::array::from_fn(|i| &scene.planes[of(i) as usize]);
+    fn set_planes(&mut self, scene: &Scene, ray16: &Ray16, hits: &Hit16) {
+        let is_plane = |i: usize| hits.id.geometry[i] == PrimitiveId16::PLANES;
+        let index = |i| if is_plane(i) { hits.id.primitive[i] } else { 0 };
+        let planes: Lanes<&Plane> = std::array::from_fn(|i| &scene.planes[index(i) as usize]);
         let point: [Lanes<f64>; 3] =
             std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].point[axis]));
         let normal: [Lanes<f64>; 3] =
             std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].normal[axis]));
         for i in 0..LANES {
-            let (origin, direction) = lines.origin_and_direction(i);
-            let point = DVec3::new(point[0][i], point[1][i], point[2][i]);
-            let normal = DVec3::new(normal[0][i], normal[1][i], normal[2][i]);
-            let position = on_the_plane(point, normal, origin + direction * found.t[i]);
+            let (origin, direction) = ray16.origin_and_direction(i);
+            let (point, normal) = (lane(&point, i), lane(&normal, i));
+            let position = project_to_plane(point, normal, origin + direction * hits.t[i]);
             if is_plane(i) {
-                self.put(i, position, normal);
+                self.set_lane(i, position, normal);
             }
         }
         for i in 0..LANES {
@@ -153,66 +127,69 @@ impl Surface16 {
     }
 
     #[inline(always)]
-    fn set_triangles<const SMOOTH: bool>(&mut self, scene: &Scene, found: &Hit16) {
-        let PrimitiveId16 { geometry, primitive, instance } = &found.id;
-        let Some(faces) = Triangles::of(scene, geometry, primitive, instance) else { return };
-        let is_face = |i: usize| geometry[i] >= PrimitiveId16::MESHES;
+    fn set_triangles<const SMOOTH_NORMALS: bool>(&mut self, scene: &Scene, hits: &Hit16) {
+        let PrimitiveId16 { geometry, primitive, instance } = &hits.id;
+        let Some(triangles) = Triangles::from_ids(scene, geometry, primitive, instance) else {
+            return;
+        };
+        let is_triangle = |i: usize| geometry[i] >= PrimitiveId16::MESHES;
         for i in 0..LANES {
-            let (position, normal) = flat_face(faces.corners(i), found.u[i], found.v[i]);
-            if is_face(i) {
-                self.put(i, position, normal);
+            let (position, normal) = triangle_point(triangles.vertices(i), hits.u[i], hits.v[i]);
+            if is_triangle(i) {
+                self.set_lane(i, position, normal);
             }
         }
-        for i in (0..LANES).filter(|&i| is_face(i)) {
+        // Materials, and the normals of smooth meshes, one by one.
+        for i in (0..LANES).filter(|&i| is_triangle(i)) {
             self.material[i] = scene.instances[instance[i] as usize].material;
             let mesh = (geometry[i] - PrimitiveId16::MESHES) as usize;
-            if !SMOOTH || scene.meshes[mesh].normals.is_empty() {
+            if !SMOOTH_NORMALS || scene.meshes[mesh].normals.is_empty() {
                 continue;
             }
             let smooth =
-                found.hit(i).and_then(|hit| smooth_normal(scene, &hit, self.geometric_normal(i)));
+                hits.hit(i).and_then(|hit| smooth_normal(scene, &hit, self.geometric_normal(i)));
             if let Some(normal) = smooth {
-                for axis in 0..3 {
-                    self.normal[axis][i] = normal[axis];
-                }
+                self.set_normal(i, normal);
             }
         }
     }
 
-    /// Turns the normals to the viewer where they are to be.
+    /// Sets the sides that the viewer sees, and turns shading normals to the viewer.
     #[inline(always)]
-    fn turn(&mut self, scene: &Scene, rays: &RayBatch, block: usize, found: &Hit16) {
-        let lines = &rays.blocks()[block];
+    fn set_sides(&mut self, scene: &Scene, rays: &RayBatch, block: usize, hits: &Hit16) {
+        let ray16 = &rays.blocks()[block];
         for i in 0..LANES {
-            let away = self.geometric_normal(i).dot(lines.origin_and_direction(i).1);
-            self.is_back[i] = away > 0.0;
+            let cosine = self.geometric_normal(i).dot(ray16.origin_and_direction(i).1);
+            self.is_back[i] = cosine > 0.0;
         }
+        // A continuation ray that went into a sphere leaves it.
         if !rays.have_no_continuations() {
             for i in 0..LANES {
-                let past = rays.continuation(block * LANES + i);
-                let left = past.filter(|past| past.crossed.side == Side::Back);
-                let is_left = left.is_some_and(|past| Some(past.crossed.id) == found.id.get(i));
-                self.is_back[i] |= is_left & (found.id.geometry[i] == PrimitiveId16::SPHERES);
+                let continuation = rays.continuation(block * LANES + i);
+                let entered = continuation.filter(|c| c.crossed.side == Side::Back);
+                let is_left = entered.is_some_and(|c| Some(c.crossed.id) == hits.id.get(i));
+                self.is_back[i] |= is_left & (hits.id.geometry[i] == PrimitiveId16::SPHERES);
             }
         }
         if !self.is_back.contains(&true) {
             return;
         }
-        let mut turns = self.is_back;
-        if self.kinds.spheres {
-            for i in (0..LANES).filter(|&i| found.id.geometry[i] == PrimitiveId16::SPHERES) {
-                turns[i] &= scene.materials[self.material[i].0 as usize].double_sided;
+        // Spheres that are lit on their outside only keep their normals.
+        let mut is_turned = self.is_back;
+        if self.has_spheres {
+            for i in (0..LANES).filter(|&i| hits.id.geometry[i] == PrimitiveId16::SPHERES) {
+                is_turned[i] &= scene.materials[self.material[i].0 as usize].double_sided;
             }
         }
         for axis in 0..3 {
             for i in 0..LANES {
                 let n = self.normal[axis][i];
-                self.normal[axis][i] = if turns[i] { -n } else { n };
+                self.normal[axis][i] = if is_turned[i] { -n } else { n };
             }
         }
     }
 
-    /// The surface in lane `i`, where `id` was hit.
+    /// Returns the surface in lane `i`, where `id` was hit.
     pub fn surface(&self, i: usize, id: PrimitiveId) -> Surface {
         Surface {
             position: self.position(i),
@@ -224,25 +201,25 @@ impl Surface16 {
         }
     }
 
-    /// The point in lane `i`.
+    /// Returns the position in lane `i`.
     #[inline(always)]
     pub fn position(&self, i: usize) -> DVec3 {
-        at(&self.position, i)
+        lane(&self.position, i)
     }
 
-    /// The geometric normal in lane `i`.
+    /// Returns the geometric normal in lane `i`.
     #[inline(always)]
     pub fn geometric_normal(&self, i: usize) -> DVec3 {
-        at(&self.geometric_normal, i)
+        lane(&self.geometric_normal, i)
     }
 
-    /// The normal to shade with in lane `i`.
+    /// Returns the shading normal in lane `i`.
     #[inline(always)]
     pub fn normal(&self, i: usize) -> DVec3 {
-        at(&self.normal, i)
+        lane(&self.normal, i)
     }
 
-    /// Changes the normal to shade with in lane `i`.
+    /// Sets the shading normal in lane `i`.
     #[inline(always)]
     pub fn set_normal(&mut self, i: usize, normal: DVec3) {
         for axis in 0..3 {
@@ -250,14 +227,15 @@ impl Surface16 {
         }
     }
 
-    /// The side that the viewer sees in lane `i`.
+    /// Returns the side that the viewer sees in lane `i`.
     #[inline(always)]
     pub fn side(&self, i: usize) -> Side {
         if self.is_back[i] { Side::Back } else { Side::Front }
     }
 }
 
+/// Returns the vector in lane `i`.
 #[inline(always)]
-fn at(v: &[Lanes<f64>; 3], i: usize) -> DVec3 {
+fn lane(v: &[Lanes<f64>; 3], i: usize) -> DVec3 {
     DVec3::new(v[0][i], v[1][i], v[2][i])
 }

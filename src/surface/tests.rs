@@ -21,9 +21,9 @@ fn scene() -> Scene {
     scene
 }
 
-/// Gives the material a picture, so that texture coordinates are asked for.
+/// Gives the material a texture, so that texture coordinates are computed.
 fn add_texture(scene: &mut Scene) {
-    let image = Image::bytes("", [1, 1], vec![[255; 4]]);
+    let image = Image::from_bytes("", [1, 1], vec![[255; 4]]);
     let texture = scene.add_texture(Texture::new(image.into()));
     scene.materials[0].diffuse_map = Some(texture);
 }
@@ -32,10 +32,10 @@ fn hit(t: f64, u: f64, v: f64, id: PrimitiveId) -> Hit {
     Hit { t, u, v, id }
 }
 
-fn detail(scene: &Scene, ray: &Ray, hit: &Hit) -> TextureContext {
+fn context(scene: &Scene, ray: &Ray, hit: &Hit) -> TextureContext {
     let surface = Surface::new(scene, ray, hit);
-    let textured = scene.materials[surface.material.0 as usize].is_textured();
-    TextureContext::of(scene, hit, &surface, textured)
+    let is_textured = scene.materials[surface.material.0 as usize].is_textured();
+    TextureContext::new(scene, hit, &surface, is_textured, None)
 }
 
 #[test]
@@ -74,20 +74,20 @@ fn checker_alternates_across_the_origin() {
     let color = |x: f64, z: f64| {
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
         let id = PrimitiveId::plane(0);
-        detail(&scene(), &ray, &hit(1.0, 0.0, 0.0, id)).checker.unwrap().x
+        context(&scene(), &ray, &hit(1.0, 0.0, 0.0, id)).checker.unwrap().x
     };
     assert_eq!([color(0.1, 0.1), color(0.6, 0.1), color(-0.1, 0.1)], [0.0, 1.0, 1.0]);
     assert_eq!([color(-0.1, -0.1), color(1.1, 0.1)], [0.0, 0.0]);
 }
 
 #[test]
-fn a_picture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
+fn a_texture_on_a_plane_repeats_by_its_size_from_the_planes_point() {
     let uv = |x: f64, z: f64| {
         let mut scene = scene();
         add_texture(&mut scene);
         (scene.planes[0].point, scene.planes[0].texture_size) = (DVec3::new(1.0, 0.0, 2.0), 4.0);
         let ray = Ray::new(DVec3::new(x, 1.0, z), DVec3::NEG_Y);
-        detail(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).point.uv[0]
+        context(&scene, &ray, &hit(1.0, 0.0, 0.0, PrimitiveId::plane(0))).point.uv[0]
     };
     assert_eq!([uv(1.0, 2.0), uv(2.0, 5.0)], [[0.0, 0.0], [0.25, 0.75]]);
     assert_eq!([uv(6.0, 1.0), uv(-3.0, -2.0)], [[0.25, 0.75], [0.0, 0.0]]);
@@ -100,15 +100,15 @@ fn attributes_are_interpolated_by_the_weights() {
     let ray = Ray::new(DVec3::new(0.25, 0.5, 1.0), DVec3::NEG_Z);
     let id = PrimitiveId::triangle(0, 0, 0);
     let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
-    let detail = detail(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
-    assert_eq!(detail.point.uv[0], [0.25, 0.5]);
-    assert_eq!(detail.tint, Vec3::new(0.25, 0.25, 0.5));
+    let context = context(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
+    assert_eq!(context.point.uv[0], [0.25, 0.5]);
+    assert_eq!(context.tint, Vec3::new(0.25, 0.25, 0.5));
     let expected = DVec3::new(0.25, 0.5, 1.0).normalize();
     assert!((surface.normal - expected).length() < 1e-15);
 }
 
 #[test]
-fn normal_of_a_stretched_mesh_stays_across_its_surface() {
+fn normal_of_a_stretched_mesh_stays_perpendicular_to_its_surface() {
     let mut scene = scene();
     std::sync::Arc::make_mut(&mut scene.meshes[0]).normals = vec![[1., 0., 1.]; 3];
     scene.instances[0].transform = DAffine3::from_scale(DVec3::new(2.0, 1.0, 1.0));
@@ -123,13 +123,13 @@ fn normal_of_a_stretched_mesh_stays_across_its_surface() {
 fn shadow_ray_leaves_on_the_lights_side() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
     let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
-    let toward = |toward: DVec3| IncidentLight { toward, bounded: true, intensity: Vec3::ONE };
+    let toward = |toward: DVec3| IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
     let side = |d: DVec3| surface.shadow_ray(&toward(d)).departure.unwrap().side;
     assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
 }
 
 #[test]
-fn sixteen_surfaces_are_those_of_one_at_a_time() {
+fn sixteen_surfaces_equal_those_of_one_at_a_time() {
     let mut scene = scene();
     scene.spheres.push(Sphere::new(DVec3::new(0.3, -0.2, 9.0), 2.0, MaterialId(1)));
     scene.add_material(Material { double_sided: true, ..Material::default() });

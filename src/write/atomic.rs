@@ -1,4 +1,4 @@
-//! A file that is the whole old one or the whole new one, at any moment.
+//! The atomic replacement of files: at any moment a file is the complete old or the complete new one.
 
 use std::fs::{self, File};
 use std::io::{BufWriter, Seek, Write};
@@ -8,8 +8,8 @@ use tempfile::{Builder, NamedTempFile};
 
 use crate::error::{Error, Result};
 
-/// Where a file is written before it takes the name: the same folder, so that the rename cannot
-/// cross file systems.
+/// Creates the temporary file, which is later renamed to `target`: in the same folder, so that the
+/// rename cannot cross file systems.
 fn temporary(target: &Path) -> Result<NamedTempFile> {
     let folder = folder_of(target);
     let mut builder = Builder::new();
@@ -17,7 +17,7 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The rights of any new file, less the user's umask, instead of a temporary file's own.
+        // The permissions of any new file, by the user's umask, instead of those of temporary files.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     builder.tempfile_in(&folder).map_err(|e| match e.kind() {
@@ -32,6 +32,7 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
     })
 }
 
+/// The folder of a file.
 fn folder_of(target: &Path) -> PathBuf {
     match target.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -39,12 +40,12 @@ fn folder_of(target: &Path) -> PathBuf {
     }
 }
 
-/// The file that a path leads to, through links: a link stays, and what it names is replaced.
+/// Resolves symbolic links: a link stays, and the file that it names is replaced.
 fn resolve(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Checks that [`atomically`] could write to `path`.
+/// Checks that [`write_atomically`] could write to `path`.
 ///
 /// # Errors
 /// When it could not.
@@ -66,39 +67,39 @@ pub fn check(path: &Path) -> Result<()> {
     }
 }
 
-/// A file that is being written: to a temporary file in the same folder, which takes the name once
-/// it is whole.
-pub struct Pending {
+/// A file that is being written: a temporary file in the same folder, which is renamed when it is
+/// complete.
+pub struct PendingFile {
     path: PathBuf,
     target: PathBuf,
     file: NamedTempFile,
 }
 
-impl Pending {
-    /// Begins a file that is to stand at `path`. What stands there is untouched until `commit`.
+impl PendingFile {
+    /// Begins a file that is to replace `path`, which is untouched until [`PendingFile::commit`].
     pub fn new(path: &Path) -> Result<Self> {
         let target = resolve(path);
         let file = temporary(&target)?;
         Ok(Self { path: path.to_owned(), target, file })
     }
 
-    /// Where it is to stand.
+    /// The path that it is to have.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// A handle to write through.
+    /// A handle for writing.
     pub fn handle(&self) -> std::io::Result<File> {
         self.file.as_file().try_clone()
     }
 
-    /// Flushes it to the disk and gives it its name.
+    /// Flushes the file to disk and renames it.
     pub fn commit(self) -> Result<()> {
         let failed = |e: std::io::Error| Error::io("write", &self.path, &e);
         self.file.as_file().sync_all().map_err(failed)?;
         self.file.persist(&self.target).map_err(|e| failed(e.error))?;
-        // The name itself reaches the disk with its folder; where a folder cannot be opened or
-        // flushed (on some systems and file systems) the file is there all the same.
+        // The rename itself is flushed with the folder; some systems cannot open or flush folders, and
+        // there the file is complete all the same.
         if let Ok(folder) = File::open(folder_of(&self.target)) {
             let _ = folder.sync_all();
         }
@@ -106,16 +107,17 @@ impl Pending {
     }
 }
 
-/// Writes a file through `fill`: to a temporary file in the same folder, which is flushed to the
-/// disk and then takes the name.
+/// Writes a file through `fill`: to a temporary file in the same folder, which is flushed to disk and
+/// then renamed.
 ///
 /// # Errors
-/// When anything fails; the temporary file is then removed, and what stood at `path` is untouched.
-pub fn atomically(
+/// When anything fails; the temporary file is then removed, and an older file at `path` stays as it
+/// was.
+pub fn write_atomically(
     path: &Path,
     fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
 ) -> Result<()> {
-    let mut pending = Pending::new(path)?;
+    let mut pending = PendingFile::new(path)?;
     let failed = |e: std::io::Error| Error::io("write", path, &e);
     let mut buffered = BufWriter::new(pending.file.as_file_mut());
     fill(&mut buffered).map_err(failed)?;
@@ -124,7 +126,7 @@ pub fn atomically(
     pending.commit()
 }
 
-/// What files are written through.
+/// A destination that encoders can write to and seek in.
 pub trait WriteSeek: Write + Seek {}
 impl<T: Write + Seek> WriteSeek for T {}
 
@@ -138,7 +140,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         fs::write(&path, "old").unwrap();
-        let result = atomically(&path, |out| {
+        let result = write_atomically(&path, |out| {
             out.write_all(b"half of the new")?;
             Err(io::Error::other("the disk is full"))
         });
@@ -152,7 +154,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.png");
         fs::write(&path, "old").unwrap();
-        atomically(&path, |out| out.write_all(b"new")).unwrap();
+        write_atomically(&path, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
     }
 
@@ -163,7 +165,7 @@ mod tests {
         let (real, link) = (folder.path().join("real.png"), folder.path().join("link.png"));
         fs::write(&real, "old").unwrap();
         std::os::unix::fs::symlink(&real, &link).unwrap();
-        atomically(&link, |out| out.write_all(b"new")).unwrap();
+        write_atomically(&link, |out| out.write_all(b"new")).unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&real).unwrap(), b"new");
     }

@@ -1,4 +1,4 @@
-//! OpenEXR: linear floats, unclamped, with what determines the picture as attributes.
+//! The OpenEXR writer: linear floats, unclamped, with metadata as an attribute.
 
 use std::io;
 use std::path::Path;
@@ -11,20 +11,21 @@ use exr::prelude::{
 
 use crate::error::Result;
 use crate::film::{Film, View};
-use crate::write::{Settings, atomically};
+use crate::write::{Settings, write_atomically};
 
-/// The attribute that holds what determines the picture, a line each.
+/// The name of the attribute with the metadata, one entry per line.
 const METADATA: &str = "envers";
 
-/// Writes a tiled EXR, losslessly compressed, with the view's channels. Of a view other than
-/// beauty the values are always 32-bit, whatever `settings.half` says: depths and numbers of
-/// objects do not fit in 16. Radiance that does not, which is beyond 65504, is stored as that.
+/// Writes a tiled EXR, losslessly compressed, with the view's channels. Values of views other than
+/// beauty always have 32 bits, whatever `settings.half` says, since depths and ids do not fit in 16.
+/// Radiance beyond 65504, which does not fit either, is clamped to it.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
+    // The channels, in 16 or 32 bits.
     let half = settings.half && film.view == View::Beauty;
     let channels = film.view.channels().iter().enumerate().map(|(i, name)| {
         let values = film.pixels.iter().map(|pixel| pixel[i]);
         let samples = if half {
-            // Beyond the greatest 16-bit float lies infinity, which is no radiance.
+            // Clamped, since what is beyond the greatest 16-bit float would become infinite.
             let limit = f32::from(f16::MAX);
             FlatSamples::F16(values.map(|x| f16::from_f32(x.clamp(-limit, limit))).collect())
         } else {
@@ -32,16 +33,17 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
         };
         AnyChannel::new(*name, samples)
     });
+    // The metadata in a single attribute: the crate writes several in a random order, and so never the
+    // same bytes.
     let mut attributes =
         LayerAttributes { software_name: Some(Text::from("envers")), ..Default::default() };
     if !settings.metadata.is_empty() {
-        // One attribute: the crate writes several in a random order, and so never the same bytes.
         let lines: Vec<String> =
             settings.metadata.iter().map(|(name, value)| format!("{name}: {value}")).collect();
         let text = AttributeValue::Text(Text::from(lines.join("\n").as_str()));
         attributes.other.insert(Text::from(METADATA), text);
     }
-    // In whatever order they were compressed, the tiles are written in one.
+    // The tiles, in a fixed order whatever the order in which they were compressed.
     let encoding = Encoding { line_order: LineOrder::Increasing, ..Encoding::FAST_LOSSLESS };
     let layer = Layer::new(
         Vec2(film.size[0] as usize, film.size[1] as usize),
@@ -50,7 +52,7 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
         AnyChannels::sort(channels.collect()),
     );
     let image = Image::from_layer(layer);
-    atomically(path, |out| image.write().to_buffered(out).map_err(io::Error::other))
+    write_atomically(path, |out| image.write().to_buffered(out).map_err(io::Error::other))
 }
 
 #[cfg(test)]

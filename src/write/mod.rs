@@ -1,4 +1,14 @@
-//! From film to file, whole or not at all.
+//! The output files: a film written as PNG, EXR, GIF or animated PNG, completely or not at all.
+//!
+//! ```
+//! use envers::film::{Film, View};
+//! use envers::write::{Settings, write};
+//!
+//! let folder = tempfile::tempdir().unwrap();
+//! let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.5; 3]] };
+//! write(&film, &folder.path().join("grey.png"), &Settings::default())?;
+//! # Ok::<(), envers::error::Error>(())
+//! ```
 
 mod atomic;
 mod exr;
@@ -11,47 +21,48 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-pub use atomic::{atomically, check as check_file};
+pub use atomic::{check as check_file, write_atomically};
 pub use movie::Movie;
 pub use png::encode as png_bytes;
 
-/// What an output file is, by its extension.
+/// The format of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Format {
-    /// 8 bits a channel, clamped.
+    /// PNG: 8 bits per channel, clamped.
     Png,
-    /// Linear floats, unclamped.
+    /// OpenEXR: linear floats, unclamped.
     Exr,
-    /// Many frames of 256 colours each.
+    /// GIF: an animation with 256 colours per frame.
     Gif,
-    /// Many frames with the pixels of a PNG each.
+    /// Animated PNG: an animation whose frames have the pixels of a PNG.
     Apng,
 }
 
-/// How to write a picture. `exposure`, `tone` and `transfer` are how a PNG shows radiance; an EXR
-/// always holds the radiance itself.
+/// The settings of an output file. `exposure`, `tone` and `transfer` map radiance to the bytes of a
+/// PNG; an EXR always holds the radiance itself.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
-    /// Radiance is multiplied with 2 to the power of this.
+    /// The exposure in stops: radiance is multiplied by 2 to the power of this.
     pub exposure: f64,
-    /// What then brings it into \[0, 1\].
+    /// The tone curve, which then maps it to \[0, 1\].
     pub tone: Tone,
-    /// What that is encoded by.
+    /// The transfer function that encodes the result.
     pub transfer: Transfer,
-    /// Whether an EXR stores 16-bit floats rather than 32-bit ones.
+    /// True if an EXR stores 16-bit floats rather than 32-bit ones.
     pub half: bool,
-    /// What an EXR says of itself: names and values of what determines the picture.
+    /// The metadata of an EXR: names and values of what determines the picture.
     pub metadata: Vec<(String, String)>,
 }
 
 impl Settings {
-    /// How a scene's film is shown; 32 bits, no metadata.
-    pub fn of(film: &FilmSettings) -> Self {
+    /// The settings of a scene's film, with 32 bits and no metadata.
+    pub fn from_film(film: &FilmSettings) -> Self {
         let &FilmSettings { exposure, tone, transfer, .. } = film;
         Self { exposure, tone, transfer, half: false, metadata: Vec::new() }
     }
 
-    /// The byte of a PNG for the radiance of one channel, in f64:
+    /// The byte of a PNG for the radiance of one channel, computed in f64:
     /// round(255 · transfer(tone(2^exposure · radiance))).
     pub fn byte(&self, radiance: f32) -> u8 {
         let toned = self.tone.apply(f64::from(radiance) * self.exposure.exp2());
@@ -60,11 +71,11 @@ impl Settings {
 }
 
 impl Format {
-    /// The format that the file's extension names.
+    /// The format that a file's extension names.
     ///
     /// # Errors
-    /// When it names none that can be written.
-    pub fn of(path: &Path) -> Result<Self> {
+    /// When the extension names no format that can be written.
+    pub fn from_path(path: &Path) -> Result<Self> {
         match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
             "png" => Ok(Format::Png),
             "exr" => Ok(Format::Exr),
@@ -78,29 +89,29 @@ impl Format {
         .map_err(|e| e.help("name it .png (8 bits), .exr (floats), .gif or .apng (animated)"))
     }
 
-    /// Whether it holds many frames.
+    /// True if it can hold several frames.
     pub fn is_animated(self) -> bool {
         matches!(self, Format::Gif | Format::Apng)
     }
 }
 
-/// Checks that a picture could be written to `path`: that its format is known and its folder is
-/// there and can be written to. Called before the work begins.
+/// Checks that a picture could be written to `path`: that its format is known, and its folder exists
+/// and is writable. Called before a picture is rendered.
 ///
 /// # Errors
-/// When it could not.
+/// When it could not be written.
 pub fn check(path: &Path) -> Result<()> {
-    Format::of(path)?;
+    Format::from_path(path)?;
     atomic::check(path)
 }
 
-/// Writes a film, in the format that the extension names; an animated one then has one frame. A
-/// [`Movie`] writes many.
+/// Writes a film in the format that the extension names; an animated format then has one frame.
+/// [`Movie`] writes several.
 ///
 /// # Errors
-/// When the file cannot be written; what stood there before then stands there still.
+/// When the file cannot be written; an older file then stays as it was.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
-    match Format::of(path)? {
+    match Format::from_path(path)? {
         Format::Png => png::write(film, path, settings),
         Format::Exr => exr::write(film, path, settings),
         Format::Gif | Format::Apng => {

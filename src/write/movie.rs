@@ -1,7 +1,7 @@
-//! Animated pictures: GIF and animated PNG, written frame by frame.
+//! The writer of animations, as GIF or animated PNG, frame by frame.
 //!
-//! Of each frame only the rectangle that differs from the one before is stored, so that what stands
-//! still keeps its colours and costs nothing.
+//! Of each frame only the rectangle that differs from the frame before is stored, so that static
+//! parts keep their colours and take no space.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -11,35 +11,36 @@ use gif::{DisposalMethod, Repeat};
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::write::atomic::Pending;
+use crate::write::atomic::PendingFile;
 use crate::write::{Format, Settings, png_bytes};
 
-/// How much NeuQuant looks at when it chooses a GIF's colours, from 1 (all pixels) to 30.
+/// The sampling factor of NeuQuant, which chooses a GIF's colours: from 1 (all pixels) to 30.
 const GIF_SAMPLING: i32 = 10;
 /// The shortest frame of a GIF in hundredths of a second: browsers show shorter ones for a tenth.
 const GIF_SHORTEST: u16 = 2;
 /// The longest side of a GIF, in pixels.
 const GIF_SIDE: u32 = u16::MAX as u32;
 
-/// An animated picture that is being written; it takes its name when it is finished.
+/// An animation that is being written; the file appears when it is finished.
 pub struct Movie {
-    file: Pending,
+    file: PendingFile,
     encoder: Encoder,
     size: [u32; 2],
-    /// Frames in a second.
+    /// The frame rate in frames per second.
     fps: f64,
     frames: u32,
-    /// The pixels of the frame before; none before the first.
-    shown: Option<Vec<u8>>,
+    /// The bytes of the frame before; none before the first.
+    previous: Option<Vec<u8>>,
 }
 
+/// The encoder of either format.
 enum Encoder {
     Gif(Box<gif::Encoder<BufWriter<File>>>),
-    /// Without a buffer, whose failure at the end would be lost; PNG is written in large pieces.
+    /// Unbuffered, since an error of flushing a buffer at the end would be lost; PNG writes large pieces.
     Apng(Box<png::Writer<File>>),
 }
 
-/// A part of a picture.
+/// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Rectangle {
     left: u32,
@@ -49,14 +50,14 @@ struct Rectangle {
 }
 
 impl Movie {
-    /// Begins a picture of so many `frames`, `fps` of which are shown in a second, in a loop; of
-    /// the format that the extension names.
+    /// Begins a looping animation of `frames` frames at `fps` frames per second, in the format that the
+    /// extension names.
     ///
     /// # Errors
-    /// When that is no animated one or cannot have such a size, or the file cannot be written.
+    /// When the format is not animated or cannot have such a size, or the file cannot be written.
     pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
-        let format = Format::of(path)?;
-        let file = Pending::new(path)?;
+        let format = Format::from_path(path)?;
+        let file = PendingFile::new(path)?;
         let failed = |e: io::Error| Error::io("write", path, &e);
         let handle = file.handle().map_err(failed)?;
         let [width, height] = size;
@@ -76,31 +77,31 @@ impl Movie {
                 Encoder::Gif(Box::new(repeating.map_err(|e| failed(gif_error(e)))?))
             }
             Format::Apng => {
-                let header = apng(handle, size, frames, fps);
+                let header = begin_apng(handle, size, frames, fps);
                 Encoder::Apng(Box::new(header.map_err(|e| failed(io::Error::other(e)))?))
             }
             Format::Png | Format::Exr => {
                 return Err(Error::input("this format holds one frame").at(path));
             }
         };
-        Ok(Self { file, encoder, size, fps, frames: 0, shown: None })
+        Ok(Self { file, encoder, size, fps, frames: 0, previous: None })
     }
 
-    /// Adds a frame of the size that was announced, with the bytes that a PNG of it would have.
+    /// Appends a frame, with the bytes that a PNG of it would have.
     ///
     /// # Errors
     /// When it cannot be written.
     ///
     /// # Panics
-    /// When it is of another size.
+    /// When its size is not that of the animation.
     pub fn push(&mut self, film: &Film, settings: &Settings) -> Result<()> {
         assert_eq!(film.size, self.size, "all frames of a picture are of one size");
         let bytes = png_bytes(film, settings);
-        let part = match &self.shown {
-            Some(shown) => changed(shown, &bytes, self.size[0] as usize),
+        let part = match &self.previous {
+            Some(previous) => changed_rectangle(previous, &bytes, self.size[0] as usize),
             None => Rectangle { left: 0, top: 0, width: film.size[0], height: film.size[1] },
         };
-        let pixels = cut(&bytes, self.size[0] as usize, part);
+        let pixels = crop(&bytes, self.size[0] as usize, part);
         let delay = gif_delay(self.frames, self.fps);
         match &mut self.encoder {
             Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
@@ -108,14 +109,14 @@ impl Movie {
         }
         .map_err(|e| Error::io("write", self.file.path(), &e))?;
         self.frames += 1;
-        self.shown = Some(bytes);
+        self.previous = Some(bytes);
         Ok(())
     }
 
-    /// Ends the picture, which then takes its name.
+    /// Completes the file, and replaces an older one.
     ///
     /// # Errors
-    /// When it cannot be written; what stood there before then stands there still.
+    /// When it cannot be written; an older file then stays as it was.
     pub fn finish(self) -> Result<()> {
         let path = self.file.path().to_owned();
         match self.encoder {
@@ -130,6 +131,7 @@ impl Movie {
     }
 }
 
+/// Converts an error of the GIF encoder.
 fn gif_error(error: gif::EncodingError) -> io::Error {
     match error {
         gif::EncodingError::Io(error) => error,
@@ -137,16 +139,16 @@ fn gif_error(error: gif::EncodingError) -> io::Error {
     }
 }
 
-/// How long frame `index`, from 0, is shown, in hundredths of a second: until the next one is due,
-/// so that rounding does not add up.
+/// The delay after frame `index`, from 0, in hundredths of a second: until the next frame is due, so
+/// that rounding errors do not add up.
 fn gif_delay(index: u32, fps: f64) -> u16 {
     let due = |index: f64| (100.0 * index / fps).round();
     let delay = due(f64::from(index) + 1.0) - due(f64::from(index));
     (delay as u16).max(GIF_SHORTEST)
 }
 
-/// How long a frame is shown, as a fraction of a second: of those that a file can hold the simplest
-/// that is exact, or else the nearest.
+/// The delay after each frame as a fraction of a second: the simplest fraction that is exact, or else
+/// the nearest one that a file can hold.
 fn apng_delay(fps: f64) -> (u16, u16) {
     let mut best = (f64::INFINITY, (u16::MAX, 1));
     for denominator in 1..=u16::MAX {
@@ -160,7 +162,8 @@ fn apng_delay(fps: f64) -> (u16, u16) {
     best.1
 }
 
-fn apng(
+/// Begins an animated PNG.
+fn begin_apng(
     file: File,
     [width, height]: [u32; 2],
     frames: u32,
@@ -177,18 +180,20 @@ fn apng(
     encoder.write_header()
 }
 
+/// Writes one rectangle as a frame of an animated PNG.
 fn write_apng(
     writer: &mut png::Writer<File>,
     pixels: &[u8],
     part: Rectangle,
 ) -> std::result::Result<(), png::EncodingError> {
-    // From the corner, where any dimension fits.
+    // First to the corner, where any dimension is valid.
     writer.reset_frame_position()?;
     writer.set_frame_dimension(part.width, part.height)?;
     writer.set_frame_position(part.left, part.top)?;
     writer.write_image_data(pixels)
 }
 
+/// Writes one rectangle as a frame of a GIF.
 fn write_gif(
     encoder: &mut gif::Encoder<BufWriter<File>>,
     pixels: &[u8],
@@ -203,9 +208,9 @@ fn write_gif(
     encoder.write_frame(&frame).map_err(gif_error)
 }
 
-/// The smallest rectangle outside of which two pictures of `width` are the same; one pixel for
-/// equal ones, since no frame can be empty.
-fn changed(before: &[u8], after: &[u8], width: usize) -> Rectangle {
+/// The smallest rectangle outside of which two pictures of this width are equal; one pixel for equal
+/// pictures, since no frame can be empty.
+fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
     let mut columns = width..0;
     let mut rows: Option<std::ops::RangeInclusive<usize>> = None;
     let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
@@ -227,8 +232,8 @@ fn changed(before: &[u8], after: &[u8], width: usize) -> Rectangle {
     }
 }
 
-/// The pixels of a part of a picture of `width`.
-fn cut(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
+/// The bytes of a rectangle of a picture of this width.
+fn crop(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
     let [left, top, columns, rows] =
         [part.left, part.top, part.width, part.height].map(|x| x as usize);
     let lines = bytes.chunks_exact(3 * width).skip(top).take(rows);
@@ -268,14 +273,14 @@ mod tests {
         let mut after = vec![0; 3 * 4 * 3];
         after[3 * (4 + 1)] = 9;
         after[3 * (8 + 2) + 2] = 7;
-        let part = changed(&[0; 3 * 4 * 3], &after, 4);
+        let part = changed_rectangle(&[0; 3 * 4 * 3], &after, 4);
         assert_eq!(part, Rectangle { left: 1, top: 1, width: 2, height: 2 });
-        assert_eq!(cut(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
+        assert_eq!(crop(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
     }
 
     #[test]
     fn equal_frames_differ_in_one_pixel() {
-        let part = changed(&[5; 12], &[5; 12], 2);
+        let part = changed_rectangle(&[5; 12], &[5; 12], 2);
         assert_eq!(part, Rectangle { left: 0, top: 0, width: 1, height: 1 });
     }
 }

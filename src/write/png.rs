@@ -1,4 +1,4 @@
-//! PNG: 8 bits a channel.
+//! The PNG writer: 8 bits per channel.
 
 use std::io;
 use std::path::Path;
@@ -9,12 +9,12 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use crate::film::{Film, View};
-use crate::write::{Settings, atomically};
+use crate::write::{Settings, write_atomically};
 
 /// Writes an RGB PNG.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     let bytes = encode(film, settings);
-    atomically(path, |out| {
+    write_atomically(path, |out| {
         // Faster than choosing a filter for each row, and no larger: docs/performance.md.
         PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Paeth)
             .write_image(&bytes, film.size[0], film.size[1], image::ExtendedColorType::Rgb8)
@@ -22,11 +22,11 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     })
 }
 
-/// The bytes of the picture: red, green, blue of each pixel, row by row.
+/// Encodes a film as bytes: red, green, blue of each pixel, row by row.
 ///
-/// Beauty: [`Settings::byte`]. Normal: each component from \[−1, 1\] to \[0, 255\]; black where nothing is hit. Depth: white
-/// at the nearest hit to a dark grey at the farthest, black where nothing is hit. Id: a colour for
-/// each object, drawn from its numbers; black where nothing is hit.
+/// Beauty: [`Settings::byte`]. Normal: each component from \[−1, 1\] to \[0, 255\]. Depth: white at
+/// the nearest hit to a dark grey at the farthest. Id: a colour for each object, hashed from its id.
+/// Views other than beauty are black where nothing is hit.
 pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     let byte = |x: f32| (x * 255.0).round() as u8;
     let depths = || film.pixels.iter().map(|p| p[0]).filter(|z| z.is_finite());
@@ -34,9 +34,9 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
-    let shown = (film.view == View::Beauty).then(|| Shown::by(settings));
+    let table = (film.view == View::Beauty).then(|| ByteTable::new(settings));
     let color = |pixel: &[f32; 3]| match film.view {
-        View::Beauty => pixel.map(|x| shown.as_ref().map_or(0, |shown| shown.byte(x))),
+        View::Beauty => pixel.map(|x| table.as_ref().map_or(0, |table| table.byte(x))),
         View::Normal if *pixel == [0.0; 3] => [0; 3],
         View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
         View::Depth if !pixel[0].is_finite() => [0; 3],
@@ -52,39 +52,42 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     bytes
 }
 
-/// How many pixels are worth another thread.
+/// The grain size of the parallel loop: the least number of pixels for one thread.
 const GRAIN: usize = 1 << 14;
 
-/// [`Settings::byte`] of any radiance, looked up.
-struct Shown {
-    steps: [f32; 256],
+/// A lookup table for [`Settings::byte`].
+struct ByteTable {
+    /// For each byte the least radiance that gives a greater one; see [`byte_thresholds`].
+    thresholds: [f32; 256],
     /// The byte of the least radiance whose first 16 bits are the index.
     least: Vec<u8>,
 }
 
-impl Shown {
-    fn by(settings: &Settings) -> Self {
-        let steps = steps(settings);
+impl ByteTable {
+    /// Builds the table.
+    fn new(settings: &Settings) -> Self {
+        let steps = byte_thresholds(settings);
         let infinity = f32::INFINITY.to_bits() >> 16;
-        let least = (0..=infinity).map(|bits| look_up(&steps, f32::from_bits(bits << 16)));
-        Self { least: least.collect(), steps }
+        let least = (0..=infinity).map(|bits| search_byte(&steps, f32::from_bits(bits << 16)));
+        Self { least: least.collect(), thresholds: steps }
     }
 
+    /// The byte for the radiance of one channel.
     #[inline(always)]
     fn byte(&self, radiance: f32) -> u8 {
-        // What is negative or no number shows as 0 does.
+        // Negative numbers and NaN give the byte of 0.
         let radiance = if radiance > 0.0 { radiance } else { 0.0 };
         let mut byte = self.least[(radiance.to_bits() >> 16) as usize];
-        while self.steps[usize::from(byte)] <= radiance {
+        while self.thresholds[usize::from(byte)] <= radiance {
             byte += 1;
         }
         byte
     }
 }
 
-/// The least radiance that gives more than each byte, by [`Settings::byte`], which never falls; no
-/// number where none does. To look a byte up here is several times faster than to work it out.
-fn steps(settings: &Settings) -> [f32; 256] {
+/// For each byte the least radiance that gives a greater one by [`Settings::byte`], which never
+/// decreases; NaN where none does. Looking a byte up is several times faster than computing it.
+fn byte_thresholds(settings: &Settings) -> [f32; 256] {
     std::array::from_fn(|byte| {
         // Positive floats are in the order of their bits.
         let (mut below, mut from) = (0, f32::INFINITY.to_bits());
@@ -98,19 +101,20 @@ fn steps(settings: &Settings) -> [f32; 256] {
     })
 }
 
-/// The number of steps up to `radiance`. The index is a byte, which is never outside.
+/// The number of thresholds up to `radiance`, by binary search. The index is a byte, and so never out
+/// of bounds.
 #[inline(always)]
-fn look_up(steps: &[f32; 256], radiance: f32) -> u8 {
+fn search_byte(thresholds: &[f32; 256], radiance: f32) -> u8 {
     let mut byte = 0u8;
     for half in [128, 64, 32, 16, 8, 4, 2, 1] {
         let next = byte + (half - 1);
-        byte += if steps[usize::from(next)] <= radiance { half } else { 0 };
+        byte += if thresholds[usize::from(next)] <= radiance { half } else { 0 };
     }
     byte
 }
 
-/// A colour that is bright enough to see, spread by a multiplicative hash. Triangles of one
-/// instance share it.
+/// The colour of an id, by a multiplicative hash, and bright enough to see. All triangles of an
+/// instance have the same.
 fn id_color([geometry, primitive, instance]: [u32; 3]) -> [u8; 3] {
     let key = if geometry < 3 { primitive } else { instance };
     let hash = (geometry.wrapping_mul(0x85eb_ca6b) ^ key.wrapping_add(1))
@@ -149,7 +153,7 @@ mod tests {
                 [(Transfer::Srgb, 0.0), (Transfer::None, 1.5), (Transfer::Srgb, -140.0)]
             {
                 let settings = Settings { exposure, tone, transfer, ..Settings::default() };
-                let mut values: Vec<f32> = steps(&settings)
+                let mut values: Vec<f32> = byte_thresholds(&settings)
                     .iter()
                     .flat_map(|x| [x.next_down(), *x, x.next_up()])
                     .collect();

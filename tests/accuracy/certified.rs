@@ -5,9 +5,10 @@
 
 use std::path::{Path, PathBuf};
 
-use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side};
-use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::{Instance, Material, Mesh, Plane, Scene, Sphere};
+use envers::{
+    BruteForce, Bvh, Coherence, Departure, Hit, Instance, Intersector, Material, Mesh, Plane,
+    Precision, PrimitiveId, Ray, Scene, Side, Sphere,
+};
 use envers_testing::Random;
 use glam::{DAffine3, DQuat, DVec3};
 use rayon::prelude::*;
@@ -60,7 +61,7 @@ fn all_agree(what: &str, scene: &Scene, rays: &[Ray], budget: usize) -> usize {
     same_shadow("brute force", &segments[..few], &occluded(&brute, &segments[..few]));
     #[cfg(feature = "embree")]
     {
-        use envers::intersect::Embree;
+        use envers::Embree;
         let packets = Embree::build(scene, Precision::Certified, 0).unwrap();
         let single = Embree::build_single(scene, Precision::Certified, 0).unwrap();
         for (name, embree) in [("Embree", &packets), ("Embree ray by ray", &single)] {
@@ -296,7 +297,7 @@ fn all_agree_on_instances_whose_own_space_is_beyond_what_embree_takes() {
 #[cfg(feature = "embree")]
 fn fast_sees_instances_whose_own_space_is_beyond_what_embree_takes() {
     let scene = outsized();
-    let embree = envers::intersect::Embree::build(&scene, Precision::Fast, 0).unwrap();
+    let embree = envers::Embree::build(&scene, Precision::Fast, 0).unwrap();
     let rays = [0.0, 3.0].map(|x| Ray::new(DVec3::new(x + 0.1, 0.2, 5.0), DVec3::NEG_Z));
     let instances = closest(&embree, &rays).into_iter().map(|hit| hit.map(|h| h.id.instance));
     assert_eq!(instances.collect::<Vec<_>>(), [Some(0), Some(1)]);
@@ -331,7 +332,7 @@ fn pixel_aligned_grid_is_crossed_once_by_every_ray() {
     assert_eq!(all_agree("grid", &scene, &rays, BUDGET), rays.len(), "holes in the grid");
     let brute = BruteForce::new(&scene, Precision::Certified);
     for ray in &rays {
-        assert_eq!(brute.all(ray).count(), 1, "{ray:?}");
+        assert_eq!(brute.all_hits(ray).count(), 1, "{ray:?}");
     }
 }
 
@@ -353,7 +354,7 @@ fn demo_scenes() -> Vec<PathBuf> {
 fn primary(scene: &Scene, width: u32) -> Vec<Ray> {
     let [w, h] = scene.film.size;
     let size = [width, (width * h / w).max(1)];
-    let maker = scene.cameras[0].rays(size);
+    let maker = scene.cameras[0].ray_generator(size);
     (0..size[1])
         .flat_map(|y| (0..size[0]).map(move |x| (x, y)))
         .map(|(x, y)| maker.ray(f64::from(x) + 0.5, f64::from(y) + 0.5))
@@ -411,10 +412,11 @@ fn all_agree_on_the_corpus_meshes() {
 /// precision `certified` and by the oracle.
 #[cfg(feature = "measure")]
 fn equals_the_oracles(what: &str, scene: &Scene, width: u32) {
-    use envers::film::View;
-    use envers::intersect::Backend;
+    use envers::Backend;
+    use envers::RenderOptions;
+    use envers::Renderer;
+    use envers::View;
     use envers::measure::oracle::Oracle;
-    use envers::{RenderOptions, Renderer};
     let mut scene = scene.clone();
     let [w, h] = scene.film.size;
     scene.film.size = [width, (width * h / w).max(1)];

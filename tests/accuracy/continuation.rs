@@ -1,9 +1,9 @@
 //! A ray that goes straight through surfaces meets each of them once, in order, whoever finds them.
 
-use envers::geometry::{Departure, Geometry, Hit, Ray, Side};
-use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::{Material, MaterialId, Plane, Scene, Sphere};
-use envers::surface::Surface;
+use envers::{
+    Backend, BruteForce, Bvh, Coherence, Departure, Geometry, Hit, Intersector, Material,
+    MaterialId, Plane, Precision, Ray, Scene, Side, Sphere, Surface,
+};
 use glam::DVec3;
 
 use crate::random_scenes::{random_rays, random_scene};
@@ -91,7 +91,7 @@ fn occlusion_asks_only_about_what_lies_ahead() {
         for backend in [Backend::Rust, Backend::default()] {
             let intersector = backend.build(&scene, precision, 1).unwrap();
             let blocked = |t: f64, side: Side| {
-                let hit = Hit { t, u: 0.0, v: 0.0, id: envers::geometry::PrimitiveId::sphere(0) };
+                let hit = Hit { t, u: 0.0, v: 0.0, id: envers::PrimitiveId::sphere(0) };
                 let ray = Ray::new(DVec3::ZERO, DVec3::Z).continue_past(&hit, side);
                 let mut blocked = [false];
                 intersector.occluded(&[ray], Coherence::Incoherent, &mut blocked);
@@ -144,7 +144,7 @@ fn a_ray_that_left_a_surface_does_not_meet_it_after_it_went_through_another() {
     let mut scene = empty();
     scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
     scene.spheres.push(Sphere::new(DVec3::Z * 4.0, 1.0, MaterialId(0)));
-    let id = envers::geometry::PrimitiveId::sphere(0);
+    let id = envers::PrimitiveId::sphere(0);
     let from = Some(Departure { id, side: Side::Front });
     let ray = [Ray { departure: from, ..Ray::new(DVec3::Z, DVec3::Z) }];
     let default = Backend::default().build(&scene, Precision::Certified, 1).unwrap();

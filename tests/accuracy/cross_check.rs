@@ -1,8 +1,6 @@
 //! The intersectors against each other: brute force, BVH and Embree.
 
-use envers::geometry::{Hit, Ray};
-use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::Scene;
+use envers::{BruteForce, Bvh, Coherence, Hit, Intersector, Precision, Ray, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -57,7 +55,7 @@ fn bvh_equals_brute_force_to_the_bit() {
 fn bvh_occlusion_equals_brute_force() {
     each_scene(|seed, scene, rays| {
         let rays: Vec<Ray> =
-            rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+            rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
         let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
         assert!(expected.contains(&true) && expected.contains(&false), "scene {seed}: all alike");
         assert_eq!(expected, occluded(&Bvh::build(scene, Precision::Fast), &rays), "scene {seed}");
@@ -67,18 +65,18 @@ fn bvh_occlusion_equals_brute_force() {
 #[cfg(all(feature = "embree", feature = "measure"))]
 mod embree {
     use super::*;
-    use envers::geometry::Geometry;
-    use envers::intersect::Embree;
+    use envers::Embree;
+    use envers::Geometry;
     use envers::measure::MismatchClassifier;
 
     /// Compares with brute force; returns how many rays differ for a reason that f32 explains.
     fn explained(seed: u64, scene: &Scene, embree: &Embree<'_>, rays: &[Ray]) -> usize {
-        let disputes = MismatchClassifier { scene, margin: embree.margin() };
+        let classifier = MismatchClassifier { scene, margin: embree.margin() };
         let (expected, found) =
             (closest(&BruteForce::new(scene, Precision::Fast), rays), closest(embree, rays));
         let mut count = 0;
         for (i, (a, b)) in expected.iter().zip(&found).enumerate().filter(|(_, (a, b))| a != b) {
-            let cause = disputes.primary(&rays[i], a.as_ref(), b.as_ref());
+            let cause = classifier.classify_hits(&rays[i], a.as_ref(), b.as_ref());
             let same = a.zip(*b).is_some_and(|(a, b)| a.id == b.id);
             assert!(cause.is_some() && !same, "scene {seed}, ray {i}: {a:?}, Embree {b:?}");
             count += 1;
@@ -108,13 +106,13 @@ mod embree {
     fn embree_occlusion_equals_brute_force_up_to_explained_mismatches() {
         each_scene(|seed, scene, rays| {
             let embree = Embree::build(scene, Precision::Fast, 1).unwrap();
-            let disputes = MismatchClassifier { scene, margin: embree.margin() };
+            let classifier = MismatchClassifier { scene, margin: embree.margin() };
             let rays: Vec<Ray> =
-                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
             let expected = occluded(&BruteForce::new(scene, Precision::Fast), &rays);
             let found = occluded(&embree, &rays);
             for (i, truth) in expected.iter().enumerate().filter(|(i, b)| found[*i] != **b) {
-                let cause = disputes.shadow(&rays[i], *truth);
+                let cause = classifier.classify_occlusion(&rays[i], *truth);
                 assert!(cause.is_some(), "scene {seed}, ray {i}: blocked is {truth}");
             }
         });
@@ -142,7 +140,7 @@ mod embree {
             let mut spheres = scene.clone();
             spheres.instances.clear();
             let rays: Vec<Ray> =
-                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.at(0.7))).collect();
+                rays[..RAYS / 4].iter().map(|r| Ray::segment(r.origin, r.position(0.7))).collect();
             let expected = occluded(&BruteForce::new(&spheres, Precision::Fast), &rays);
             let embree = Embree::build(&spheres, Precision::Fast, 1).unwrap();
             assert_eq!(expected, occluded(&embree, &rays), "scene {seed}");

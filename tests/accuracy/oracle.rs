@@ -3,13 +3,13 @@
 
 use std::cmp::Ordering;
 
-use envers::film::{Film, View};
-use envers::geometry::{Departure, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
-use envers::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
+use envers::internals::{Settings, plane, sphere, triangle};
 use envers::measure::oracle::{self, Oracle};
-use envers::scene::{Camera, Falloff, Light, LightKind, Projection, Scene, Shadow};
-use envers::write::Settings;
-use envers::{RenderOptions, Renderer};
+use envers::{
+    BruteForce, Bvh, Camera, Coherence, Departure, Falloff, Film, Hit, Intersector, Light,
+    LightKind, Precision, PrimitiveId, Projection, Ray, RenderOptions, Renderer, Scene, Shadow,
+    Side, View,
+};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -104,7 +104,7 @@ fn sphere_from_farther_than_f64_can_square() {
 #[test]
 fn height_is_the_distance_from_the_sphere_in_radii() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
-    let height = |t| oracle::height(v(0.0, 0.0, 10.0), 2.0, &ray, t);
+    let height = |t| oracle::signed_distance(v(0.0, 0.0, 10.0), 2.0, &ray, t);
     assert_eq!([8.0, 12.0, 7.0, 9.0, 10.0].map(height), [0.0, 0.0, 0.5, -0.5, -1.0]);
 }
 
@@ -191,9 +191,9 @@ fn ray_that_touches_a_ridge_crosses_both_slopes_or_neither() {
 
 #[test]
 fn oracle_keeps_the_rule_for_leaving_a_sphere() {
-    let mut scene = envers::scene::Scene::default();
+    let mut scene = envers::Scene::default();
     let material = scene.add_material(Default::default());
-    scene.spheres.push(envers::scene::Sphere::new(DVec3::ZERO, 1.0, material));
+    scene.spheres.push(envers::Sphere::new(DVec3::ZERO, 1.0, material));
     let leaving = |side| {
         let from = Some(Departure { id: PrimitiveId::sphere(0), side });
         let ray = Ray { departure: from, ..Ray::new(v(1.0 - 1e-16, 0., 0.), v(-1., 0.5, 0.)) };
@@ -267,7 +267,7 @@ fn certified(scene: &Scene) -> Vec<Box<dyn Intersector + '_>> {
     vec![
         Box::new(Bvh::build(scene, Precision::Certified)),
         #[cfg(feature = "embree")]
-        Box::new(envers::intersect::Embree::build(scene, Precision::Certified, 1).unwrap()),
+        Box::new(envers::Embree::build(scene, Precision::Certified, 1).unwrap()),
     ]
 }
 
@@ -278,7 +278,7 @@ fn film(scene: &Scene, who: &dyn Intersector, view: View) -> Film {
 
 fn exr(film: &Film) -> Vec<u8> {
     let file = tempfile::Builder::new().suffix(".exr").tempfile().unwrap();
-    envers::write::write(film, file.path(), &Settings::default()).unwrap();
+    envers::internals::write(film, file.path(), &Settings::default()).unwrap();
     std::fs::read(file.path()).unwrap()
 }
 
@@ -299,7 +299,8 @@ fn certified_pictures_equal_the_oracles_byte_by_byte() {
 
 /// The same, of mirrors, glass, absorbing bodies within each other, and thin sheets.
 fn glass_picture(seed: u64, size: [u32; 2]) -> Scene {
-    use envers::scene::{Material, MaterialId};
+    use envers::Material;
+    use envers::MaterialId;
     use glam::Vec3;
     let mut scene = picture(seed);
     scene.film.size = size;
@@ -407,8 +408,8 @@ proptest! {
         let (origin, direction) = (DVec3::from(origin), DVec3::from(target) - DVec3::from(origin));
         let normal = triangle::area_normal(triangle);
         let sine = normal.normalize_or_zero().dot(direction.normalize_or_zero()).abs();
-        let edges = triangle::Edges::new(triangle, origin, direction);
-        let least = edges.functions.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
+        let edges = triangle::EdgeFunctions::new(triangle, origin, direction);
+        let least = edges.values.iter().fold(f64::INFINITY, |m, f| m.min(f.abs()));
         prop_assume!(normal.length() > 0.1 && sine > 0.1 && least > 1e-9 && edges.t.abs() > 1e-3);
         let fast = triangle::intersect(triangle, origin, direction).filter(|hit| hit.t > 0.0);
         let exact = oracle::triangle(triangle, &Ray::new(origin, direction));

@@ -1,7 +1,6 @@
 //! Random scenes and rays that are the same every time.
 
-use envers::geometry::Ray;
-use envers::scene::{Instance, Material, Mesh, Plane, Scene, Sphere};
+use envers::{Instance, Material, Mesh, Plane, Ray, Scene, Sphere};
 use envers_testing::Random;
 use glam::{DAffine3, DQuat, DVec3, EulerRot};
 

@@ -1,12 +1,10 @@
 //! Self-intersection avoidance: closed scenes of known radiance.
 
-use envers::geometry::{Geometry, PrimitiveId};
-use envers::intersect::{Backend, Precision};
-use envers::scene::{
-    Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Plane, Projection,
-    Scene, Shadow, Sphere,
+use envers::{
+    Backend, Camera, Falloff, Geometry, Instance, Light, LightKind, Material, MaterialId, Mesh,
+    Plane, Precision, PrimitiveId, Projection, RenderOptions, Renderer, Rendering, Scene, Shadow,
+    Sphere,
 };
-use envers::{RenderOptions, Renderer, Rendering};
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 
 /// An empty scene with one double-sided material, seen from `eye` toward `target` through 48 × 48
@@ -219,14 +217,14 @@ fn first_of_coincident_surfaces_is_seen_in_certified() {
     let mut scene = scene(DVec3::new(0.3, 2.0, 3.0), DVec3::ZERO);
     add(&mut scene, floor(50.0, 7), DAffine3::IDENTITY);
     scene.instances.push(scene.instances[0].clone());
-    let rays = scene.cameras[0].rays(scene.film.size);
+    let rays = scene.cameras[0].ray_generator(scene.film.size);
     let rays: Vec<_> =
         (0..48 * 48).map(|i| rays.ray(f64::from(i % 48), f64::from(i / 48))).collect();
     for options in backends().filter(|o| o.precision == Precision::Certified) {
         let seen = |scene: &Scene| -> Vec<Option<PrimitiveId>> {
             let mut hits = vec![None; rays.len()];
             let intersector = options.backend.build(scene, options.precision, 1).unwrap();
-            intersector.closest(&rays, envers::intersect::Coherence::Coherent, &mut hits);
+            intersector.closest(&rays, envers::Coherence::Coherent, &mut hits);
             hits.into_iter().map(|hit| hit.map(|hit| hit.id)).collect()
         };
         let floors = seen(&scene);
@@ -256,7 +254,9 @@ fn ball_on_a_plane_is_lit_about_its_foot() {
 #[test]
 fn point_where_a_ball_touches_its_ground_is_dark() {
     // No eye sees that point: the ray is made by hand.
-    use envers::geometry::{Departure, Ray, Side};
+    use envers::Departure;
+    use envers::Ray;
+    use envers::Side;
     let mut scene = scene(DVec3::new(0.0, 0.05, 0.3), DVec3::ZERO);
     ground(&mut scene);
     sphere(&mut scene, DVec3::Y, 1.0);
@@ -265,7 +265,7 @@ fn point_where_a_ball_touches_its_ground_is_dark() {
         let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
         let up = Ray { departure: from, ..Ray::new(DVec3::ZERO, DVec3::new(0.1, 1.0, 0.2)) };
         let mut blocked = [false];
-        intersector.occluded(&[up], envers::intersect::Coherence::Coherent, &mut blocked);
+        intersector.occluded(&[up], envers::Coherence::Coherent, &mut blocked);
         assert_eq!(blocked, [true], "{options:?}");
     }
 }

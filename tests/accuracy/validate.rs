@@ -2,9 +2,8 @@
 
 use std::path::Path;
 
-use envers::LoadOptions;
-use envers::intersect::Precision;
 use envers::measure::validate;
+use envers::{LoadOptions, Precision};
 
 fn passes(name: &str, size: [u32; 2]) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes").join(name);

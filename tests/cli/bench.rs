@@ -161,7 +161,7 @@ fn bench_leaves_out_what_has_no_time_and_says_why() {
         assert!(mode["reason"].as_str().unwrap().contains("would take about"), "{mode}");
     }
     let html = String::from_utf8(folder.read("out/report.html")).unwrap();
-    assert!(html.contains("<h2>Left out</h2>"));
+    assert!(html.contains("<h2>Skipped modes</h2>"));
 }
 
 /// Embree's f32 rays find either of two floors in one plane.

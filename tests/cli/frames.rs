@@ -103,7 +103,7 @@ fn what_is_there_is_skipped() {
     assert!(folder.has("f1.png") && folder.has("f3.png"));
     assert!(run.stdout.ends_with("1 frame was there already\n"), "{}", run.stdout);
     let run = folder.run("render scene.toml --frames 1-3 -o f#.png --skip-existing").good();
-    assert_eq!(run.stdout, "3 frames were there already\n");
+    assert_eq!(run.stdout, "3 frames existed already\n");
 }
 
 #[test]
@@ -168,7 +168,7 @@ fn stats_say_what_was_placed_again() {
 fn info_says_how_long_it_is_and_what_moves() {
     let folder = Folder::with(&moving());
     let said = folder.run("info scene.toml").good().stdout;
-    let line = "animation  10 frames at 5 a second (2.000 s), moving: 1 sphere\n";
+    let line = "animation  10 frames at 5 fps (2.000 s), moving: 1 sphere\n";
     assert!(said.contains(line), "{said}");
     let json = folder.run("info scene.toml --json -").good().json();
     assert_eq!(json["animation"]["frames"], 10);
@@ -186,7 +186,10 @@ fn validate_takes_one_moment() {
 fn several_frames_in_one_file_are_refused() {
     let folder = Folder::with(&moving());
     let said = folder.run("render scene.toml --frames 1-3 -o a.png").refused();
-    assert!(said.contains("3 frames cannot all have this name") && said.contains("####"), "{said}");
+    assert!(
+        said.contains("3 frames cannot all be written to this file") && said.contains("####"),
+        "{said}"
+    );
     let said = folder.run("render scene.toml -o f#.png -o f##.png").refused();
     assert!(said.contains("would have the same name"), "{said}");
 }
@@ -221,7 +224,7 @@ fn one_moment_is_no_animation() {
     let folder = Folder::with(&moving());
     folder.run("render scene.toml --time 1 --frames 2 -o a.png").refused();
     let said = folder.run("render scene.toml --time 1 -o a.gif").refused();
-    assert!(said.contains("--time asks for one moment"), "{said}");
+    assert!(said.contains("--time selects a single image"), "{said}");
 }
 
 #[test]

@@ -42,14 +42,14 @@ fn the_camera_that_is_warned_of_is_the_one_that_was_asked_for() {
 #[test]
 fn a_scene_with_nothing_in_it_is_told_so() {
     let warning = warned("[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, 1]\n");
-    assert!(warning.contains("nothing stands in the scene"), "{warning}");
+    assert!(warning.contains("there is nothing in the scene"), "{warning}");
 }
 
 #[test]
 fn a_black_picture_is_told_the_likely_cause() {
     let dark = SPHERE.replace("background = \"#203040\"\n", "");
     let warning = warned(&dark.replace("position = [3, 5, 4]", "position = [0, -5, 0]"));
-    assert!(warning.contains("wholly black") && warning.contains("behind"), "{warning}");
+    assert!(warning.contains("completely black") && warning.contains("behind"), "{warning}");
 }
 
 #[test]

@@ -1,11 +1,9 @@
 //! The committed models and drawings are what `xtask` makes, and the scenes that use them
 //! load without a warning.
 
-use envers::Loaded;
+use envers::{LightKind, Loaded, load};
 use std::path::Path;
 
-use envers::load;
-use envers::scene::LightKind;
 use xtask::assets;
 
 /// The largest file that is committed, in bytes.

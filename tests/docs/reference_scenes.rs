@@ -1,7 +1,6 @@
 //! The reference scenes of the benches are what their descriptions say.
 
-use envers::scene::Mesh;
-use envers::{Loaded, load};
+use envers::{Loaded, Mesh, load};
 use glam::DVec3;
 use xtask::reference::{knot, spheres};
 

@@ -6,13 +6,10 @@
 //! numpy is cut to a whole number when it is stored as `uint8`. Ours rounds instead, so the bytes
 //! may differ by 1; before that last step the two agree to within a thousandth.
 
-use envers::Loaded;
+use envers::internals::{Settings, png_bytes};
+use envers::{Loaded, Renderer, load};
 use std::ops::{Add, Mul, Sub};
 use std::path::Path;
-
-use envers::Renderer;
-use envers::load;
-use envers::write::{Settings, png_bytes};
 
 const LONGUEUR: usize = 1000;
 const HAUTEUR: usize = 500;
@@ -157,7 +154,7 @@ fn compare(name: &str, part: Part) {
     let Loaded { scene, report, .. } = load(&path).expect("the scene loads");
     assert_eq!(report.warnings, [""; 0]);
     let film = Renderer::new(&scene).render().expect("the scene renders").film;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     let ours = png_bytes(&film, &settings);
     let theirs = coloration(part);
     assert_eq!(ours.len(), theirs.len());

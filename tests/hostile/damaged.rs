@@ -9,7 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
 use draco_core::GeometryAttributeType as Kind;
-use envers::error::ErrorKind;
+use envers::ErrorKind;
 use envers_testing::packed::{ktx, packed};
 use envers_testing::{Folder, Random, corpus, data_uri, files, whole};
 use image::ImageFormat;

@@ -37,7 +37,7 @@ impl Needs {
 
     /// Loads it under a limit; returns the warnings or the error where it does not load whole.
     fn loads(&self, most: u64) -> Result<(), String> {
-        let limits = Limits::default().with(self.limit, most);
+        let limits = Limits::default().with_limit(self.limit, most);
         match LoadOptions::default().limits(limits).load(self.path()) {
             Ok(scene) if scene.report.warnings.is_empty() => Ok(()),
             Ok(scene) => Err(scene.report.warnings.join("\n")),
@@ -55,15 +55,15 @@ impl Needs {
     #[track_caller]
     fn check_with(self, warning: &str) {
         let said = self.loads(self.exactly).unwrap_err();
-        assert!(said.contains(warning) && !said.contains("--limit"), "{said}");
+        assert!(said.contains(warning) && !said.contains("raise the limit"), "{said}");
         self.check_one_less();
     }
 
     #[track_caller]
     fn check_one_less(self) {
         let said = self.loads(self.exactly - 1).unwrap_err();
-        let flag = format!("`--limit {}=", self.limit.name());
-        assert!(said.contains(&flag), "{said}");
+        let advice = format!("raise the limit `{}` to ", self.limit.name());
+        assert!(said.contains(&advice), "{said}");
     }
 }
 

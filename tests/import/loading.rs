@@ -1,7 +1,6 @@
 //! The loading of test files, and assertions on errors and warnings.
 
-use envers::Loaded;
-use envers::error::{Place, Result};
+use envers::{Loaded, Place, Result};
 use envers_testing::{Folder, Model, data_uri};
 
 /// A folder whose files can be loaded.

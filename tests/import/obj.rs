@@ -1,8 +1,7 @@
 //! The scenes that OBJ and MTL files become: each test one feature or one fault.
 
-use envers::Loaded;
-use envers::error::{Error, Place};
-use envers::scene::{AlphaMode, Material, ShininessMap, Texels, Transfer, Wrap};
+use envers::scene::{ShininessMap, Texels, Transfer, Wrap};
+use envers::{AlphaMode, Error, Loaded, Material, Place};
 use envers_testing::{Folder, png};
 use glam::{Vec2, Vec3};
 

@@ -1,10 +1,7 @@
 //! Adaptive samples: more where neighbouring ones disagree, wherever tiles and strips begin.
 
-use envers::film::Film;
-use envers::integrator::{Counts, FeatureCounts, Tiling, sample_steps};
-use envers::intersect::{Backend, Precision};
-use envers::scene::{Adaptive, Scene};
-use envers::{RenderOptions, Renderer};
+use envers::internals::{Counts, FeatureCounts, Tiling, sample_steps};
+use envers::{AdaptiveSampling, Backend, Film, Precision, RenderOptions, Renderer, Scene};
 
 /// The scene with a camera that sees one unit of length for each pixel, 0 in the middle.
 fn scene(size: [u32; 2], objects: &str) -> Scene {
@@ -22,7 +19,7 @@ fn scene(size: [u32; 2], objects: &str) -> Scene {
 fn with_samples(scene: &Scene, min: u32, max: u32, threshold: f32) -> Scene {
     let mut scene = scene.clone();
     scene.film.spp = min;
-    scene.film.adaptive = Some(Adaptive { max, threshold });
+    scene.film.adaptive = Some(AdaptiveSampling { max, threshold });
     scene
 }
 
@@ -131,7 +128,7 @@ fn a_flat_picture_takes_the_least_samples() {
     let wall = "[[plane]]\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n[[light]]\nkind = \"ambient\"\n";
     let wall = scene([50, 40], wall);
     for (min, max) in [(1, 25), (4, 36), (3, 17)] {
-        let counts = counts(&with_samples(&wall, min, max, Adaptive::THRESHOLD));
+        let counts = counts(&with_samples(&wall, min, max, AdaptiveSampling::THRESHOLD));
         assert_eq!(counts.rays.primary, u64::from(min) * 50 * 40);
         assert!(counts.refined.iter().all(|&pixels| pixels == 0));
     }
@@ -205,7 +202,7 @@ fn it_is_nearer_to_many_samples_than_as_many_regular_ones_are() {
         let pairs = film.pixels.as_flattened().iter().zip(many.pixels.as_flattened());
         pairs.map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>()
     };
-    let adaptive = with_samples(&scene, 1, 25, Adaptive::THRESHOLD);
+    let adaptive = with_samples(&scene, 1, 25, AdaptiveSampling::THRESHOLD);
     let taken = counts(&adaptive).rays.primary;
     let pixels = scene.film.size.into_iter().map(u64::from).product::<u64>();
     assert!(taken < 9 * pixels, "{} per pixel", taken / pixels);

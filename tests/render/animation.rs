@@ -2,17 +2,14 @@
 
 use std::path::Path;
 
-use envers::geometry::{Bounds, Ray};
-use envers::intersect::{
-    Backend, BuildStats, Coherence, Intersector, IntersectorBuilder, Precision,
-};
+use envers::internals::{BuildStats, IntersectorBuilder};
 use envers::scene::animation::{
     Anchor, Animated, Animation, Curve, Interpolation, Keyframes, Motion, Node, Orbit,
 };
-use envers::scene::{
-    Camera, Instance, Light, LightKind, MaterialId, Mesh, Projection, Scene, Shadow, Sphere,
+use envers::{
+    Backend, Bounds, Camera, Coherence, Instance, Intersector, Light, LightKind, MaterialId, Mesh,
+    Precision, Projection, Ray, RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
-use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// The spheres of the tutorial's scene.
@@ -31,7 +28,7 @@ fn orbit() -> Scene {
 /// Every frame of an animated scene, as a scene of its own.
 fn frames(scene: &Scene) -> impl Iterator<Item = (u32, Scene)> {
     let animation = scene.animation.as_ref().unwrap();
-    (1..=animation.frames).map(|frame| (frame, scene.at(animation.time(frame)).unwrap()))
+    (1..=animation.frames).map(|frame| (frame, scene.at_time(animation.time(frame)).unwrap()))
 }
 
 /// Returns the position of the light, from which the shadows fall.
@@ -159,14 +156,14 @@ fn the_light_inside_the_sun_reaches_the_planet() {
         let intersector = Backend::Rust.build(scene, Precision::Certified, 1).unwrap();
         !is_shadowed(&*intersector, scene, PLANET, &points)
     };
-    assert_eq!([&scene, &dark].map(|s| lit(&s.at(0.0).unwrap())), [true, false]);
+    assert_eq!([&scene, &dark].map(|s| lit(&s.at_time(0.0).unwrap())), [true, false]);
 }
 
 #[test]
 fn the_loop_ends_where_it_began() {
     let scene = orbit();
-    let seconds = scene.animation.as_ref().unwrap().seconds();
-    let [first, after] = [0.0, seconds].map(|time| scene.at(time).unwrap());
+    let seconds = scene.animation.as_ref().unwrap().duration();
+    let [first, after] = [0.0, seconds].map(|time| scene.at_time(time).unwrap());
     for (a, b) in first.spheres.iter().zip(&after.spheres) {
         assert!((a.center - b.center).length() < 1e-12, "{} {}", a.center, b.center);
     }
@@ -195,27 +192,28 @@ fn workshop() -> Scene {
     let eye = DVec3::new(0.5, 2.0, 6.0);
     scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8)).unwrap());
     let mut animation = Animation::new(6, 24.0);
-    let mut keys = Keyframes::still();
+    let mut keys = Keyframes::identity();
     keys.translation = Curve {
         times: vec![0.0, 0.25],
         values: vec![DVec3::new(-1.0, 0.0, 0.0), DVec3::new(-1.3, 0.7, 0.4)],
         interpolation: Interpolation::Linear,
     };
     let place = DAffine3::IDENTITY;
-    let node = animation.add_node(Node { parent: None, place, motion: Motion::Keys(keys) });
+    let node =
+        animation.add_node(Node { parent: None, base: place, motion: Motion::Keyframes(keys) });
     let transform = DAffine3::IDENTITY;
-    animation.movers.push(Animated::Instance { instance: 1, node, transform });
+    animation.objects.push(Animated::Instance { instance: 1, node, transform });
     let round = Orbit {
         around: Anchor::fixed(DVec3::ZERO),
         center: DVec3::ZERO,
         start: scene.spheres[0].center,
         axis: DVec3::Y,
         period: 0.25,
-        turn: false,
+        turns_with_orbit: false,
     };
-    let node = animation.add_node(Node { parent: None, place, motion: Motion::Orbit(round) });
+    let node = animation.add_node(Node { parent: None, base: place, motion: Motion::Orbit(round) });
     let (center, radius) = (scene.spheres[0].center, None);
-    animation.movers.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
+    animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
     scene.animation = Some(animation);
     scene
 }
@@ -277,7 +275,7 @@ fn each_mesh_is_built_once_for_all_frames() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
     }
 }
 
@@ -285,7 +283,7 @@ fn each_mesh_is_built_once_for_all_frames() {
 fn nothing_is_built_again_where_only_the_camera_moves() {
     let mut scene = workshop();
     let animation = scene.animation.as_mut().unwrap();
-    animation.movers = vec![Animated::Camera {
+    animation.objects = vec![Animated::Camera {
         camera: 0,
         node: Some(envers::scene::animation::NodeId(1)),
         rest: scene.cameras[0].clone(),
@@ -295,15 +293,21 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!((built.meshes, built.reused), (2, 10), "{backend:?} {precision:?}");
-        assert_eq!((built.tops, built.tops_kept), (1, 5), "{backend:?} {precision:?}");
+        assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
+        assert_eq!((built.tlas_built, built.tlas_kept), (1, 5), "{backend:?} {precision:?}");
         assert_ne!(films[0], films[1]);
     }
 }
 
 /// The counts of what was placed, in the first frame and again.
 fn places(built: BuildStats) -> [u64; 5] {
-    [built.tops, built.tops_kept, built.placed, built.moved, built.spheres_moved]
+    [
+        built.tlas_built,
+        built.tlas_kept,
+        built.instances_built,
+        built.instances_moved,
+        built.spheres_moved,
+    ]
 }
 
 #[test]
@@ -340,11 +344,13 @@ fn assert_alone(scene: &Scene) -> Vec<u64> {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(scene, &times(scene), &options);
         for (film, time) in films.iter().zip(times(scene)) {
-            let alone =
-                Renderer::new(&scene.at(time).unwrap()).options(options.clone()).render().unwrap();
+            let alone = Renderer::new(&scene.at_time(time).unwrap())
+                .options(options.clone())
+                .render()
+                .unwrap();
             assert!(*film == alone.film.pixels, "{backend:?} at {time}");
         }
-        tops.push(built.tops);
+        tops.push(built.tlas_built);
     }
     tops
 }
@@ -357,7 +363,7 @@ fn a_frame_that_shares_meshes_is_the_frame_that_stands_alone() {
 #[test]
 fn a_scene_that_grows_is_placed_anew() {
     let mut scene = workshop();
-    let movers = &mut scene.animation.as_mut().unwrap().movers;
+    let movers = &mut scene.animation.as_mut().unwrap().objects;
     let Animated::Sphere { radius, .. } = &mut movers[1] else { panic!("the sphere") };
     let (times, values) = (vec![0.0, 0.2], vec![0.4, 40.0]);
     *radius = Some(Curve { times, values, interpolation: Interpolation::Linear });
@@ -368,7 +374,7 @@ fn a_scene_that_grows_is_placed_anew() {
 fn what_is_flat_for_a_while_comes_back() {
     let mut scene = workshop();
     let animation = scene.animation.as_mut().unwrap();
-    let Motion::Keys(keys) = &mut animation.nodes[0].motion else { panic!("keys") };
+    let Motion::Keyframes(keys) = &mut animation.nodes[0].motion else { panic!("keys") };
     keys.scale = Curve {
         times: vec![0.0, 2.0 / 24.0, 4.0 / 24.0],
         values: vec![DVec3::ONE, DVec3::ZERO, DVec3::ONE],
@@ -382,7 +388,7 @@ fn what_is_flat_for_a_while_comes_back() {
 #[test]
 fn a_scene_that_is_still_traced_is_left_as_it_is() {
     let scene = workshop();
-    let [first, second] = [0.0, 0.1].map(|time| scene.at(time).unwrap());
+    let [first, second] = [0.0, 0.1].map(|time| scene.at_time(time).unwrap());
     let ray = |scene: &Scene| {
         let ball = scene.spheres[0].center;
         [Ray::new(ball + DVec3::Y * 5.0, DVec3::NEG_Y)]
@@ -422,7 +428,7 @@ fn the_backends_agree_on_every_frame_to_the_bit() {
 
 #[test]
 fn a_mesh_in_the_place_of_another_is_not_taken_for_it() {
-    let mut scene = workshop().at(0.0).unwrap();
+    let mut scene = workshop().at_time(0.0).unwrap();
     scene.instances.truncate(1);
     let ray = [Ray::new(DVec3::new(0.1, 5.0, 0.1), DVec3::NEG_Y)];
     for (backend, precision) in backends() {
@@ -448,7 +454,7 @@ fn a_frame_that_cannot_be_written_ends_the_rendering() {
     let mut count = 0;
     let result = Renderer::new(&scene).render_frames(&times(&scene), |_, _| {
         count += 1;
-        Err(envers::error::Error::failed("the disk is full"))
+        Err(envers::Error::failed("the disk is full"))
     });
     assert!(result.is_err() && count == 1);
 }

@@ -1,13 +1,10 @@
 //! The scenes of `docs/gallery.md`.
 
-use envers::Loaded;
+use envers::internals::{Settings, png_bytes};
+use envers::scene::Transfer;
+use envers::{Film, LoadOptions, Loaded, RenderOptions, Renderer};
 use std::path::{Path, PathBuf};
 
-use envers::LoadOptions;
-use envers::film::Film;
-use envers::scene::Transfer;
-use envers::write::{Settings, png_bytes};
-use envers::{RenderOptions, Renderer};
 use image::RgbImage;
 
 /// The size of the pictures in `docs/images/gallery/`.
@@ -48,7 +45,7 @@ fn picture(
     scene.film.max_depth = depth.unwrap_or(scene.film.max_depth);
     (
         Renderer::new(&scene).options(options.clone()).render().expect(name).film,
-        Settings::of(&scene.film),
+        Settings::from_film(&scene.film),
     )
 }
 
@@ -77,7 +74,8 @@ fn the_page_shows_every_scene_with_its_file_picture_and_command() {
 #[test]
 #[cfg(feature = "embree")]
 fn both_backends_make_the_same_radiance_in_certified_at_depth_16() {
-    use envers::intersect::{Backend, Precision};
+    use envers::Backend;
+    use envers::Precision;
     for name in scenes() {
         let [embree, rust] = [Backend::Embree, Backend::Rust].map(|backend| {
             let options = RenderOptions {

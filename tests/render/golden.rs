@@ -7,10 +7,8 @@
 
 use std::path::{Path, PathBuf};
 
-use envers::LoadOptions;
-use envers::intersect::Backend;
-use envers::write::{Settings, png_bytes};
-use envers::{RenderOptions, Renderer};
+use envers::internals::{Settings, png_bytes};
+use envers::{Backend, LoadOptions, RenderOptions, Renderer};
 use image::{Rgb, RgbImage};
 
 /// The most that a channel may differ, of 255.
@@ -29,7 +27,7 @@ fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) ->
     let options = RenderOptions { backend, ..RenderOptions::default() };
     let film =
         Renderer::new(&scene).options(options.clone()).render().expect("the scene renders").film;
-    let settings = Settings::of(&scene.film);
+    let settings = Settings::from_film(&scene.film);
     RgbImage::from_raw(width, height, png_bytes(&film, &settings)).expect("ok: three bytes a pixel")
 }
 

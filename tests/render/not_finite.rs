@@ -1,12 +1,10 @@
 //! Radiance that is not finite: each cause is counted, and none of it reaches a picture.
 
-use envers::integrator::NotFinite;
-use envers::intersect::Backend;
-use envers::scene::{
-    Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Projection, Scene,
-    Shadow, Sphere,
+use envers::internals::NotFinite;
+use envers::{
+    Backend, Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Projection,
+    RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
-use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A wall at z = 0 in one pixel, seen from z = 5.

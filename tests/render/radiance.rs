@@ -1,11 +1,11 @@
 //! Radiance that can be worked out by hand.
 
-use envers::integrator::Counts;
-use envers::scene::{
-    Camera, Checker, Falloff, Filter, Instance, Light, LightKind, Material, MaterialId, Mesh,
-    Plane, Projection, Scene, Shadow, Sphere,
+use envers::internals::Counts;
+use envers::scene::Filter;
+use envers::{
+    Camera, Checker, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Plane,
+    Projection, RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
-use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 /// A scene that is seen along −z from `z = 5` through one pixel, straight ahead.
@@ -48,7 +48,7 @@ fn radiance(scene: &Scene) -> [f32; 3] {
 }
 
 fn rendered(scene: &Scene) -> ([f32; 3], Counts) {
-    use envers::intersect::Backend;
+    use envers::Backend;
     let with = |backend| {
         let options = RenderOptions { backend, threads: 1, ..RenderOptions::default() };
         let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
@@ -154,11 +154,13 @@ fn background_is_seen_where_nothing_stands() {
 
 #[test]
 fn texture_and_vertex_colours_multiply_the_diffuse_colour() {
-    use envers::scene::{Image, Texture, Transfer};
+    use envers::Image;
+    use envers::Texture;
+    use envers::scene::Transfer;
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).colors = vec![[0.5; 3]; 4];
-    let image = Image::bytes("", [1, 1], vec![[51; 4]]);
+    let image = Image::from_bytes("", [1, 1], vec![[51; 4]]);
     let texture = Texture { transfer: Transfer::None, ..Texture::new(image.into()) };
     let texture = scene.add_texture(texture);
     std::sync::Arc::make_mut(&mut scene.meshes[0]).uvs = vec![[0.0; 2]; 4];
@@ -179,7 +181,9 @@ fn checker_stands_in_place_of_the_diffuse_colour() {
 
 #[test]
 fn a_picture_on_a_wall_has_its_upper_left_corner_at_the_planes_point() {
-    use envers::scene::{Image, Texture, Transfer};
+    use envers::Image;
+    use envers::Texture;
+    use envers::scene::Transfer;
     // The eye looks at (0, 0), 3 units right of the point and 3 below it, on a picture of 8 units
     // and 4 by 4 texels: in the middle of its second column and second row.
     let mut scene = scene(matt(1.0));
@@ -187,7 +191,7 @@ fn a_picture_on_a_wall_has_its_upper_left_corner_at_the_planes_point() {
     plane.texture_size = 8.0;
     scene.planes.push(plane);
     let texels = (0..16).map(|i| [i * 16; 4]).collect();
-    let image = Image::bytes("", [4, 4], texels);
+    let image = Image::from_bytes("", [4, 4], texels);
     let texture = scene.add_texture(Texture {
         transfer: Transfer::None,
         filter: Filter::Nearest,

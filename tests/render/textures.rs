@@ -1,14 +1,12 @@
 //! Textures on surfaces: normals, occlusion, alpha, and pictures seen from afar. The
 //! radiances are worked out by hand, and every backend must give them.
 
-use envers::geometry::{Geometry, Hit, Ray};
-use envers::intersect::{Backend, BruteForce, Bvh, Coherence, Intersector, Precision};
-use envers::scene::{
-    AlphaMode, Camera, Channel, Coverage, Filter, Image, Instance, Light, LightKind, Material,
-    MaterialId, Mesh, NormalMap, OcclusionMap, Plane, Projection, Scene, Shadow, Sphere, Texture,
-    TextureId, Transfer,
+use envers::scene::{Channel, Coverage, Filter, NormalMap, OcclusionMap, Transfer};
+use envers::{
+    AlphaMode, Backend, BruteForce, Bvh, Camera, Coherence, Geometry, Hit, Image, Instance,
+    Intersector, Light, LightKind, Material, MaterialId, Mesh, Plane, Precision, Projection, Ray,
+    RenderOptions, Renderer, Scene, Shadow, Sphere, Texture, TextureId,
 };
-use envers::{RenderOptions, Renderer};
 use envers_testing::Random;
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -30,7 +28,7 @@ fn dot(scene: &mut Scene, texel: [u8; 4]) -> TextureId {
 }
 
 fn picture(scene: &mut Scene, size: [u32; 2], texels: Vec<[u8; 4]>) -> TextureId {
-    let image = Image::bytes("", size, texels);
+    let image = Image::from_bytes("", size, texels);
     scene.add_texture(Texture {
         transfer: Transfer::None,
         filter: Filter::Nearest,
@@ -263,7 +261,7 @@ fn intersectors(scene: &Scene) -> Vec<(String, Box<dyn Intersector + '_>)> {
         all.push((format!("bvh {name}"), Box::new(Bvh::build(scene, precision))));
         #[cfg(feature = "embree")]
         {
-            use envers::intersect::Embree;
+            use envers::Embree;
             let packets = Embree::build(scene, precision, 1).unwrap();
             let single = Embree::build_single(scene, precision, 1).unwrap();
             all.push((format!("embree {name}"), Box::new(packets)));
@@ -346,7 +344,7 @@ fn ground(mipmap: bool, spp: u32) -> Vec<Vec3> {
     let texel = |i: usize| {
         if (i / 8 + i / 512).is_multiple_of(2) { [230, 200, 160, 255] } else { [30, 40, 60, 255] }
     };
-    let image = Image::bytes("", [64, 64], (0..64 * 64).map(texel).collect());
+    let image = Image::from_bytes("", [64, 64], (0..64 * 64).map(texel).collect());
     let texture = scene.add_texture(Texture { mipmap, ..Texture::new(image.into()) });
     let material =
         Material { diffuse: Vec3::ONE, diffuse_map: Some(texture), ..Material::default() };

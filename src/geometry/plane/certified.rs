@@ -1,18 +1,26 @@
-//! Ray and infinite plane, proven: the answer of exact arithmetic.
+//! The intersection of a ray with an infinite plane as exact arithmetic finds it.
+//!
+//! ```
+//! use envers::geometry::plane::certified::crossing;
+//! use glam::DVec3;
+//!
+//! let t = |tmax| crossing(DVec3::ZERO, DVec3::Y, DVec3::Y, -DVec3::Y, tmax);
+//! assert_eq!((t(1.0), t(1f64.next_up())), (None, Some(1.0)));
+//! ```
 
 use std::cmp::Ordering::Equal;
 
 use glam::DVec3;
 use num_bigint::BigInt;
 
-use crate::geometry::double_double::{DoubleDouble, OMEGA, difference, dot, in_range};
-use crate::geometry::integer::{self, Rounded, Scale, minus, sign};
+use crate::geometry::double_double::{self, DoubleDouble, OMEGA, difference, in_range};
+use crate::geometry::integer::{Rounded, Scale, dot, minus, sign};
 
-/// Where the ray meets the plane with 0 < t < `tmax`, exactly, correctly rounded.
+/// The t at which the ray crosses the plane, with 0 < t < `tmax`; correctly rounded.
 ///
-/// The numbers given are taken as they stand and the comparisons are those of the exact t; what
-/// is returned is the nearest f64 (ties to even), but neither 0 nor infinite. A ray within the
-/// plane or parallel to it does not meet it, nor does one that is not finite.
+/// The arguments count as exact numbers, and the comparisons are those of the exact t; the result
+/// is the f64 nearest to it (ties to even), but neither 0 nor infinite. A ray within the plane or
+/// parallel to it misses, and so does one that is not finite.
 pub fn crossing(
     point: DVec3,
     normal: DVec3,
@@ -20,42 +28,45 @@ pub fn crossing(
     direction: DVec3,
     tmax: f64,
 ) -> Option<f64> {
-    let (t, certain) = round(point, normal, origin, direction);
+    let (t, is_certain) = round(point, normal, origin, direction);
     // Where the rounded t is tmax itself, the exact one may lie on either side.
-    if certain && t != tmax {
+    if is_certain && t != tmax {
         return (t > 0.0 && t < tmax).then_some(t);
     }
-    exactly(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
+    exact_crossing(point, normal, origin, direction).filter(|t| t.is_below(tmax)).map(|t| t.nearest)
 }
 
-/// The t of [`crossing`], whatever its sign, by double-double numbers, and whether it is certain.
+/// The t of [`crossing`], of either sign, in double-double numbers, and whether it is certain.
 #[inline(always)]
 pub fn round(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> (f64, bool) {
     // Each operation has the relative error ω, so that a sum of three products of components of
     // at most α and β is off by 3ωαβ in its terms and 5ωαβ in its sums: 8ωαβ, doubled here.
-    let between = difference(point, origin);
-    let [x, y, z] = between.map(|x| x.hi.abs());
-    let size = x.max(y).max(z);
-    let (height, way) = (normal.abs().max_element(), direction.abs().max_element());
+    let to_point = difference(point, origin);
+    let [x, y, z] = to_point.map(|x| x.hi.abs());
+    // α for the vector to the plane's point, and β for the normal and the direction.
+    let (distance, normal_size) = (x.max(y).max(z), normal.abs().max_element());
+    let direction_size = direction.abs().max_element();
     let n = normal.to_array();
     let d = direction.to_array().map(|hi| DoubleDouble { hi, lo: 0.0 });
-    let (divisor, bound) = (dot(d, n), 16.0 * OMEGA * height);
-    let (t, error) = dot(between, n).quotient(bound * size, divisor, bound * way);
-    let certain = (2.0 * bound * way <= divisor.hi.abs())
+    let (divisor, bound) = (double_double::dot(d, n), 16.0 * OMEGA * normal_size);
+    let divisor_error = bound * direction_size;
+    let (t, error) =
+        double_double::dot(to_point, n).quotient(bound * distance, divisor, divisor_error);
+    let is_certain = (2.0 * bound * direction_size <= divisor.hi.abs())
         & t.rounds_to_hi(error)
-        & in_range(size)
-        & in_range(height)
-        & in_range(way);
-    (t.hi, certain)
+        & in_range(distance)
+        & in_range(normal_size)
+        & in_range(direction_size);
+    (t.hi, is_certain)
 }
 
-/// Whether f64 alone is sure that [`crossing`] finds nothing at or before `limit`, a distance that
+/// True if f64 arithmetic proves that [`crossing`] finds nothing at or before `limit`, a distance that
 /// was itself rounded.
 ///
-/// A difference, three products and two sums of them: each operation rounds by half an ε of at
-/// most 3 N (P + O) in the height and 3 N D in the way, with N, P, O and D the largest components
-/// of the normal, the point, the origin and the direction. Six operations give 9 ε; 16 ε is
-/// allowed, and as many of the least normal numbers for what underflows.
+/// The quotient's two dot products take a difference, three products and two sums. Each operation
+/// rounds by half an ε of at most 3 N (P + O) in the numerator and 3 N D in the denominator, with N,
+/// P, O and D the largest components of the normal, the point, the origin and the direction. Six
+/// operations give 9 ε; 16 ε is allowed, and as many of the least normal numbers for what underflows.
 #[inline(always)]
 pub fn certainly_misses(
     point: DVec3,
@@ -65,31 +76,35 @@ pub fn certainly_misses(
     limit: f64,
 ) -> bool {
     let largest = |v: DVec3| v.abs().max_element();
-    let (height, way) = (normal.dot(point - origin), normal.dot(direction));
+    let (numerator, denominator) = (normal.dot(point - origin), normal.dot(direction));
     let error = |size: f64| 16.0 * f64::EPSILON * largest(normal) * size + 16.0 * f64::MIN_POSITIVE;
-    let (above, along) = (error(largest(point) + largest(origin)), error(largest(direction)));
-    // What is not a number compares as false, and is left to `crossing`.
-    let behind = (height * way < 0.0) & (height.abs() > above) & (way.abs() > along);
+    let numerator_error = error(largest(point) + largest(origin));
+    let denominator_error = error(largest(direction));
+    // A NaN compares as false, and is left to `crossing`.
+    let behind = (numerator * denominator < 0.0)
+        & (numerator.abs() > numerator_error)
+        & (denominator.abs() > denominator_error);
     let slack = 1.0 + 8.0 * f64::EPSILON;
-    let beyond = height.abs() - above > limit * (way.abs() + along) * slack;
+    let beyond =
+        numerator.abs() - numerator_error > limit * (denominator.abs() + denominator_error) * slack;
     behind | beyond
 }
 
-/// The same in integers, however far.
+/// The crossing at any t > 0 in integer arithmetic.
 #[cold]
-fn exactly(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
+fn exact_crossing(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<Rounded> {
     if ![point, normal, origin, direction].into_iter().all(DVec3::is_finite) {
         return None;
     }
-    let place = Scale::of(point.to_array().into_iter().chain(origin.to_array()));
-    let (way, up) = (Scale::of(direction.to_array()), Scale::of(normal.to_array()));
-    let n = up.vector::<BigInt>(normal);
-    let numerator = integer::dot(&n, &minus(&place.vector(point), &place.vector(origin)));
-    let divisor = integer::dot(&n, &way.vector(direction));
+    let positions = Scale::common(point.to_array().into_iter().chain(origin.to_array()));
+    let directions = Scale::common(direction.to_array());
+    let n = Scale::common(normal.to_array()).vector::<BigInt>(normal);
+    let to_point = minus(&positions.vector(point), &positions.vector(origin));
+    let (numerator, divisor) = (dot(&n, &to_point), dot(&n, &directions.vector(direction)));
     if sign(&numerator) == Equal || sign(&numerator) != sign(&divisor) {
         return None;
     }
-    let exponent = i64::from(place.exponent) - i64::from(way.exponent);
+    let exponent = i64::from(positions.exponent) - i64::from(directions.exponent);
     Some(Rounded::quotient(&numerator, &divisor, exponent))
 }
 
@@ -102,7 +117,7 @@ mod tests {
     use super::*;
     use crate::geometry::dyadic::{self, Dyadic, vector, zip};
 
-    /// By bisection of the exact quotient.
+    /// The crossing by bisection of the exact quotient.
     fn reference(
         point: DVec3,
         normal: DVec3,

@@ -1,19 +1,28 @@
-//! Ray and infinite plane.
+//! The intersection of a ray with an infinite plane.
+//!
+//! ```
+//! use envers::geometry::plane;
+//! use glam::DVec3;
+//!
+//! // From 3 above the ground straight down, at 2 units of length per unit of t.
+//! let t = plane::intersect(DVec3::ZERO, DVec3::Y, DVec3::Y * 3.0, -DVec3::Y * 2.0);
+//! assert_eq!(t, Some(1.5));
+//! ```
 
 pub mod certified;
 
 use glam::DVec3;
 
-/// Where the line `origin + t·direction` meets the plane through `point` with normal `normal`
-/// (of any length), or `None` when it is parallel to it.
+/// The t at which the line `origin + t·direction` crosses the plane through `point` with normal
+/// `normal` (of any length); `None` for a line parallel to the plane or within it.
 ///
-/// `t` may have either sign; a line within the plane does not meet it.
+/// `t` may have either sign.
 #[inline]
 pub fn intersect(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> Option<f64> {
     Some(quotient(point, normal, origin, direction)).filter(|t| t.is_finite())
 }
 
-/// As [`intersect`], but infinite or not a number where the ray is parallel to the plane.
+/// The t of [`intersect`], but infinite or NaN for a line that is parallel to the plane.
 #[inline(always)]
 pub fn quotient(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
     normal.dot(point - origin) / normal.dot(direction)

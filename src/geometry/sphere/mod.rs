@@ -1,10 +1,20 @@
-//! Ray and sphere.
+//! The intersection of a ray with a sphere.
 //!
 //! The tutorial's discriminant b² − 4ac loses its digits when the sphere is small and far: c has
 //! been rounded to the size of the distance squared before the difference is formed. This is the
 //! formulation of Haines, Günther and Akenine-Möller, *Precision Improvements for Ray/Sphere
 //! Intersection* (Ray Tracing Gems, ch. 7): the discriminant is r² minus the squared distance of
 //! the centre from the line, and the root that would cancel comes from the other one's quotient.
+//!
+//! ```
+//! use envers::geometry::sphere::{first_root, inverse_length_squared, roots};
+//! use glam::DVec3;
+//!
+//! let (origin, direction) = (DVec3::Z * 5.0, -DVec3::Z);
+//! let both = roots(DVec3::ZERO, 1.0, origin, direction, inverse_length_squared(direction));
+//! assert_eq!(both, Some((4.0, 6.0)));
+//! assert_eq!(first_root(both.unwrap(), f64::INFINITY, false), Some(4.0));
+//! ```
 
 pub mod certified;
 
@@ -13,7 +23,7 @@ use glam::DVec3;
 /// The two distances, lesser first, at which a line crosses a sphere.
 ///
 /// The line is `origin + t·direction` and `inverse_length_squared` is that of its direction, by
-/// [`inverse_length_squared`]. `None` when the line passes the sphere; a tangent has two equal
+/// [`inverse_length_squared`]. `None` when the line misses the sphere; a tangent has two equal
 /// roots. Either root may be negative (behind the origin).
 #[inline(always)]
 pub fn roots(
@@ -27,34 +37,36 @@ pub fn roots(
     line.crosses().then(|| line.roots())
 }
 
-/// 1 / |direction|², which [`Quadratic`] and its certified counterpart want, computed once per ray.
+/// The reciprocal 1 / |direction|², an argument of [`Quadratic`] and of its certified counterpart,
+/// computed once per ray.
 ///
-/// NaN where |direction|² is beyond f64, since 0 would be the direction's loss: nothing is certain
-/// of such a ray, and the plain formulas say that it misses.
+/// NaN where |direction|² is beyond f64, since 0 would lose the direction: then nothing about the ray
+/// is certain, and the plain formulas report a miss.
 #[inline(always)]
 pub fn inverse_length_squared(direction: DVec3) -> f64 {
     let square = direction.length_squared();
     if square < f64::INFINITY { 1.0 / square } else { f64::NAN }
 }
 
-/// A line beside a sphere: what decides whether they meet, before any square root.
+/// The quadratic equation of a line and a sphere, without its roots.
 ///
-/// Split from [`Quadratic::roots`] so that a packet can stop early when no ray of it meets the sphere.
+/// [`Quadratic::crosses`] needs no square root, so that a packet can stop early when no ray of it
+/// crosses the sphere.
 #[derive(Clone, Copy)]
 pub struct Quadratic {
-    /// −f·d, with f from the centre to the origin.
+    /// Half the negative linear coefficient: −f·d, with f from the centre to the origin.
     half_b: f64,
-    /// |f|² − r².
+    /// The constant coefficient, |f|² − r².
     c: f64,
-    /// 1 / |d|².
+    /// The reciprocal of the leading coefficient, 1 / |d|².
     inverse_a: f64,
-    /// (r² − distance of the centre from the line squared) / |d|²: a quarter of the tutorial's Δ
-    /// divided by a².
+    /// The discriminant (r² − squared distance of the centre from the line) / |d|²: a quarter of the
+    /// tutorial's Δ divided by a².
     discriminant: f64,
 }
 
 impl Quadratic {
-    /// Sets the line beside the sphere; see [`roots`] for the arguments.
+    /// Builds the equation; see [`roots`] for the arguments.
     #[inline(always)]
     pub fn new(
         center: DVec3,
@@ -75,13 +87,14 @@ impl Quadratic {
         }
     }
 
-    /// Whether the line meets the sphere; touching it counts.
+    /// True if the line crosses or touches the sphere.
     #[inline(always)]
     pub fn crosses(&self) -> bool {
         self.discriminant >= 0.0
     }
 
-    /// |f|² − r², with f from the centre to the origin: above 0 outside, below 0 inside.
+    /// The power of the origin with respect to the sphere, |f|² − r² with f from the centre to the
+    /// origin: above 0 outside, below 0 inside.
     #[inline(always)]
     pub fn power(&self) -> f64 {
         self.c
@@ -102,9 +115,8 @@ impl Quadratic {
 
 /// The first root with 0 < t < `tmax`, if there is one.
 ///
-/// `leaving_inward` says that the origin stands on this sphere and the ray goes into it: then the
-/// root at the origin, which rounding puts on either side of 0, is left out and only the far one
-/// counts.
+/// With `leaving_inward` the origin is on this sphere and the ray goes into it: then the root at the
+/// origin, which rounding puts on either side of 0, is left out, and only the far one counts.
 #[inline(always)]
 pub fn first_root(roots: (f64, f64), tmax: f64, leaving_inward: bool) -> Option<f64> {
     let (near, far) = roots;

@@ -1,4 +1,4 @@
-//! Ray and triangle.
+//! The intersection of a ray with a triangle.
 //!
 //! The edge functions are the scalar triple products of Plücker's test, taken from vertices
 //! relative to the ray's origin: the sign of d·(p × q) says on which side of the edge pq the ray
@@ -6,42 +6,57 @@
 //! floats commutes and a difference changes its sign exactly), so that away from exact zeros no
 //! ray slips between them. Compare Woop, Benthin and Wald, *Watertight Ray/Triangle Intersection*
 //! (JCGT 2013).
+//!
+//! ```
+//! use envers::geometry::triangle;
+//! use glam::DVec3;
+//!
+//! let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+//! let hit = triangle::intersect(corners, DVec3::new(0.25, 0.5, 3.0), -DVec3::Z).unwrap();
+//! assert_eq!((hit.t, hit.u, hit.v), (3.0, 0.25, 0.5));
+//! ```
 
 pub mod certified;
 
 use glam::DVec3;
 
-/// Where a line crosses a triangle: `t` in units of the direction, `u` and `v` the weights of the
-/// second and third vertex.
+/// The crossing of a line and a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
-    /// Distance in units of |direction|, of either sign.
+    /// The distance in units of |direction|, of either sign.
     pub t: f64,
-    /// Weight of the second vertex.
+    /// The barycentric weight of the second vertex.
     pub u: f64,
-    /// Weight of the third vertex.
+    /// The barycentric weight of the third vertex.
     pub v: f64,
 }
 
 /// The edge functions of a line and a triangle, and the distance to its plane.
 #[derive(Clone, Copy, Debug)]
-pub struct Edges {
-    /// Opposite the first, second and third vertex; all of one sign (or 0) when the line crosses.
-    pub functions: [f64; 3],
-    /// Distance to the plane in units of |direction|; not finite when the line runs along it.
+pub struct EdgeFunctions {
+    /// The functions of the edges opposite the first, second and third vertex; all of one sign (or 0)
+    /// when the line crosses.
+    pub values: [f64; 3],
+    /// The distance to the plane in units of |direction|; not finite when the line runs along it.
     pub t: f64,
-    /// Whether `t` may have lost more than half of its digits, because the triangle is so thin and
-    /// the line so flat above it: then [`certified::round`] knows better.
-    pub flat: bool,
+    /// True if `t` may have lost more than half of its digits, because the triangle is thin and the
+    /// line nearly parallel to it: then [`certified::round`] gives a better one.
+    pub is_flat: bool,
 }
 
-/// The square of the share of |b − a||c − a||d| below which their determinant makes a triangle
+/// The square of the share of |b − a||c − a||d| below which the determinant of the three counts as
 /// flat. The normal is off by a few 2⁻⁵³ of the first two; divided by 2⁻²⁰, that is 1e-10 of the
 /// size of the triangle, and of t if the triangle is not nearer than it is large.
 const FLAT_SQUARED: f64 = 1.0 / (1u64 << 40) as f64;
 
-impl Edges {
-    /// Sets the line `origin + t·direction` beside the triangle.
+/// The edge functions d·(p × q) of a triangle whose vertices are relative to the line's origin.
+#[inline(always)]
+fn edge_functions([a, b, c]: [DVec3; 3], direction: DVec3) -> [f64; 3] {
+    [direction.dot(b.cross(c)), direction.dot(c.cross(a)), direction.dot(a.cross(b))]
+}
+
+impl EdgeFunctions {
+    /// Evaluates the edge functions for the line `origin + t·direction`.
     #[inline(always)]
     pub fn new(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Self {
         let (a, b, c) = (triangle[0] - origin, triangle[1] - origin, triangle[2] - origin);
@@ -50,28 +65,24 @@ impl Edges {
         let toward = normal.dot(direction);
         let sides = first.length_squared() * second.length_squared() * direction.length_squared();
         Self {
-            functions: [
-                direction.dot(b.cross(c)),
-                direction.dot(c.cross(a)),
-                direction.dot(a.cross(b)),
-            ],
+            values: edge_functions([a, b, c], direction),
             t: normal.dot(a) / toward,
-            flat: toward * toward <= FLAT_SQUARED * sides,
+            is_flat: toward * toward <= FLAT_SQUARED * sides,
         }
     }
 
-    /// Whether the line passes within the triangle; an edge or a vertex counts.
+    /// True if the line crosses the triangle; an edge or a vertex counts.
     #[inline(always)]
     pub fn crosses(&self) -> bool {
-        let [a, b, c] = self.functions;
+        let [a, b, c] = self.values;
         let inside = (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
         inside && a + b + c != 0.0 && self.t.is_finite()
     }
 
-    /// The weights of the second and third vertex, clamped to the triangle.
+    /// The barycentric weights of the second and third vertex, clamped to the triangle.
     #[inline(always)]
     pub fn weights(&self) -> (f64, f64) {
-        let [a, b, c] = self.functions;
+        let [a, b, c] = self.values;
         let inverse = 1.0 / (a + b + c);
         let w = [a, b, c].map(|f| (f * inverse).max(0.0));
         let inverse = 1.0 / (w[0] + w[1] + w[2]);
@@ -79,32 +90,29 @@ impl Edges {
     }
 }
 
-/// Where the line `origin + t·direction` crosses the triangle, if it does, at any `t`.
+/// The crossing of the line `origin + t·direction` and the triangle, if there is one, at any `t`.
 ///
-/// A line in the triangle's own plane does not cross it, nor is a degenerate triangle crossed.
+/// A line in the triangle's own plane misses it, and so does any line a degenerate triangle.
 #[inline(always)]
 pub fn intersect(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Option<TriangleHit> {
-    let edges = Edges::new(triangle, origin, direction);
+    let edges = EdgeFunctions::new(triangle, origin, direction);
     if !edges.crosses() {
         return None;
     }
     let (u, v) = edges.weights();
-    let t = match edges.flat {
-        true => certified::round(triangle, origin, direction).t,
-        false => edges.t,
-    };
+    let t = if edges.is_flat { certified::round(triangle, origin, direction).t } else { edges.t };
     Some(TriangleHit { t, u, v })
 }
 
-/// The point with weights `u` and `v`.
+/// The point of a triangle with barycentric weights `u` and `v`.
 #[inline]
 pub fn point(triangle: [DVec3; 3], u: f64, v: f64) -> DVec3 {
     let [a, b, c] = triangle;
     a + (b - a) * u + (c - a) * v
 }
 
-/// The normal of the plane through the vertices, by the right-hand rule; its length is twice the
-/// area, 0 for a degenerate triangle.
+/// The normal of a triangle by the right-hand rule; its length is twice the area, 0 for a degenerate
+/// triangle.
 #[inline]
 pub fn area_normal(triangle: [DVec3; 3]) -> DVec3 {
     let [a, b, c] = triangle;

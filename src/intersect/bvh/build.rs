@@ -1,8 +1,8 @@
-//! Building a tree by the surface-area heuristic, in bins.
+//! The construction of a tree by the surface-area heuristic, in bins.
 //!
 //! Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007): the centres are
 //! sorted into bins along the widest axis, and the split between two bins that costs least is
-//! taken. Large halves are built in parallel; the tree is the same whoever builds it.
+//! taken. Large halves are built in parallel; the tree is the same on any number of threads.
 
 use glam::DVec3;
 
@@ -10,13 +10,14 @@ use crate::geometry::Bounds;
 use crate::intersect::bvh::tree::{MAX_DEPTH, Node, Tree};
 
 const BINS: usize = 16;
-/// The largest leaf that is not split when splitting costs more.
+/// The size of the largest leaf that is not split when splitting costs more.
 const MAX_LEAF: usize = 8;
-/// Below this many items a subtree is built by one thread.
+/// The number of items up to which a subtree is built by one thread.
 const SERIAL: usize = 4096;
-/// What visiting a node costs, in units of testing an item.
-const VISIT: f64 = 1.0;
+/// The cost of visiting a node, in units of testing an item.
+const VISIT_COST: f64 = 1.0;
 
+/// A box to be sorted into the tree.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: Bounds,
@@ -32,14 +33,15 @@ pub fn build(boxes: &[Bounds]) -> Tree {
         .collect();
     let mut nodes = Vec::new();
     if !items.is_empty() {
-        nodes = subtree(&mut items, 0, 0);
+        nodes = build_subtree(&mut items, 0, 0);
     }
     Tree { nodes, items: items.iter().map(|i| i.index).collect() }
 }
 
-/// The nodes over `items`, which stand at `first` in the whole list; children's indices are
+/// Builds the nodes over `items`, which begin at `first` in the whole list; the indices of children are
 /// relative to the first node that is returned.
-fn subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
+fn build_subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
+    // Make a leaf of a single item, or where splitting costs more.
     let bounds = items.iter().fold(Bounds::EMPTY, |b, i| b.union(i.bounds));
     let leaf = || vec![Node { bounds, start: first, count: items.len() as u32 }];
     if items.len() == 1 {
@@ -48,19 +50,21 @@ fn subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
     let middle = match best_split(items, &bounds) {
         Split::Leaf => return leaf(),
         // Deeper down nodes are split in the middle, which halves at most 2³² items 32 times.
-        Split::At { axis, bin, of } if depth < MAX_DEPTH / 2 => {
-            let middle = partition(items, |i| of.bin(i.center[axis]) < bin);
-            if middle == 0 || middle == items.len() { halve(items) } else { middle }
+        Split::At { axis, bin, bins } if depth < MAX_DEPTH / 2 => {
+            let middle = partition(items, |i| bins.index(i.center[axis]) < bin);
+            if middle == 0 || middle == items.len() { split_at_median(items) } else { middle }
         }
-        _ => halve(items),
+        _ => split_at_median(items),
     };
+    // Build both halves.
     let large = items.len() > SERIAL;
     let (low, high) = items.split_at_mut(middle);
     let after = first + middle as u32;
-    let left = |low: &mut [Item]| subtree(low, first, depth + 1);
-    let right = |high: &mut [Item]| subtree(high, after, depth + 1);
+    let left = |low: &mut [Item]| build_subtree(low, first, depth + 1);
+    let right = |high: &mut [Item]| build_subtree(high, after, depth + 1);
     let (left, right) =
         if large { rayon::join(|| left(low), || right(high)) } else { (left(low), right(high)) };
+    // Join them behind their parent.
     let mut nodes = Vec::with_capacity(1 + left.len() + right.len());
     let second = 1 + left.len() as u32;
     nodes.push(Node { bounds, start: second, count: 0 });
@@ -75,10 +79,11 @@ fn subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
     nodes
 }
 
+/// A way to split the items of a node.
 enum Split {
     Leaf,
     Middle,
-    At { axis: usize, bin: usize, of: Bins },
+    At { axis: usize, bin: usize, bins: Bins },
 }
 
 /// Equal bins between two coordinates.
@@ -89,49 +94,54 @@ struct Bins {
 }
 
 impl Bins {
-    fn bin(&self, x: f64) -> usize {
+    /// The bin of a coordinate.
+    fn index(&self, x: f64) -> usize {
         (((x - self.lower) * self.scale) as usize).min(BINS - 1)
     }
 }
 
+/// Finds the split that costs least.
 fn best_split(items: &[Item], bounds: &Bounds) -> Split {
-    let centers = Bounds::of(items.iter().map(|i| i.center));
+    let centers = Bounds::from_points(items.iter().map(|i| i.center));
     let size = centers.size();
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-    let of = Bins { lower: centers.lower[axis], scale: BINS as f64 / size[axis] };
+    let bins = Bins { lower: centers.lower[axis], scale: BINS as f64 / size[axis] };
     // All centres in one point, or too close for the reciprocal: no bins to tell them apart.
-    if !of.scale.is_finite() {
+    if !bins.scale.is_finite() {
         return if items.len() <= MAX_LEAF { Split::Leaf } else { Split::Middle };
     }
-    let mut bins = [(Bounds::EMPTY, 0usize); BINS];
+    // Sort the items into bins.
+    let mut filled = [(Bounds::EMPTY, 0usize); BINS];
     for item in items {
-        let (bounds, count) = &mut bins[of.bin(item.center[axis])];
+        let (bounds, count) = &mut filled[bins.index(item.center[axis])];
         *bounds = bounds.union(item.bounds);
         *count += 1;
     }
+    // Sum up from the right, then from the left, and compare the costs of all splits.
     let mut right = [(0.0, 0usize); BINS];
     let mut sum = (Bounds::EMPTY, 0);
     for i in (1..BINS).rev() {
-        sum = (sum.0.union(bins[i].0), sum.1 + bins[i].1);
+        sum = (sum.0.union(filled[i].0), sum.1 + filled[i].1);
         right[i] = (sum.0.half_area(), sum.1);
     }
     let mut best = (f64::INFINITY, 0);
     let mut sum = (Bounds::EMPTY, 0);
     for i in 1..BINS {
-        sum = (sum.0.union(bins[i - 1].0), sum.1 + bins[i - 1].1);
+        sum = (sum.0.union(filled[i - 1].0), sum.1 + filled[i - 1].1);
         let cost = sum.0.half_area() * sum.1 as f64 + right[i].0 * right[i].1 as f64;
         if sum.1 > 0 && right[i].1 > 0 && cost < best.0 {
             best = (cost, i);
         }
     }
+    // Compare with the cost of a leaf.
     let area = bounds.half_area();
-    if items.len() <= MAX_LEAF && VISIT * area + best.0 >= items.len() as f64 * area {
+    if items.len() <= MAX_LEAF && VISIT_COST * area + best.0 >= items.len() as f64 * area {
         return Split::Leaf;
     }
-    if best.0.is_finite() { Split::At { axis, bin: best.1, of } } else { Split::Middle }
+    if best.0.is_finite() { Split::At { axis, bin: best.1, bins } } else { Split::Middle }
 }
 
-/// Puts the items for which `low` holds first; says how many there are.
+/// Moves the items for which `low` holds to the front, and returns their number.
 fn partition(items: &mut [Item], low: impl Fn(&Item) -> bool) -> usize {
     let mut middle = 0;
     for i in 0..items.len() {
@@ -143,9 +153,9 @@ fn partition(items: &mut [Item], low: impl Fn(&Item) -> bool) -> usize {
     middle
 }
 
-/// Splits at the median of the widest axis.
-fn halve(items: &mut [Item]) -> usize {
-    let size = Bounds::of(items.iter().map(|i| i.center)).size();
+/// Splits at the median of the widest axis, and returns the size of the lower half.
+fn split_at_median(items: &mut [Item]) -> usize {
+    let size = Bounds::from_points(items.iter().map(|i| i.center)).size();
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
@@ -171,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn every_item_stands_in_exactly_one_leaf() {
+    fn every_item_is_in_exactly_one_leaf() {
         let boxes: Vec<Bounds> = (0..5000)
             .map(|i| cube(DVec3::new((i % 17) as f64, (i % 29) as f64, (i % 31) as f64), 0.4))
             .collect();

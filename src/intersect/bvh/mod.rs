@@ -1,27 +1,29 @@
-//! The pure-Rust intersector: bounding-volume hierarchies in f64.
+//! The pure-Rust intersector: bounding volume hierarchies in f64.
 //!
-//! One tree over the spheres, one over the instances, and one for each mesh in its own space. A
+//! There is one tree over the spheres, one over the instances, and one for each mesh in object space. A
 //! triangle is tested in world space, by the same function as everywhere, so that the tree only
-//! decides which ones are tried.
+//! decides which ones are tested.
 
 mod build;
 mod tree;
 
+use std::convert::Infallible;
 use std::sync::Arc;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, RayBatch, sphere};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::blas_cache::{BlasCache, meshes_in_use};
 use crate::intersect::brute_force::is_extreme;
+use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
-use crate::intersect::object_space::ObjectSpace;
+use crate::intersect::object_space::{ObjectSpace, world_bounds};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::{BruteForce, Coherence, ExtraTests, Intersector, Precision};
-use crate::scene::{Instance, Mesh, Scene, Sphere};
+use crate::intersect::{BruteForce, Coherence, Intersector, Precision, trace_each};
+use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
-use tree::{Line, Tree};
+use tree::{TraversalRay, Tree};
 
 /// The pure-Rust intersector.
 pub struct Bvh<'s> {
@@ -31,36 +33,32 @@ pub struct Bvh<'s> {
     meshes: Vec<Arc<MeshTree>>,
 }
 
-/// Where the meshes stand.
+/// The tree over the instances of meshes.
 #[derive(Default)]
 struct Instances {
     tree: Tree,
-    /// For each instance, the way into its mesh's space.
-    entries: Vec<ObjectSpace>,
+    object_spaces: Vec<ObjectSpace>,
 }
 
-/// What frames share: the trees of the meshes, and those above them while nothing in these moves.
+/// The trees that frames share: those of the meshes, and those above them while nothing in these moves.
 #[derive(Default)]
 pub struct FrameCache {
     meshes: BlasCache<MeshTree>,
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
-    tops: u64,
+    /// The number of times that one of the trees above the meshes was built, or both.
+    tlas_count: u64,
 }
 
 impl FrameCache {
-    /// How many meshes were built.
-    pub fn built(&self) -> u64 {
-        self.meshes.built()
-    }
-
-    /// How often a tree above them was built, or both.
-    pub fn tops(&self) -> u64 {
-        self.tops
+    /// The numbers of meshes and of levels above them that were built.
+    pub fn stats(&self) -> BuildStats {
+        let meshes_built = self.meshes.built();
+        BuildStats { meshes_built, tlas_built: self.tlas_count, ..BuildStats::default() }
     }
 }
 
-/// The tree over the triangles of a mesh, in its own space; empty for one that stands nowhere.
+/// The tree over the triangles of a mesh, in object space; empty for a mesh without instances.
 #[derive(Default)]
 pub struct MeshTree(Tree);
 
@@ -73,51 +71,51 @@ impl<'s> Bvh<'s> {
         Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
-    /// As [`Bvh::build`], with the trees that are there already from a frame before, and what moved
-    /// since, if all else is as it was.
-    pub(super) fn build_sharing(
+    /// Builds the trees of a frame, with those that the cache has from the frame before. Only `diff` moved
+    /// since; it is `None` where the scene is another one.
+    pub(super) fn build_frame(
         scene: &'s Scene,
         precision: Precision,
-        shared: &mut FrameCache,
-        moved: Option<&FrameDiff>,
+        cache: &mut FrameCache,
+        diff: Option<&FrameDiff>,
     ) -> Self {
         let primitives = Primitives { scene, precision };
-        let meshes = mesh_trees(scene, Some(&mut shared.meshes));
-        let (spheres_stay, instances_stay) =
-            moved.map_or((false, false), |m| (m.spheres.is_empty(), m.instances.is_empty()));
-        if !spheres_stay {
-            shared.spheres = sphere_tree(scene).into();
+        let meshes = mesh_trees(scene, Some(&mut cache.meshes));
+        let spheres_moved = diff.is_none_or(|diff| !diff.spheres.is_empty());
+        let instances_moved = diff.is_none_or(|diff| !diff.instances.is_empty());
+        if spheres_moved {
+            cache.spheres = sphere_tree(scene).into();
         }
-        if !instances_stay {
-            shared.instances = Instances::new(scene, &meshes).into();
+        if instances_moved {
+            cache.instances = Instances::new(scene, &meshes).into();
         }
-        shared.tops += u64::from(!(spheres_stay && instances_stay));
-        let (spheres, instances) = (shared.spheres.clone(), shared.instances.clone());
+        cache.tlas_count += u64::from(spheres_moved || instances_moved);
+        let (spheres, instances) = (cache.spheres.clone(), cache.instances.clone());
         Self { primitives, spheres, instances, meshes }
     }
 
-    /// Calls `visit` with the hits on finite primitives that may be nearer than the limit that it
-    /// keeps, until it returns true.
+    /// Calls `visit` with the hits on finite primitives that may be closer than the limit, which `visit`
+    /// may lower, until it returns true.
     fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
         if is_extreme(ray.origin, ray.direction) {
             let brute = BruteForce::new(self.primitives.scene, self.primitives.precision);
-            brute.all(ray).any(|hit| visit(hit, limit));
+            brute.all_hits(ray).any(|hit| visit(hit, limit));
             return;
         }
         let inverse = sphere::inverse_length_squared(ray.direction);
-        let line = Line::new(ray.origin, ray.direction, 0.0);
-        let done = self.spheres.walk(&line, limit, |index, limit| {
+        let world_ray = TraversalRay::new(ray.origin, ray.direction, 0.0);
+        let done = self.spheres.traverse(&world_ray, limit, |index, limit| {
             self.primitives.sphere(index, ray, inverse, *limit).is_some_and(|hit| visit(hit, limit))
         });
         if done {
             return;
         }
-        self.instances.tree.walk(&line, limit, |instance, limit| {
+        self.instances.tree.traverse(&world_ray, limit, |instance, limit| {
             let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
-            let entry = &self.instances.entries[instance as usize];
-            let (origin, direction) = entry.object_ray(ray.origin, ray.direction);
-            let local = Line::new(origin, direction, entry.error(ray.origin));
-            self.meshes[mesh as usize].0.walk(&local, limit, |triangle, limit| {
+            let space = &self.instances.object_spaces[instance as usize];
+            let (origin, direction) = space.object_ray(ray.origin, ray.direction);
+            let object_ray = TraversalRay::new(origin, direction, space.error(ray.origin));
+            self.meshes[mesh as usize].0.traverse(&object_ray, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
                 self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))
             })
@@ -125,24 +123,11 @@ impl<'s> Bvh<'s> {
     }
 }
 
-/// The trees of the meshes that stand anywhere.
-fn mesh_trees(scene: &Scene, mut kept: Option<&mut BlasCache<MeshTree>>) -> Vec<Arc<MeshTree>> {
-    let there = |index, mesh| kept.as_ref().and_then(|kept| kept.get(index, mesh));
-    let used = meshes_in_use(scene);
-    let meshes: Vec<Arc<MeshTree>> = (scene.meshes.par_iter().enumerate())
-        .map(|(i, mesh)| match used[i] {
-            true => there(i, mesh).unwrap_or_else(|| MeshTree::new(mesh).into()),
-            false => Arc::default(),
-        })
-        .collect();
-    if let Some(kept) = &mut kept {
-        for (i, (mesh, tree)) in scene.meshes.iter().zip(&meshes).enumerate() {
-            if used[i] {
-                kept.keep(i, mesh, tree);
-            }
-        }
-    }
-    meshes
+/// Builds the trees of the meshes that have instances.
+fn mesh_trees(scene: &Scene, cache: Option<&mut BlasCache<MeshTree>>) -> Vec<Arc<MeshTree>> {
+    let build = |i: usize| Ok::<_, Infallible>(MeshTree::new(&scene.meshes[i]));
+    let Ok(trees) = BlasCache::get_or_build(cache, scene, &meshes_in_use(scene), build);
+    trees.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 fn sphere_tree(scene: &Scene) -> Tree {
@@ -151,26 +136,20 @@ fn sphere_tree(scene: &Scene) -> Tree {
 
 impl Instances {
     fn new(scene: &Scene, meshes: &[Arc<MeshTree>]) -> Self {
-        let placed = |i: &Instance| {
-            let bounds = meshes[i.mesh.0 as usize].0.bounds().transformed(&i.transform);
-            // A baked vertex may round to just outside the transformed box.
-            bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
-        };
-        let placed: Vec<Bounds> = scene.instances.iter().map(placed).collect();
-        let entries =
-            scene.instances.iter().zip(&placed).map(|(i, b)| ObjectSpace::new(i, b)).collect();
-        Self { tree: build(&placed), entries }
+        let bounds: Vec<Bounds> = (scene.instances.iter())
+            .map(|i| world_bounds(i, &meshes[i.mesh.0 as usize].0.bounds()))
+            .collect();
+        let object_spaces =
+            scene.instances.iter().zip(&bounds).map(|(i, b)| ObjectSpace::new(i, b)).collect();
+        Self { tree: build(&bounds), object_spaces }
     }
 }
 
 impl MeshTree {
     fn new(mesh: &Mesh) -> Self {
-        let point = |i: u32| {
-            let [x, y, z] = mesh.positions[i as usize];
-            DVec3::new(f64::from(x), f64::from(y), f64::from(z))
-        };
+        let vertex = |i: u32| DVec3::from(mesh.positions[i as usize].map(f64::from));
         let bounds: Vec<Bounds> =
-            mesh.triangles.par_iter().map(|t| Bounds::of(t.map(point))).collect();
+            mesh.triangles.par_iter().map(|t| Bounds::from_points(t.map(vertex))).collect();
         Self(build(&bounds))
     }
 }
@@ -184,40 +163,30 @@ impl Intersector for Bvh<'_> {
         env!("CARGO_PKG_VERSION").to_owned()
     }
 
-    fn closest_extras(&self, _: &RayBatch) -> ExtraTests {
-        ExtraTests { planes: !self.primitives.scene.planes.is_empty(), filters: false }
-    }
-
-    fn occluded_extras(&self) -> ExtraTests {
-        ExtraTests { planes: !self.primitives.scene.planes.is_empty(), filters: false }
-    }
-
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
-        assert_eq!(rays.len(), hits.len(), "one hit for each ray");
-        for (ray, best) in rays.iter().zip(hits) {
-            *best = None;
-            let mut limit = ray.tmax;
+        trace_each(rays, hits, |ray| {
+            let (mut best, mut limit) = (None, ray.tmax);
             self.visit(ray, &mut limit, |hit, limit| {
-                Hit::keep_closest(best, hit);
+                Hit::keep_closest(&mut best, hit);
                 *limit = limit.min(hit.t);
                 false
             });
-            self.primitives.merge_planes(ray, best);
-        }
+            self.primitives.merge_planes(ray, &mut best);
+            best
+        });
     }
 
-    fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
-        assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
-        for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.primitives.planes_occlude(ray);
-            if !*blocked {
-                let mut limit = ray.tmax;
-                self.visit(ray, &mut limit, |hit, _| {
-                    *blocked = self.primitives.scene.blocks_light(hit.id);
-                    *blocked
+    fn occluded(&self, rays: &[Ray], _: Coherence, occluded: &mut [bool]) {
+        trace_each(rays, occluded, |ray| {
+            let mut occluded = self.primitives.planes_occlude(ray);
+            if !occluded {
+                self.visit(ray, &mut { ray.tmax }, |hit, _| {
+                    occluded = self.primitives.scene.blocks_light(hit.id);
+                    occluded
                 });
             }
-        }
+            occluded
+        });
     }
 }
 
@@ -235,7 +204,7 @@ mod tests {
     use crate::scene::MaterialId;
 
     #[test]
-    fn empty_scene_has_no_hits() {
+    fn an_empty_scene_has_no_hits() {
         let scene = Scene::default();
         let mut hits = [None];
         let ray = [Ray::new(DVec3::ZERO, DVec3::X)];

@@ -1,55 +1,55 @@
-//! A binary tree of boxes, and the walk of a line through it.
+//! A binary tree of boxes, and its traversal by a ray.
 
 use glam::DVec3;
 
 use crate::geometry::Bounds;
 
-/// No path from the root of a tree has more nodes than this.
+/// The greatest number of nodes on a path from the root of a tree.
 pub const MAX_DEPTH: usize = 96;
 
 /// A binary tree of boxes over numbered items, stored depth first.
 #[derive(Default)]
 pub struct Tree {
     pub(super) nodes: Vec<Node>,
-    /// The items, those of a leaf side by side.
+    /// The items, with those of a leaf in a row.
     pub(super) items: Vec<u32>,
 }
 
-/// A box, and what is in it.
+/// A box, and the items or nodes in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     pub(super) bounds: Bounds,
-    /// A leaf's first item; an inner node's second child (the first one follows the node).
+    /// The first item of a leaf, or the second child of an inner node (the first one follows the node).
     pub(super) start: u32,
-    /// How many items a leaf holds; 0 for an inner node.
+    /// The number of items in a leaf; 0 for an inner node.
     pub(super) count: u32,
 }
 
 /// The error of the slab test, relative to the coordinates, with room to spare.
 const SLAB: f64 = 64.0 * f64::EPSILON;
 
-/// A line as the walk needs it: with reciprocals, and a margin for what was rounded.
-pub struct Line {
+/// A ray as the traversal needs it: with reciprocals, and a margin for what was rounded.
+pub struct TraversalRay {
     inverse: DVec3,
     origin: DVec3,
-    /// By how much boxes are widened, for what does not depend on their own coordinates.
+    /// The part of the widening of boxes that does not depend on their own coordinates.
     margin: f64,
 }
 
-impl Line {
-    /// A line that may be off by `error` on each axis, anywhere that matters.
+impl TraversalRay {
+    /// Makes a ray that may be off by `error` on each axis, anywhere that matters.
     ///
     /// The slab test below is off by a few ulp of |origin| + |box|: each box is widened by
-    /// [`SLAB`] times that, and by the line's own error, so that no box is missed whose primitive
+    /// [`SLAB`] times that, and by the ray's own error, so that no box is missed whose primitive
     /// is hit.
     pub fn new(origin: DVec3, direction: DVec3, error: f64) -> Self {
         let margin = error + SLAB * origin.abs().max_element();
         Self { inverse: direction.recip(), origin, margin }
     }
 
-    /// Where the line enters the box, if it passes through it at some t in \[0, `limit`\].
+    /// The t at which the ray enters the box, if it passes through it at some t in \[0, `limit`\].
     #[inline(always)]
-    fn enters(&self, bounds: &Bounds, margin: f64, limit: f64) -> Option<f64> {
+    fn entry_t(&self, bounds: &Bounds, margin: f64, limit: f64) -> Option<f64> {
         let a = (bounds.lower - margin - self.origin) * self.inverse;
         let b = (bounds.upper + margin - self.origin) * self.inverse;
         // A component of direction 0 gives infinities of both signs within the slab and of one
@@ -63,25 +63,25 @@ impl Line {
 }
 
 impl Tree {
-    /// The box around everything.
+    /// The box around all items.
     pub fn bounds(&self) -> Bounds {
         self.nodes.first().map_or(Bounds::EMPTY, |root| root.bounds)
     }
 
-    /// Calls `test` with each item whose leaf the line enters before `limit`, the nearer child
-    /// first, until it returns true; says whether it did. `test` may lower the limit.
+    /// Calls `test` with each item whose leaf the ray enters before `limit`, the nearer child
+    /// first, until it returns true; returns whether it did. `test` may lower the limit.
     #[inline]
-    pub fn walk(
+    pub fn traverse(
         &self,
-        line: &Line,
+        ray: &TraversalRay,
         limit: &mut f64,
         mut test: impl FnMut(u32, &mut f64) -> bool,
     ) -> bool {
         let Some(root) = self.nodes.first() else { return false };
-        let margin = line.margin + SLAB * root.bounds.max_abs();
+        let margin = ray.margin + SLAB * root.bounds.max_abs();
         let mut stack = [(0u32, 0.0f64); MAX_DEPTH + 1];
         let mut top = 0;
-        let mut current = line.enters(&root.bounds, margin, *limit).map(|_| 0u32);
+        let mut current = ray.entry_t(&root.bounds, margin, *limit).map(|_| 0u32);
         loop {
             let Some(index) = current else {
                 // Take the nearest node that was put off and is not behind the best hit by now.
@@ -110,7 +110,7 @@ impl Tree {
             }
             let (left, right) = (index + 1, node.start);
             let enter =
-                |child: u32| line.enters(&self.nodes[child as usize].bounds, margin, *limit);
+                |child: u32| ray.entry_t(&self.nodes[child as usize].bounds, margin, *limit);
             current = match (enter(left), enter(right)) {
                 (Some(a), Some(b)) => {
                     let (first, second) =

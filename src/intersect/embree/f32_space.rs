@@ -1,12 +1,12 @@
-//! From exact f64 rays to the f32 rays that Embree traverses with.
+//! The f32 space: the recentred copies of scene and rays that Embree traverses.
 //!
 //! Only these copies are recentred on the scene: the f64 tests use world coordinates.
 //!
 //! # How far off an f32 ray can be
 //!
 //! Let L be the longest side of the scene's box and u = 2⁻²⁴. An f32 ray starts at most
-//! [`REACH`]·L = 4 L from the centre in each coordinate (a ray that starts farther away is first
-//! moved, in f64, to where it enters the box), and what it can meet lies within L/2 of it. On each
+//! [`MAX_ORIGIN_DISTANCE`]·L = 4 L from the centre in each coordinate (a ray that starts farther away is
+//! first moved, in f64, to where it enters the box), and what it can hit lies within L/2 of it. On each
 //! axis, to where it crosses the plane of a box,
 //! - rounding the origin moves it by at most 4 u L,
 //! - rounding the direction turns it: u times the way along that axis, at most 4.5 u L, once for
@@ -14,35 +14,42 @@
 //! - Embree's own slab arithmetic errs by at most 5.1 u (|origin| + |box|) ≤ 5.1 · 4.5 u L = 23 u L
 //!   (measured: 3.84 with AVX-512, 4.56 with AVX2, 5.10 with SSE),
 //!
-//! 36 u L in all. Boxes of user geometry are therefore rounded outward and widened by [`PAD`]
-//! = 40 u L; Embree's ROBUST flag does not reach them. The padding is fixed while the rays are
+//! 36 u L in all. Boxes of user geometry are therefore rounded outward and widened by
+//! [`BOX_PADDING`] = 40 u L; Embree's ROBUST flag does not reach them. The padding is fixed while the rays are
 //! not, which is why the move to the box is needed.
 
 use glam::DVec3;
 
 use crate::geometry::Bounds;
 
-/// How far from the scene's centre, in units of L, a ray may start for f64 to move it to the box:
-/// the three roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to spare.
-pub const FAR: f64 = (1u32 << 27) as f64;
-/// How far from the scene's centre, in units of L, an f32 ray may start.
-pub const REACH: f64 = 4.0;
-/// By how much boxes of user geometry are widened, in units of L.
-pub const PAD: f64 = 40.0 / (1u32 << 24) as f64;
-/// Where the f32 copies of a scene live.
+/// The distance from the scene's centre, in units of L, up to which f64 may move the origin of a ray to
+/// the box: the three roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to
+/// spare.
+pub const MAX_MOVED_DISTANCE: f64 = (1u32 << 27) as f64;
+/// The distance from the scene's centre, in units of L, up to which an f32 ray may start.
+pub const MAX_ORIGIN_DISTANCE: f64 = 4.0;
+/// The widening of boxes of user geometry, in units of L.
+pub const BOX_PADDING: f64 = 40.0 / (1u32 << 24) as f64;
+
+/// The space of the f32 copies of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct F32Space {
     pub center: DVec3,
     /// The scene's box in world space.
     pub bounds: Bounds,
-    /// Its longest side, L.
+    /// The longest side of the box, L.
     pub extent: f64,
 }
 
 impl F32Space {
-    pub fn around(bounds: Bounds) -> Self {
+    /// Makes the space of a scene with this box.
+    pub fn from_bounds(bounds: Bounds) -> Self {
         if bounds.is_empty() {
-            return Self { center: DVec3::ZERO, bounds: Bounds::of([DVec3::ZERO]), extent: 1.0 };
+            return Self {
+                center: DVec3::ZERO,
+                bounds: Bounds::from_points([DVec3::ZERO]),
+                extent: 1.0,
+            };
         }
         let extent = bounds.size().max_element();
         // A scene that is a single point still needs room to round in.
@@ -50,30 +57,31 @@ impl F32Space {
         Self { center: bounds.center(), bounds, extent }
     }
 
-    /// A frame for a picture of an animation that takes place mostly within `stage`, as far as that
-    /// is known: one for them all where the picture's own box lies in it and is at least a quarter
-    /// as large, and else one that is the same while the box changes a little. Which pictures came
-    /// before has no part in it.
-    pub fn on_stage(bounds: Bounds, stage: Bounds) -> Self {
-        let own = Self::around(bounds);
-        let shared = Self { bounds, ..Self::steady(stage) };
+    /// Makes the space of a frame, with box `bounds`, of an animation that takes place mostly within
+    /// `stage`: the same for all frames whose boxes lie in the stage and are at least a quarter as
+    /// large, and else one that is the same while the box changes a little. The frames before have no
+    /// part in it.
+    pub fn for_animation(bounds: Bounds, stage: Bounds) -> Self {
+        let own = Self::from_bounds(bounds);
+        let shared = Self { bounds, ..Self::snapped(stage) };
         let far = (bounds.lower - shared.center).abs().max((bounds.upper - shared.center).abs());
         let fits = far.max_element() <= 0.5 * shared.extent;
-        if fits && 4.0 * own.extent >= shared.extent { shared } else { Self::steady(bounds) }
+        if fits && 4.0 * own.extent >= shared.extent { shared } else { Self::snapped(bounds) }
     }
 
-    /// L is a power of two, more than 5/4 of the box's longest side and at most 5/2 of it, and the
-    /// centre is a multiple of L/8 that is at most L/16 from the box's own on each axis. So the box
-    /// lies within (2/5 + 1/16) L < L/2 of it, and what is said at the head of this file holds.
-    fn steady(bounds: Bounds) -> Self {
-        let Self { center, extent, bounds } = Self::around(bounds);
+    /// Makes a space whose L is a power of two, more than 5/4 of the box's longest side and at most 5/2
+    /// of it, and whose centre is a multiple of L/8 that is at most L/16 from the box's own on each axis.
+    /// So the box lies within (2/5 + 1/16) L < L/2 of it, and what is said at the head of this file
+    /// holds.
+    fn snapped(bounds: Bounds) -> Self {
+        let Self { center, extent, bounds } = Self::from_bounds(bounds);
         let extent = (1.25 * extent).log2().floor().exp2() * 2.0;
         let step = extent / 8.0;
         Self { center: (center / step).round() * step, bounds, extent }
     }
 
-    /// Whether f32 copies in the other frame are those in this one.
-    pub fn is_at(&self, other: &Self) -> bool {
+    /// True if f32 copies in the other space are those in this one.
+    pub fn has_same_coordinates(&self, other: &Self) -> bool {
         (self.center, self.extent) == (other.center, other.extent)
     }
 
@@ -90,20 +98,21 @@ impl F32Space {
         (lower.map(f32::next_down), upper.map(f32::next_up))
     }
 
-    /// How far an f32 ray may be from the exact one, and then some; see the head of this file.
+    /// The distance by which an f32 ray may be off, with room to spare; see the head of this file.
     pub fn margin(&self) -> f64 {
-        PAD * self.extent
+        BOX_PADDING * self.extent
     }
 
-    /// What of the padding is left for a ray that f64 itself places only so well, in this frame.
-    pub fn spare(&self) -> f64 {
+    /// The greatest error of the transform that takes an f64 ray into this space, as an object space:
+    /// what is left of the padding.
+    pub fn max_transform_error(&self) -> f64 {
         2.0 / f64::from(1u32 << 24) * self.extent
     }
 
-    /// Distance, in units of an f32 ray's direction, within which its t says nothing about which
-    /// side of a surface it starts on: the errors above, with the direction at least 1 long and
+    /// The distance, in units of an f32 ray's direction, within which its t says nothing about the
+    /// side of a surface that it starts on: the errors above, with the direction at least 1 long and
     /// a triangle seen at a grazing angle allowed for.
-    pub fn doubt(&self) -> f32 {
+    pub fn t_uncertainty(&self) -> f32 {
         (1024.0 * self.margin()) as f32
     }
 }
@@ -115,7 +124,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_steady_frame_holds_its_box_within_half_of_its_side(
+        fn a_snapped_space_holds_its_box_within_half_of_its_side(
             middle in prop::array::uniform3(-1.0..1.0f64),
             size in prop::array::uniform3(0.0..1.0f64),
             offset in -9..9i32,
@@ -124,7 +133,7 @@ mod tests {
             let middle = DVec3::from(middle) * 10f64.powi(offset);
             let half = DVec3::from(size) * f64::from(scale).exp2();
             let bounds = Bounds { lower: middle - half, upper: middle + half };
-            let F32Space { center, extent, .. } = F32Space::steady(bounds);
+            let F32Space { center, extent, .. } = F32Space::snapped(bounds);
             let far = (bounds.lower - center).abs().max((bounds.upper - center).abs());
             prop_assert!(far.max_element() < 0.5 * extent, "{far} {extent}");
             let longest = bounds.size().max_element().max(1e-9 * bounds.max_abs());
@@ -132,33 +141,36 @@ mod tests {
         }
     }
 
-    /// A box of this side about a point of the x axis.
+    /// A box with sides of this length about a point of the x axis.
     fn cube(x: f64, side: f64) -> Bounds {
-        Bounds::of([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
+        Bounds::from_points([DVec3::X * x - 0.5 * side, DVec3::X * x + 0.5 * side])
     }
 
     #[test]
-    fn pictures_of_one_stage_share_a_frame() {
-        let frame = |x| F32Space::on_stage(cube(x, 1.0), cube(0.0, 1.5));
-        assert!(frame(-0.25).is_at(&frame(0.25)));
-        assert_ne!(frame(-0.25).bounds, frame(0.25).bounds);
+    fn frames_on_one_stage_share_a_space() {
+        let space = |x| F32Space::for_animation(cube(x, 1.0), cube(0.0, 1.5));
+        assert!(space(-0.25).has_same_coordinates(&space(0.25)));
+        assert_ne!(space(-0.25).bounds, space(0.25).bounds);
     }
 
     #[test]
-    fn what_leaves_the_stage_or_is_small_on_it_has_a_frame_of_its_own() {
+    fn a_frame_that_leaves_the_stage_or_is_small_on_it_has_a_space_of_its_own() {
         let stage = cube(0.0, 8.0);
-        let shared = F32Space::on_stage(stage, stage);
+        let shared = F32Space::for_animation(stage, stage);
         for bounds in [cube(9.0, 8.0), cube(0.0, 1.0)] {
-            let frame = F32Space::on_stage(bounds, stage);
-            assert!(!frame.is_at(&shared) && frame.is_at(&F32Space::steady(bounds)));
+            let space = F32Space::for_animation(bounds, stage);
+            assert!(
+                !space.has_same_coordinates(&shared)
+                    && space.has_same_coordinates(&F32Space::snapped(bounds))
+            );
         }
     }
 
     #[test]
-    fn a_scene_of_nothing_has_a_frame() {
+    fn an_empty_scene_has_a_space() {
         for (bounds, stage) in [(Bounds::EMPTY, cube(0.0, 1.0)), (cube(0.0, 1.0), Bounds::EMPTY)] {
-            let frame = F32Space::on_stage(bounds, stage);
-            assert!(frame.center.is_finite() && frame.extent > 0.0);
+            let space = F32Space::for_animation(bounds, stage);
+            assert!(space.center.is_finite() && space.extent > 0.0);
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::geometry::{Continuation, Departure, PrimitiveId, Side};
+use crate::intersect::BuildQuality;
 use crate::intersect::Bvh;
 use crate::scene::{Instance, MaterialId, Mesh, Sphere};
 use glam::{DAffine3, DVec3};
@@ -57,7 +58,7 @@ fn rays(state: &mut u64) -> Vec<Ray> {
         .collect()
 }
 
-fn check(width: PacketWidth) {
+fn check_width(width: PacketWidth) {
     compare(width, Precision::Fast, BuildQuality::Medium);
     compare(width, Precision::Certified, BuildQuality::Medium);
 }
@@ -66,46 +67,46 @@ fn compare(width: PacketWidth, precision: Precision, quality: BuildQuality) {
     let mut state = 7;
     let scene = scene(&mut state);
     let rays = rays(&mut state);
-    let asked = BuildOptions { precision, threads: 1, quality, width: Some(width) };
-    let embree = Embree::build_as(&scene, asked).unwrap();
-    let judge = Bvh::build(&scene, precision);
+    let options = BuildOptions { precision, threads: 1, quality, width: Some(width) };
+    let embree = Embree::with_options(&scene, options).unwrap();
+    let bvh = Bvh::build(&scene, precision);
     let closest = |i: &dyn Intersector| {
         let mut hits = vec![None; rays.len()];
         i.closest(&rays, Coherence::Incoherent, &mut hits);
         hits
     };
-    assert_eq!(closest(&embree), closest(&judge));
+    assert_eq!(closest(&embree), closest(&bvh));
     let occluded = |i: &dyn Intersector| {
         let mut blocked = vec![false; rays.len()];
         i.occluded(&rays, Coherence::Coherent, &mut blocked);
         blocked
     };
-    assert_eq!(occluded(&embree), occluded(&judge));
+    assert_eq!(occluded(&embree), occluded(&bvh));
 }
 
 #[test]
 fn single_rays_equal_the_bvh() {
-    check(PacketWidth::One);
+    check_width(PacketWidth::One);
 }
 
 #[test]
 fn packets_of_four_equal_the_bvh() {
-    check(PacketWidth::Four);
+    check_width(PacketWidth::Four);
 }
 
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn packets_of_eight_equal_the_bvh() {
-    if is_x86_feature_detected!("avx2") {
-        check(PacketWidth::Eight);
+    if PacketWidth::Eight.is_supported() {
+        check_width(PacketWidth::Eight);
     }
 }
 
 #[test]
 #[cfg(target_arch = "x86_64")]
 fn packets_of_sixteen_equal_the_bvh() {
-    if is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512bw") {
-        check(PacketWidth::Sixteen);
+    if PacketWidth::Sixteen.is_supported() {
+        check_width(PacketWidth::Sixteen);
     }
 }
 

@@ -5,182 +5,229 @@
 //! motion it took a third less time to build, but rays took up to twice as long in precision
 //! `certified`, and 50,000 instances took longer to build.
 
-use std::sync::Arc;
-
-use embree4_rs::{CommittedScene, SceneOptions};
-use embree4_sys::RTCBuildQuality;
+use std::sync::{Arc, OnceLock};
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::intersect::embree::certified::callbacks as certified_callbacks;
-use crate::intersect::embree::certified::meshes::Meshes;
+use crate::intersect::Precision;
+use crate::intersect::blas_cache::BlasCache;
+use crate::intersect::build_stats::BuildStats;
+use crate::intersect::embree::certified::{self, CertifiedSphere};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::fast::meshes as fast_meshes;
-use crate::intersect::embree::fast::spheres::{self, SphereTable};
-use crate::intersect::embree::ffi::abi_check::failed;
-use crate::intersect::embree::ffi::handles::{DeviceHandle, commit_again};
-use crate::intersect::embree::ffi::packet_width::PacketWidth;
-use crate::intersect::embree::ffi::{memory, user_geometry};
-use crate::intersect::embree::{BuildOptions, FrameCache, attach, flags, is_outsized, version_of};
+use crate::intersect::embree::fast::{self, FastSpheres, SphereTable};
+use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, check_abi, update_geometry};
+use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder, is_outsized};
 use crate::intersect::frame_diff::FrameDiff;
-use crate::intersect::{BuildQuality, Precision};
 use crate::scene::{Mesh, Scene};
 
 /// A committed Embree scene and what belongs to it.
 pub struct Tlas {
     pub precision: Precision,
-    pub width: PacketWidth,
-    pub frame: F32Space,
-    /// For each geometry that is attached, the instance that stands there; ascending.
-    pub instance_of: Vec<u32>,
-    /// How many of them are in spaces of their own.
-    instanced: u64,
-    pub committed: CommittedScene,
-    pub version: String,
-    /// Which geometry the spheres are, and what their callbacks read; dropped after the scene that
+    pub space: F32Space,
+    pub scene: CommittedScene,
+    /// The geometry of the spheres, and the table that its callbacks read; dropped after the scene that
     /// calls them.
     spheres: Option<(u32, Box<SphereTable>)>,
     meshes: Meshes,
-    /// Whose indices Embree goes on reading; dropped after the scene.
-    _shown: Vec<Arc<Mesh>>,
+    /// The meshes whose indices Embree goes on reading; dropped after the scene.
+    _meshes: Vec<Arc<Mesh>>,
 }
 
-// SAFETY: the only thing in it that is not Send and Sync by itself is the handle of a committed
-// scene. Embree lets any thread trace a committed scene, and release it; it is changed through
-// `&mut Top` only, when nobody traces it.
-#[allow(unsafe_code)]
-unsafe impl Send for Tlas {}
-#[allow(unsafe_code)]
-unsafe impl Sync for Tlas {}
+/// The geometries of the meshes, in either precision.
+enum Meshes {
+    Fast(fast::Meshes),
+    Certified(certified::Meshes),
+}
 
 impl Tlas {
-    /// Builds a checked scene on a device, with what is there already of its meshes, whose boxes
-    /// are `boxes`.
+    /// Builds a checked scene, for a single picture.
     ///
     /// # Errors
-    /// When Embree runs out of memory.
-    pub fn build(
-        scene: &Scene,
-        device: embree4_rs::Device,
-        asked: BuildOptions,
-        frame: F32Space,
-        boxes: &[Bounds],
-        mut shared: Option<&mut FrameCache>,
+    /// When the library is not as expected, or runs out of memory.
+    pub fn build(scene: &Scene, options: BuildOptions) -> Result<Self> {
+        let mesh_bounds = scene.mesh_bounds();
+        let space = F32Space::from_bounds(scene.bounds_with(&mesh_bounds));
+        let device = new_device(scene, options)?;
+        let builder =
+            SceneBuilder::new(scene, &mesh_bounds, &device, options.quality, space, false)?;
+        Self::from_builder(builder, options.precision, None)
+    }
+
+    /// Attaches meshes and spheres, and commits.
+    fn from_builder(
+        builder: SceneBuilder<'_>,
+        precision: Precision,
+        cache: Option<&mut FrameCache>,
     ) -> Result<Self> {
-        let quality = match asked.quality {
-            BuildQuality::Low => RTCBuildQuality::LOW,
-            BuildQuality::Medium => RTCBuildQuality::MEDIUM,
-        };
-        let options = SceneOptions { build_quality: quality, flags: flags() };
-        let top = embree4_rs::Scene::try_new(device, options).map_err(failed)?;
-        let device = DeviceHandle::of(&top);
-        memory::watch(&device);
-        if let Some(shared) = &mut shared {
-            shared.device.get_or_insert_with(|| DeviceHandle::of(&top));
-        }
-        let precision = asked.precision;
-        let width = asked.width.unwrap_or_else(|| PacketWidth::native(&device));
-        // Frames share meshes.
-        let all_instanced = shared.is_some();
-        let mut meshes = Meshes::default();
-        let (instance_of, instanced) = match precision {
+        let SceneBuilder { scene, space, device, .. } = builder;
+        let meshes = match precision {
             Precision::Fast => {
-                let kept = (all_instanced, shared.map(|shared| &mut shared.fast));
-                fast_meshes::attach_meshes(scene, boxes, &top, &device, quality, &frame, kept)?
+                let cache = cache.map(|cache| &mut cache.fast);
+                Meshes::Fast(fast::Meshes::attach(&builder, cache)?)
             }
             Precision::Certified => {
-                let kept = (all_instanced, shared.map(|shared| &mut shared.certified));
-                let how = (frame, width, quality);
-                meshes.attach(scene, boxes, &top, &device, how, kept)?;
-                (Vec::new(), meshes.instanced())
+                let cache = cache.map(|cache| &mut cache.certified);
+                Meshes::Certified(certified::Meshes::attach(&builder, cache)?)
             }
         };
         let mut spheres = None;
         if !scene.spheres.is_empty() {
-            let table = SphereTable::new(scene, frame);
-            let callbacks = match precision {
-                Precision::Fast => spheres::callbacks(width),
-                Precision::Certified => certified_callbacks::spheres(width),
+            let table = SphereTable::new(scene, space);
+            let id = match precision {
+                Precision::Fast => builder.attach_user_geometry::<FastSpheres>(&table)?,
+                Precision::Certified => builder.attach_user_geometry::<CertifiedSphere>(&table)?,
             };
-            let id = attach(&top, &user_geometry::geometry(&device, quality, &*table, callbacks)?)?;
             spheres = Some((id, table));
         }
-        let committed = top
-            .commit()
-            .map_err(|e| Error::failed(format!("Embree cannot build the scene: {e}")))?;
-        let version = version_of(&device);
-        Ok(Self {
-            precision,
-            width,
-            frame,
-            instance_of,
-            instanced,
-            committed,
-            version,
-            spheres,
-            meshes,
-            _shown: scene.meshes.clone(),
-        })
+        let _meshes = scene.meshes.clone();
+        Ok(Self { precision, space, scene: builder.top.commit(device)?, spheres, meshes, _meshes })
     }
 
-    /// How many geometries of spheres there are, and how many instances whose meshes are in spaces
-    /// of their own.
-    pub fn work(&self) -> (u64, u64) {
-        (u64::from(self.spheres.is_some()), self.instanced)
+    /// The instance of each geometry of Embree's own; empty in precision `certified`.
+    pub fn instance_of(&self) -> &[u32] {
+        match &self.meshes {
+            Meshes::Fast(meshes) => &meshes.instance_of,
+            Meshes::Certified(_) => &[],
+        }
     }
 
-    /// Whether it can become the scene of another frame, in which only `moved` did, and which fits
-    /// into `frame`.
-    pub fn can_follow(
+    /// The number of geometries of spheres, and of instances whose meshes are in object space.
+    pub fn stats(&self) -> BuildStats {
+        BuildStats {
+            sphere_geometries: u64::from(self.spheres.is_some()),
+            object_space_instances: match &self.meshes {
+                Meshes::Fast(meshes) => meshes.instance_count,
+                Meshes::Certified(meshes) => meshes.instance_count(),
+            },
+            ..BuildStats::default()
+        }
+    }
+
+    /// True if it can be updated to a frame in which only `diff` moved, and whose f32 space is `space`.
+    fn can_update(
         &self,
         scene: &Scene,
-        frame: &F32Space,
-        boxes: &[Bounds],
-        moved: &FrameDiff,
+        space: &F32Space,
+        mesh_bounds: &[Bounds],
+        diff: &FrameDiff,
     ) -> bool {
-        // What is outsized in its own space has its triangles in the world's.
-        let stays = |&i: &u32| is_outsized(&boxes[scene.instances[i as usize].mesh.0 as usize]);
-        self.frame.is_at(frame) && !moved.instances.iter().any(stays)
+        // The triangles of an outsized mesh are in world space.
+        let is_fixed =
+            |&i: &u32| is_outsized(&mesh_bounds[scene.instances[i as usize].mesh.0 as usize]);
+        self.space.has_same_coordinates(space) && !diff.instances.iter().any(is_fixed)
     }
 
-    /// Becomes the scene of another frame, as [`Tlas::can_follow`] allows: what moved is placed
-    /// again, and if anything did, the level above the meshes is committed again.
+    /// Moves what `diff` names to where another frame has it, as [`Tlas::can_update`] allows. If
+    /// anything moved, the scene is committed again, which builds no mesh.
     ///
     /// # Errors
     /// When Embree runs out of memory; then it is of no further use.
-    pub fn follow(
+    fn update(
         &mut self,
         scene: &Scene,
-        frame: &F32Space,
-        boxes: &[Bounds],
-        moved: &FrameDiff,
+        space: F32Space,
+        mesh_bounds: &[Bounds],
+        diff: &FrameDiff,
     ) -> Result<()> {
-        self.frame = *frame;
-        let top = &self.committed.scene;
+        self.space = space;
         if let Some((id, table)) = &mut self.spheres {
-            table.refresh(scene);
-            if !moved.spheres.is_empty() {
-                user_geometry::moved(top, *id, &**table);
+            table.update(scene);
+            if !diff.spheres.is_empty() {
+                update_geometry(&mut self.scene, *id, &**table);
             }
         }
-        if !moved.instances.is_empty() {
-            match self.precision {
-                Precision::Fast => {
-                    fast_meshes::follow(
-                        scene,
-                        top,
-                        frame,
-                        boxes,
-                        &self.instance_of,
-                        &moved.instances,
-                    );
-                }
-                Precision::Certified => self.meshes.follow(scene, top, boxes, &moved.instances),
+        let (top, moved) = (&mut self.scene, &diff.instances);
+        if !moved.is_empty() {
+            match &mut self.meshes {
+                Meshes::Fast(meshes) => meshes.update(top, scene, &space, mesh_bounds, moved),
+                Meshes::Certified(meshes) => meshes.update(top, scene, mesh_bounds, moved),
             }
         }
-        if *moved == FrameDiff::default() {
-            return Ok(());
+        if *diff == FrameDiff::default() { Ok(()) } else { top.recommit() }
+    }
+}
+
+/// The number of primitives below which one thread builds a tree in a few milliseconds.
+const FEW_PRIMITIVES: u64 = 1 << 12;
+
+/// Starts a device, once the library is known to be as expected.
+fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
+    static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
+    CHECKED
+        .get_or_init(|| check_abi().map_err(|e| e.to_string()))
+        .clone()
+        .map_err(Error::failed)?;
+    // Waking threads takes longer than a small tree does.
+    let is_small = scene.primitive_count() < FEW_PRIMITIVES;
+    let device = DeviceHandle::new(if is_small { 1 } else { options.threads }, options.width)?;
+    device.monitor_memory();
+    Ok(device)
+}
+
+/// The device, BLASes and TLAS that frames share.
+pub struct FrameCache {
+    /// The box in which the frames take place, as far as it is known.
+    stage: Bounds,
+    fast: BlasCache<fast::Blas>,
+    certified: BlasCache<certified::Blas>,
+    /// The TLAS of the last frame.
+    tlas: Option<Arc<Tlas>>,
+    /// The number of TLASes that were built.
+    tlas_count: u64,
+    /// The device, dropped after what is built on it.
+    device: Option<DeviceHandle>,
+}
+
+impl FrameCache {
+    /// Makes an empty cache, for frames that take place mostly within `stage`.
+    pub fn new(stage: Bounds) -> Self {
+        Self {
+            stage,
+            fast: BlasCache::default(),
+            certified: BlasCache::default(),
+            tlas: None,
+            tlas_count: 0,
+            device: None,
         }
-        commit_again(top)
+    }
+
+    /// The numbers of meshes and TLASes that were built.
+    pub fn stats(&self) -> BuildStats {
+        let meshes_built = self.fast.built() + self.certified.built();
+        BuildStats { meshes_built, tlas_built: self.tlas_count, ..BuildStats::default() }
+    }
+
+    /// Returns the TLAS of a scene: that of the frame before, updated, if only `diff` moved; and else a
+    /// new one.
+    ///
+    /// # Errors
+    /// When the library is not as expected, or runs out of memory.
+    pub fn update_or_build(
+        &mut self,
+        scene: &Scene,
+        options: BuildOptions,
+        mesh_bounds: &[Bounds],
+        diff: Option<&FrameDiff>,
+    ) -> Result<Arc<Tlas>> {
+        let space = F32Space::for_animation(scene.bounds_with(mesh_bounds), self.stage);
+        // Taken, so that nothing half changed stays behind an error.
+        let mut last = self.tlas.take();
+        // An intersector that still traces the last frame holds it, too: then it must not change.
+        if let (Some(tlas), Some(diff)) = (last.as_mut().and_then(Arc::get_mut), diff)
+            && tlas.can_update(scene, &space, mesh_bounds, diff)
+        {
+            tlas.update(scene, space, mesh_bounds, diff)?;
+        } else {
+            let device = match &self.device {
+                Some(device) => device.clone(),
+                None => self.device.insert(new_device(scene, options)?).clone(),
+            };
+            let builder =
+                SceneBuilder::new(scene, mesh_bounds, &device, options.quality, space, true)?;
+            last = Some(Tlas::from_builder(builder, options.precision, Some(self))?.into());
+            self.tlas_count += 1;
+        }
+        self.tlas.clone_from(&last);
+        last.ok_or_else(|| Error::failed("no Embree scene was built"))
     }
 }

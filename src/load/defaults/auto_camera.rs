@@ -1,156 +1,115 @@
-//! A camera for model files that bring none.
-
-use std::sync::atomic::{AtomicBool, Ordering};
+//! The camera of model files that bring none.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
+use super::extents::{box_extent, extents};
 use crate::geometry::Bounds;
-use crate::scene::{Camera, GRAIN, Instance, Mesh, Projection, Scene, Sphere};
+use crate::scene::{Camera, Projection, Scene};
 
-/// Half the vertical field of view of the framing camera, in radians: 35° in all, about that of a
+/// Half the vertical field of view of the automatic camera, in radians: 35° in all, about that of a
 /// portrait lens, which does not distort.
 const HALF_FOV: f64 = 17.5 * std::f64::consts::PI / 180.0;
-/// The share of the picture, from its middle to its edge, that the model fills.
-const FILLED: f64 = 0.88;
-/// From where the camera looks: to the right, from above, and mostly from the front, where +Z is
-/// the front and +Y is up, as in glTF.
-const VIEW: DVec3 = DVec3::new(0.55, 0.45, 1.0);
+/// The share of the image, from its middle to its edge, that the model fills.
+const FILL_RATIO: f64 = 0.88;
+/// The direction from the model to the camera: to the right, from above, and mostly from the front,
+/// where +Z is the front and +Y is up, as in glTF.
+const VIEW_DIRECTION: DVec3 = DVec3::new(0.55, 0.45, 1.0);
 /// The least size of what is framed, as a share of how far it is from the origin: a single point
 /// has none.
-const LEAST: f64 = 1e-6;
-/// A model is flat along an axis where it is this much thinner than it is long.
-const FLAT: f64 = 0.02;
+const MIN_SIZE: f64 = 1e-6;
+/// The ratio of thickness to length below which a model counts as flat.
+const FLATNESS: f64 = 0.02;
 
-/// Gives a scene a camera that frames it, when it has none: a three-quarter view, as near as the
-/// whole model fits, in the middle of the picture.
-pub fn frame(scene: &mut Scene) {
+/// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
+/// model fits, in the middle of the image.
+pub fn add_camera(scene: &mut Scene) {
     if !scene.cameras.is_empty() {
         return;
     }
-    let bounds = match scene.bounds_over_time() {
+    // The box to be framed, which must have a size.
+    let mut bounds = scene.bounds_over_time();
+    if bounds.is_empty() {
         // Nothing finite to frame: look at the origin from a little above.
-        b if b.is_empty() => Bounds { lower: DVec3::NEG_ONE, upper: DVec3::ONE },
-        b => b,
-    };
-    let least = LEAST * bounds.max_abs();
+        bounds = Bounds { lower: DVec3::NEG_ONE, upper: DVec3::ONE };
+    }
+    let least = MIN_SIZE * bounds.max_abs();
     let is_point = bounds.diagonal() <= least;
-    let bounds = if is_point { bounds.padded(least.max(LEAST)) } else { bounds };
-    let view = direction(bounds.size());
+    if is_point {
+        bounds = bounds.padded(least.max(MIN_SIZE));
+    }
+    // The direction, which fails only where the scene is not finite; `Scene::check` says that then.
+    let direction = view_direction(bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
-    // Fails only where the scene is not finite, which `Scene::check` then says.
-    let Ok(mut camera) = Camera::look_at(view, DVec3::ZERO, DVec3::Y, lens) else { return };
+    let Ok(mut camera) = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens) else { return };
     if !bounds.max_abs().is_finite() {
         return;
     }
+    // The position, as near as all of the model is within the edges of the image.
     let [width, height] = scene.film.size.map(f64::from);
-    let tangent = HALF_FOV.tan() * FILLED;
-    let extents = |along: [DVec3; 4]| match is_point {
-        true => along.map(|along| extent_of_box(&bounds, along)),
-        false => extents(scene, &bounds, along),
+    let tangent = HALF_FOV.tan() * FILL_RATIO;
+    let tangents = [tangent * width / height, tangent];
+    let normals = edge_normals(&camera, tangents);
+    let extents = if is_point {
+        normals.map(|normal| box_extent(&bounds, normal))
+    } else {
+        extents(scene, &bounds, normals)
     };
-    camera.position = stand(extents, bounds.center(), &camera, [tangent * width / height, tangent]);
+    camera.position = framing_position(extents, bounds.center(), &camera, tangents);
     camera.name = "framing".to_owned();
     scene.cameras.push(camera);
 }
 
-/// From where to look at a model of a size: what is flat, more from its broad side.
-fn direction(size: DVec3) -> DVec3 {
-    let flat = size.cmplt(DVec3::splat(FLAT * size.max_element()));
+/// Returns the direction from a model of a size to the camera: flat models are seen from their broad
+/// side.
+fn view_direction(size: DVec3) -> DVec3 {
+    let flat = size.cmplt(DVec3::splat(FLATNESS * size.max_element()));
     match [flat.x, flat.y, flat.z] {
         // A card that stands sideways.
-        [true, false, false] => DVec3::new(VIEW.z, VIEW.y, VIEW.x),
+        [true, false, false] => DVec3::new(VIEW_DIRECTION.z, VIEW_DIRECTION.y, VIEW_DIRECTION.x),
         // A floor.
-        [false, true, false] => DVec3::new(VIEW.x, VIEW.z, VIEW.z),
-        _ => VIEW,
+        [false, true, false] => DVec3::new(VIEW_DIRECTION.x, VIEW_DIRECTION.z, VIEW_DIRECTION.z),
+        _ => VIEW_DIRECTION,
     }
     .normalize()
 }
 
-/// Where a camera must stand to see all of what has this extent, with these tangents of half its angles to the
-/// side and up.
+/// Returns the normals, of any length, of the planes that the eye and the right, left, upper and lower
+/// edge of the image span; `tangents` are those of half the angles to the side and up.
+fn edge_normals(camera: &Camera, [side, up]: [f64; 2]) -> [DVec3; 4] {
+    let edges = [(camera.right, side), (-camera.right, side), (camera.up, up), (-camera.up, up)];
+    edges.map(|(axis, tangent)| axis - camera.forward * tangent)
+}
+
+/// Returns the position from which a camera sees all of a model that has these extents along the
+/// normals of the image's edges, as near as that is.
 ///
-/// An edge of the picture and the eye span a plane. With the camera's axes as x, y, and z into the
-/// picture, all of the model is within the right edge where px − s·pz ≤ cx − s·cz for each of its
-/// points p, the eye being c and s the tangent; and so for the other edges. The greatest px − s·pz
-/// is all that counts of the model: the plane then touches it.
-fn stand(
-    extents: impl Fn([DVec3; 4]) -> [f64; 4],
+/// With the camera's axes as x, y, and z into the image, all of the model is within the right edge
+/// where px − s·pz ≤ cx − s·cz for each of its points p, the eye being c and s the tangent; and so for
+/// the other edges. Only the greatest px − s·pz counts, the model's extent along the normal of the
+/// edge's plane: the plane then touches the model.
+fn framing_position(
+    extents: [f64; 4],
     middle: DVec3,
     camera: &Camera,
-    [side, up]: [f64; 2],
+    tangents: [f64; 2],
 ) -> DVec3 {
-    let [right, top] = [camera.right, camera.up];
-    let edges = [(right, side), (-right, side), (top, up), (-top, up)];
-    let normals = edges.map(|(axis, tangent)| axis - camera.forward * tangent);
-    let reached = extents(normals);
+    let normals = edge_normals(camera, tangents);
     // From the middle, so that less is rounded.
-    let [right, left, above, below] = std::array::from_fn(|i| reached[i] - middle.dot(normals[i]));
+    let [right, left, above, below] = std::array::from_fn(|i| extents[i] - middle.dot(normals[i]));
+    let [side, up] = tangents;
     let depth = ((right + left) / side).max((above + below) / up) / 2.0;
     let [x, y] = [(right - left) / 2.0, (above - below) / 2.0];
     middle + camera.right * x + camera.up * y - camera.forward * depth
 }
 
-/// How far a scene reaches along some directions, which are of any length, wherever it moves; with
-/// its box, where it has nothing else.
-pub fn extents<const N: usize>(scene: &Scene, bounds: &Bounds, along: [DVec3; N]) -> [f64; N] {
-    let mut most = [f64::NEG_INFINITY; N];
-    match scene.animation {
-        Some(_) => scene.over_time(|poses| most = greater(most, extents_now(poses.scene(), along))),
-        None => most = extents_now(scene, along),
-    }
-    match most.iter().all(|most| most.is_finite()) {
-        true => most,
-        false => along.map(|along| extent_of_box(bounds, along)),
-    }
-}
-
-fn extents_now<const N: usize>(scene: &Scene, along: [DVec3; N]) -> [f64; N] {
-    let sphere = |s: &Sphere| along.map(|a| s.center.dot(a) + s.radius * a.length());
-    let meshes = scene.instances.iter().filter_map(|instance| {
-        let mesh = scene.meshes.get(instance.mesh.0 as usize)?;
-        Some(mesh_extents(mesh, instance, along))
-    });
-    scene.spheres.iter().map(sphere).chain(meshes).fold([f64::NEG_INFINITY; N], greater)
-}
-
-fn greater<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
-    std::array::from_fn(|i| a[i].max(b[i]))
-}
-
-fn extent_of_box(bounds: &Bounds, along: DVec3) -> f64 {
-    bounds.upper.dot(along.max(DVec3::ZERO)) + bounds.lower.dot(along.min(DVec3::ZERO))
-}
-
-fn mesh_extents<const N: usize>(mesh: &Mesh, instance: &Instance, along: [DVec3; N]) -> [f64; N] {
-    let none = [f64::NEG_INFINITY; N];
-    let local = along.map(|along| instance.transform.matrix3.transpose() * along);
-    // Each vertex once, though several triangles have it.
-    let used: Vec<AtomicBool> = mesh.positions.iter().map(|_| AtomicBool::new(false)).collect();
-    mesh.triangles.par_chunks(GRAIN).for_each(|triangles| {
-        let used = triangles.as_flattened().iter().filter_map(|&i| used.get(i as usize));
-        used.for_each(|used| used.store(true, Ordering::Relaxed));
-    });
-    let reach = |(positions, used): (&[[f32; 3]], &[AtomicBool])| {
-        let used = positions.iter().zip(used).filter(|(_, used)| used.load(Ordering::Relaxed));
-        used.fold(none, |most, (position, _)| {
-            let position = DVec3::from(position.map(f64::from));
-            greater(most, local.map(|local| position.dot(local)))
-        })
-    };
-    let parts = mesh.positions.par_chunks(GRAIN).zip(used.par_chunks(GRAIN));
-    let most = parts.map(reach).reduce(|| none, greater);
-    std::array::from_fn(|i| instance.transform.translation.dot(along[i]) + most[i])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::MaterialId;
+    use crate::scene::{Instance, MaterialId, Mesh, Sphere};
     use glam::DAffine3;
 
-    /// Where a point falls in the picture, from −1 to 1 across it and upwards.
-    fn seen(camera: &Camera, size: [u32; 2], point: DVec3) -> [f64; 2] {
+    /// Returns the place of a point in the image, from −1 to 1 across it and upwards.
+    fn project(camera: &Camera, size: [u32; 2], point: DVec3) -> [f64; 2] {
         let to = point - camera.position;
         let depth = to.dot(camera.forward);
         assert!(depth > 0.0, "{point} is behind the camera");
@@ -171,19 +130,19 @@ mod tests {
 
     const BOX: [[f32; 3]; 4] = [[0., 0., 0.], [3., 0., 0.], [0., 1., 0.], [0., 0., 2.]];
 
-    /// The greatest distance, to the side or up, of a model's corners from the middle.
-    fn fill(scene: &mut Scene) -> [f64; 2] {
-        frame(scene);
+    /// Returns the greatest distance, to the side and up, of a model's corners from the middle.
+    fn filled(scene: &mut Scene) -> [f64; 2] {
+        add_camera(scene);
         let camera = &scene.cameras[0];
         let placed = |p: &[f32; 3]| scene.instances[0].to_world(*p);
         let points = scene.meshes[0].positions.iter().map(placed);
         points
-            .map(|p| seen(camera, scene.film.size, p))
+            .map(|p| project(camera, scene.film.size, p))
             .fold([0.0f64; 2], |most, at| std::array::from_fn(|k| most[k].max(at[k].abs())))
     }
 
     #[test]
-    fn a_model_fills_the_picture_one_way_and_stays_within_it_the_other() {
+    fn a_model_fills_the_image_one_way_and_stays_within_it_the_other() {
         for size in [[400, 300], [300, 900], [1000, 100]] {
             for transform in [
                 DAffine3::IDENTITY,
@@ -194,8 +153,8 @@ mod tests {
                 let mut scene = mesh(&BOX);
                 scene.film.size = size;
                 scene.instances[0].transform = transform;
-                let [x, y] = fill(&mut scene);
-                assert!((x.max(y) - FILLED).abs() < 1e-6, "{size:?} {transform:?}: {x} {y}");
+                let [x, y] = filled(&mut scene);
+                assert!((x.max(y) - FILL_RATIO).abs() < 1e-6, "{size:?} {transform:?}: {x} {y}");
             }
         }
     }
@@ -205,11 +164,11 @@ mod tests {
         let mut scene = Scene::default();
         scene.film.size = [400, 300];
         scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
-        frame(&mut scene);
+        add_camera(&mut scene);
         let camera = &scene.cameras[0];
         let to = scene.spheres[0].center - camera.position;
         let half = (2.0 / to.length()).asin();
-        assert!((half.tan() - HALF_FOV.tan() * FILLED).abs() < 1e-9);
+        assert!((half.tan() - HALF_FOV.tan() * FILL_RATIO).abs() < 1e-9);
         assert!(to.normalize().dot(camera.forward) > 1.0 - 1e-12);
     }
 
@@ -220,18 +179,19 @@ mod tests {
         scene.film.size = [300, 300];
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         // Away from the camera: the box of its way has corners far from all that is seen.
-        let mut keys = Keyframes::still();
-        keys.translation = Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW * 8.0]);
+        let mut keys = Keyframes::identity();
+        keys.translation =
+            Curve::<DVec3>::smooth(vec![0.0, 1.0], vec![DVec3::ZERO, -VIEW_DIRECTION * 8.0]);
         let mut animation = Animation::new(24, 24.0);
-        let motion = Motion::Keys(keys);
-        let node = animation.add_node(Node { parent: None, place: DAffine3::IDENTITY, motion });
+        let motion = Motion::Keyframes(keys);
+        let node = animation.add_node(Node { parent: None, base: DAffine3::IDENTITY, motion });
         let (center, radius) = (DVec3::ZERO, None);
-        animation.movers.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
+        animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
-        frame(&mut scene);
+        add_camera(&mut scene);
         let to = -scene.cameras[0].position;
         let half = (1.0 / to.length()).asin();
-        assert!((half.tan() - HALF_FOV.tan() * FILLED).abs() < 1e-9, "{half}");
+        assert!((half.tan() - HALF_FOV.tan() * FILL_RATIO).abs() < 1e-9, "{half}");
     }
 
     #[test]
@@ -239,7 +199,7 @@ mod tests {
         for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
             let corner = |p: &[f32; 3]| (DVec3::from(p.map(f64::from)) * (1.0 - flat)).as_vec3();
             let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
-            frame(&mut scene);
+            add_camera(&mut scene);
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
         }
     }
@@ -247,28 +207,28 @@ mod tests {
     #[test]
     fn a_line_and_a_point_are_framed_too() {
         let mut line = mesh(&[[0., 0., 0.], [0., 5., 0.]]);
-        let [x, y] = fill(&mut line);
-        assert!((x.max(y) - FILLED).abs() < 1e-6);
+        let [x, y] = filled(&mut line);
+        assert!((x.max(y) - FILL_RATIO).abs() < 1e-6);
         let mut point = mesh(&[[1., 2., 3.]]);
-        assert!(fill(&mut point).iter().all(|x| x.abs() < FILLED));
+        assert!(filled(&mut point).iter().all(|x| x.abs() < FILL_RATIO));
         let mut origin = mesh(&[[0., 0., 0.]]);
-        assert!(fill(&mut origin).iter().all(|x| x.abs() < FILLED));
+        assert!(filled(&mut origin).iter().all(|x| x.abs() < FILL_RATIO));
     }
 
     #[test]
     fn a_scene_that_is_not_finite_gets_no_camera() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::INFINITY, 2.0, MaterialId(0)));
-        frame(&mut scene);
+        add_camera(&mut scene);
         assert_eq!(scene.cameras, []);
     }
 
     #[test]
     fn a_files_own_camera_is_kept() {
         let mut scene = mesh(&BOX);
-        frame(&mut scene);
+        add_camera(&mut scene);
         let camera = scene.cameras.clone();
-        frame(&mut scene);
+        add_camera(&mut scene);
         assert_eq!(camera, scene.cameras);
     }
 }

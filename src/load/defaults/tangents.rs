@@ -1,4 +1,5 @@
-//! Tangents for normal maps, by Mikkelsen's method: the one that programs paint them for.
+//! The tangents of meshes with normal maps, by Mikkelsen's method: the one that programs paint the
+//! maps for.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,9 +10,10 @@ use rayon::prelude::*;
 
 use crate::scene::{Mesh, Scene};
 
-/// Gives tangents to the meshes whose material has a normal map and which have normals and texture
+/// Adds tangents to the meshes whose material has a normal map and which have normals and texture
 /// coordinates, but no tangents. Without normals a mesh is flat, and needs none.
-pub fn complete(scene: &mut Scene) {
+pub fn add_tangents(scene: &mut Scene) {
+    // The texture coordinates of the first normal map on each mesh: their set and their transform.
     let mut maps = vec![None; scene.meshes.len()];
     for instance in &scene.instances {
         let Some(material) = scene.materials.get(instance.material.0 as usize) else { continue };
@@ -27,18 +29,18 @@ pub fn complete(scene: &mut Scene) {
         let Some((set, transform)) = map else { return };
         let has_uvs = if set == 0 { !mesh.uvs.is_empty() } else { !mesh.second_uvs.is_empty() };
         if has_uvs && mesh.tangents.is_empty() && !mesh.normals.is_empty() {
-            add(Arc::make_mut(mesh), set, transform);
+            add_to_mesh(Arc::make_mut(mesh), set, transform);
         }
     });
 }
 
 /// Adds tangents to a mesh. Vertices at which they differ from triangle to triangle are split.
-fn add(mesh: &mut Mesh, set: u8, transform: Affine2) {
-    let corners = vec![None; mesh.triangles.len() * 3];
-    let mut of_mesh = Corners { mesh, set, transform, tangents: corners };
+fn add_to_mesh(mesh: &mut Mesh, set: u8, transform: Affine2) {
+    let tangents = vec![None; mesh.triangles.len() * 3];
+    let mut corners = Corners { mesh, set, transform, tangents };
     // It cannot fail: the error has no values.
-    let _ = generate_tangents(&mut of_mesh);
-    let tangents = of_mesh.tangents;
+    let _ = generate_tangents(&mut corners);
+    let tangents = corners.tangents;
     let count = mesh.positions.len();
     // The first tangent of a vertex stays with it; others get copies of the vertex.
     let mut first: Vec<Option<[f32; 4]>> = vec![None; count];
@@ -55,19 +57,20 @@ fn add(mesh: &mut Mesh, set: u8, transform: Affine2) {
         }
     }
     // Nothing shades by a tangent of what no triangle with texture coordinates uses.
-    const ANY: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
-    mesh.tangents = first.into_iter().map(|tangent| tangent.unwrap_or(ANY)).collect();
+    const UNUSED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
+    mesh.tangents = first.into_iter().map(|tangent| tangent.unwrap_or(UNUSED)).collect();
     mesh.tangents.extend(copied.iter().map(|(_, tangent)| tangent));
     let from: Vec<usize> = copied.into_iter().map(|(at, _)| at).collect();
-    copy(&mut mesh.positions, &from);
-    copy(&mut mesh.normals, &from);
-    copy(&mut mesh.uvs, &from);
-    copy(&mut mesh.second_uvs, &from);
-    copy(&mut mesh.colors, &from);
-    copy(&mut mesh.alphas, &from);
+    append_copies(&mut mesh.positions, &from);
+    append_copies(&mut mesh.normals, &from);
+    append_copies(&mut mesh.uvs, &from);
+    append_copies(&mut mesh.second_uvs, &from);
+    append_copies(&mut mesh.colors, &from);
+    append_copies(&mut mesh.alphas, &from);
 }
 
-fn copy<T: Copy>(values: &mut Vec<T>, from: &[usize]) {
+/// Appends copies of an attribute's values, if the mesh has the attribute.
+fn append_copies<T: Copy>(values: &mut Vec<T>, from: &[usize]) {
     if !values.is_empty() {
         values.extend(from.iter().map(|&i| values[i]).collect::<Vec<_>>());
     }
@@ -105,7 +108,7 @@ impl Geometry for Corners<'_> {
         normal.normalize_or(glam::Vec3::Y).to_array()
     }
 
-    /// Upward, since the third direction of the tangent space points up in the picture.
+    /// Returns texture coordinates whose v runs upward, since the third direction of the tangent space points up in the image.
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
         let uvs = if self.set == 0 { &self.mesh.uvs } else { &self.mesh.second_uvs };
         let uv = self.transform.transform_point2(Vec2::from(uvs[self.vertex(face, corner)]));
@@ -121,7 +124,7 @@ impl Geometry for Corners<'_> {
 mod tests {
     use super::*;
 
-    /// A square in the plane z = 0, seen from +z, whose picture stands upright.
+    /// A square in the plane z = 0, seen from +z, whose image is upright.
     fn square() -> Mesh {
         Mesh {
             positions: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
@@ -133,41 +136,41 @@ mod tests {
     }
 
     #[test]
-    fn tangents_run_along_the_picture_and_the_third_direction_up() {
+    fn tangents_run_along_the_image_and_the_third_direction_up() {
         let mut mesh = square();
-        add(&mut mesh, 0, Affine2::IDENTITY);
-        // z × x · 1 is y, which is up in the picture.
+        add_to_mesh(&mut mesh, 0, Affine2::IDENTITY);
+        // z × x · 1 is y, which is up in the image.
         assert_eq!(mesh.tangents, [[1., 0., 0., 1.]; 4]);
     }
 
     #[test]
-    fn a_mirrored_picture_changes_the_sign() {
+    fn a_mirrored_image_changes_the_sign() {
         let mut mesh = square();
         mesh.uvs.iter_mut().for_each(|uv| uv[0] = 1.0 - uv[0]);
-        add(&mut mesh, 0, Affine2::IDENTITY);
+        add_to_mesh(&mut mesh, 0, Affine2::IDENTITY);
         assert_eq!(mesh.tangents, [[-1., 0., 0., -1.]; 4]);
     }
 
     #[test]
-    fn a_turned_picture_turns_the_tangents() {
+    fn a_turned_image_turns_the_tangents() {
         let mut mesh = square();
         (mesh.uvs, mesh.second_uvs) = (Vec::new(), mesh.uvs);
-        // u on the picture is v of the mesh, which runs down.
+        // u on the image is v of the mesh, which runs down.
         let quarter = Affine2::from_cols_array(&[0., -1., 1., 0., 0., 0.]);
-        add(&mut mesh, 1, quarter);
+        add_to_mesh(&mut mesh, 1, quarter);
         assert_eq!(mesh.tangents, [[0., -1., 0., 1.]; 4]);
     }
 
     #[test]
     fn a_vertex_between_two_ways_to_lie_is_split() {
         let mut mesh = square();
-        // The second triangle has the picture mirrored about its diagonal.
+        // The second triangle has the image mirrored about its diagonal.
         mesh.positions.push([0., 1., 0.]);
         mesh.positions[4] = [-1., 1., 0.];
         mesh.normals.push([0., 0., 1.]);
         mesh.uvs.push([1., 1.]);
         mesh.triangles = vec![[0, 1, 2], [0, 2, 4]];
-        add(&mut mesh, 0, Affine2::IDENTITY);
+        add_to_mesh(&mut mesh, 0, Affine2::IDENTITY);
         assert!(mesh.positions.len() > 5, "{:?}", mesh.tangents);
         assert_eq!(mesh.tangents.len(), mesh.positions.len());
         assert_eq!(mesh.triangles[0], [0, 1, 2]);

@@ -1,4 +1,4 @@
-//! Which extensions are read, and what to do about the others.
+//! The extensions that are read, and the refusal of files that require others.
 
 use gltf::json;
 
@@ -6,53 +6,33 @@ use crate::error::{Error, Place, Result};
 use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are read.
+#[rustfmt::skip]
 const READ: [&str; 18] = [
-    "EXT_meshopt_compression",
-    "KHR_draco_mesh_compression",
-    "KHR_implicit_shapes",
-    "EXT_mesh_gpu_instancing",
-    "EXT_texture_webp",
-    "KHR_lights_punctual",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_specular",
-    "KHR_materials_transmission",
-    "KHR_materials_unlit",
-    "KHR_materials_variants",
-    "KHR_materials_volume",
-    "KHR_mesh_quantization",
-    "KHR_node_visibility",
-    "KHR_texture_basisu",
+    "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_implicit_shapes",
+    "EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
+    "KHR_materials_volume", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 
 /// The extensions that say nothing of what is seen: metadata, physics, sound, what can be clicked,
 /// and coarser meshes beside the ones that are shown.
+#[rustfmt::skip]
 const UNSEEN: [&str; 15] = [
-    "EXT_feature_metadata",
-    "EXT_instance_features",
-    "EXT_mesh_features",
-    "EXT_structural_metadata",
-    "FB_ngon_encoding",
-    "GODOT_single_root",
-    "KHR_audio_emitter",
-    "KHR_interactivity",
-    "KHR_node_hoverability",
-    "KHR_node_selectability",
-    "KHR_physics_rigid_bodies",
-    "KHR_xmp",
-    "KHR_xmp_json_ld",
-    "MSFT_lod",
-    "MSFT_physics",
+    "EXT_feature_metadata", "EXT_instance_features", "EXT_mesh_features",
+    "EXT_structural_metadata", "FB_ngon_encoding", "GODOT_single_root", "KHR_audio_emitter",
+    "KHR_interactivity", "KHR_node_hoverability", "KHR_node_selectability",
+    "KHR_physics_rigid_bodies", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_lod", "MSFT_physics",
 ];
-/// How the names of further such extensions begin.
+/// The beginnings of the names of further such extensions.
 const UNSEEN_FAMILIES: [&str; 6] =
     ["OMI_collider", "OMI_physics_", "OMI_seat", "OMI_spawn_point", "OMI_vehicle_", "OMI_link"];
 
 /// Refuses a file that cannot be shown without an extension that isn't read, and warns of
 /// extensions that a file uses but can do without.
-pub fn check(root: &json::Root, tally: &mut Diagnostics) -> Result<()> {
+pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
     let is_read = |name: &str| {
         READ.contains(&name)
             || UNSEEN.contains(&name)
@@ -66,19 +46,19 @@ pub fn check(root: &json::Root, tally: &mut Diagnostics) -> Result<()> {
         }
     }
     for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
-        tally.unsupported(&format!("the extension {name} is not read"), 1, String::new);
+        diagnostics.unsupported(&format!("the extension {name} is not read"), 1, String::new);
     }
     Ok(())
 }
 
-/// What a user can do about an extension.
+/// The advice on a file that requires an extension.
 fn remedy(name: &str) -> &'static str {
     match name {
         "KHR_meshopt_compression" => {
             "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"
         }
         "EXT_texture_avif" => {
-            "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its pictures into PNG"
+            "`npx @gltf-transform/cli png IN.glb OUT.glb` turns its images into PNG"
         }
         "KHR_techniques_webgl" | "KHR_technique_webgl" => "export it with glTF's own materials",
         _ => {

@@ -1,100 +1,43 @@
 //! glTF 2.0 files, text and binary.
 //!
-//! The `gltf` crate gives the types of the JSON; whatever follows an index, an offset or a URI is
-//! done here, checked, since the crate's own readers trust the file. What is read, and how it maps
-//! to a scene, stands in docs/formats.md.
+//! The `gltf` crate gives the types of the JSON. Indices, offsets and URIs are followed here, with
+//! checks, since the crate's own readers trust the file. docs/formats.md says what is read, and how
+//! it maps to a scene.
 
 mod accessor;
-mod animation;
 mod buffers;
-mod compact;
+mod compression;
 mod container;
-mod deform;
-mod document;
-mod draco;
 mod extensions;
-mod importer;
-mod indices;
-mod instancing;
-mod lights;
-mod material;
-mod meshopt;
-mod nodes;
-mod number;
-mod optics;
-mod packed;
-mod primitive;
-mod rows;
-mod shapes;
-mod slot;
-mod texture;
-mod topology;
-mod validation;
-mod variants;
+mod import;
+mod json;
+mod validate;
 
-use std::collections::HashMap;
-use std::path::Path;
-
-use gltf::json::Value;
-
-use self::accessor::Accessors;
-use self::animation::Clip;
-use self::buffers::Buffers;
-use self::importer::Importer;
-use self::material::Materials;
-use self::nodes::Placed;
-use self::texture::Textures;
-use self::variants::Variants;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::load::{Choice, Loaded};
-use crate::scene::Scene;
+use crate::load::{Loaded, ModelOptions};
 
 /// Loads a `.gltf` or `.glb` file.
 ///
 /// # Errors
-/// When it cannot be read, is damaged, or requires an extension that isn't read; the error names
-/// the place in the JSON. When there is no such animation.
-pub fn load(file: OpenedFile, guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
+/// When it cannot be read, is damaged, or requires an extension that isn't read; the error has a
+/// JSON path. When it has no animation of the chosen name.
+pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &ModelOptions) -> Result<Loaded> {
     let path = file.path.clone();
-    let bytes = file.read(guard)?;
-    import(&path, &bytes, guard, choice).map_err(|e| e.at(&path))
-}
-
-fn import(path: &Path, bytes: &[u8], guard: &Sandbox, choice: &Choice) -> Result<Loaded> {
-    let (json, bin) = container::split(bytes)?;
-    guard.check(Limit::Json, document::memory(json))?;
-    let (root, value) = document::parse(json)?;
-    let mut tally = Diagnostics::default();
-    match value {
-        Value::Null => tally.say("the JSON is too large to be held against the standard"),
-        _ => validation::validate(&value, bin.map(<[u8]>::len), &mut tally),
-    }
-    extensions::check(&root, &mut tally)?;
-    let buffers = Buffers::new(&root, guard, path, bin);
-    let accessors = Accessors::new(&root, guard, &buffers);
-    let mut clip = Clip::read(&root, guard, &accessors, choice.animation, &mut tally)?;
-    let nodes = nodes::walk(&root, guard, &mut clip, &mut tally)?;
-    let order: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
-    let by_index: HashMap<usize, Placed> = nodes.into_iter().map(|n| (n.index, n)).collect();
-    let mut importer = Importer {
-        root: &root,
-        guard,
-        json: &value,
-        accessors,
-        materials: Materials::new(&root, Textures::new(&root, guard, &buffers, choice.pictures)),
-        variants: Variants::read(&root, choice.variant),
-        meshes: HashMap::new(),
-        nodes: &by_index,
-        joints: HashMap::new(),
-        scene: Scene::default(),
-        clip,
-        tally,
+    let bytes = file.read(sandbox)?;
+    let load = || {
+        let (json, bin) = container::split(&bytes)?;
+        sandbox.check(Limit::Json, json::estimated_memory(json))?;
+        let document = json::parse(json)?;
+        let mut diagnostics = Diagnostics::default();
+        match &document.value {
+            Some(value) => validate::validate(value, bin.map(<[u8]>::len), &mut diagnostics),
+            None => diagnostics.note("the JSON is too large to be held against the standard"),
+        }
+        extensions::check(&document.root, &mut diagnostics)?;
+        import::import(&path, &document, bin, sandbox, choice, diagnostics)
     };
-    for index in order {
-        importer.node(&by_index[&index])?;
-    }
-    Ok(importer.finish(path))
+    load().map_err(|e| e.at(&path))
 }

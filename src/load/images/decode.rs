@@ -1,4 +1,4 @@
-//! Decoding pictures for textures.
+//! The decoder of images for textures.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -13,137 +13,154 @@ use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Image, Texels};
 
-/// The longest side of a picture, in pixels.
+/// The longest side of an image, in pixels.
 const MAX_SIDE: u32 = 1 << 15;
-/// So many pixels for each byte of a file do not count.
-const PIXELS_PER_BYTE: u64 = 16;
+/// The pixels for each byte of a file that do not count toward the limit.
+const FREE_PIXELS_PER_BYTE: u64 = 16;
+/// The number of encoded images that are kept in memory until they are decoded in parallel.
+const BATCH: usize = 16;
 
-/// Where the bytes of a picture (PNG, JPEG, WebP, TGA, BMP, Radiance HDR, OpenEXR or KTX 2) are.
+/// The place of the bytes of an image (PNG, JPEG, WebP, TGA, BMP, Radiance HDR, OpenEXR or KTX 2).
 pub enum Source<'a> {
-    /// Here, and by this name.
+    /// Bytes in memory, and the name of the image.
     Bytes(Cow<'a, [u8]>, String),
-    /// In a file.
+    /// A file.
     File(OpenedFile),
 }
 
-/// A picture that is about to be decoded, or only named.
-enum Ready<'a> {
+/// An image that is about to be decoded, or only named.
+enum PreparedImage<'a> {
     Unread(String),
-    Encoded { bytes: Cow<'a, [u8]>, name: String, path: Option<PathBuf>, pixels: u64 },
+    Encoded(EncodedImage<'a>),
 }
 
-/// So many pictures wait, encoded, until they are decoded side by side.
-const TOGETHER: usize = 16;
+/// The bytes of an image, within the limits.
+struct EncodedImage<'a> {
+    bytes: Cow<'a, [u8]>,
+    name: String,
+    /// The path, if it is a file.
+    path: Option<PathBuf>,
+    /// The number of pixels of 8-bit numbers that take as much memory.
+    pixels: u64,
+}
 
-/// Decodes pictures, if they are `wanted`; otherwise they are only named, and files only have to be
-/// there. `open` says where each is, and opens its file, few at a time.
+/// Decodes the images that are needed, in parallel; the others are only named, and their files only
+/// have to be there. `open` opens the file of an image: few are open at a time.
 ///
-/// What they take of the limits they take in their order, so that which of them are one too many
-/// does not depend on threads.
+/// The limits are charged in the order of the images, so that the first that is too much does not
+/// depend on threads.
 ///
-/// Each is an error where it cannot be opened or read, is of none of these formats, is damaged, is
-/// larger than 32768 pixels on a side, or is one more, or larger, than the limits allow.
+/// Each result is an error where the image cannot be opened or read, is of none of these formats,
+/// is damaged, is larger than 32768 pixels on a side, or exceeds a limit.
 pub fn decode_all<'a, T: Sync>(
-    pictures: &[T],
-    guard: &Sandbox,
+    images: &[T],
+    sandbox: &Sandbox,
     open: impl Fn(&T) -> Result<Source<'a>>,
-    wanted: impl Fn(&T) -> bool,
+    is_needed: impl Fn(&T) -> bool,
 ) -> Vec<Result<Image>> {
-    let mut images = Vec::with_capacity(pictures.len());
-    for some in pictures.chunks(TOGETHER) {
-        let ready = |picture| open(picture).and_then(|from| ready(from, guard, wanted(picture)));
-        let ready: Vec<_> = some.iter().map(ready).collect();
-        images.par_extend(ready.into_par_iter().map(|ready| ready.and_then(Ready::decode)));
+    let mut decoded = Vec::with_capacity(images.len());
+    for batch in images.chunks(BATCH) {
+        let prepare =
+            |image| open(image).and_then(|source| prepare(source, sandbox, is_needed(image)));
+        let prepared: Vec<_> = batch.iter().map(prepare).collect();
+        decoded.par_extend(prepared.into_par_iter().map(|image| match image? {
+            PreparedImage::Unread(name) => Ok(Image::unread(name)),
+            PreparedImage::Encoded(image) => image.decode(),
+        }));
     }
-    images
+    decoded
 }
 
-/// Reads the bytes of a picture, and takes of the limits what it will take.
-fn ready<'a>(source: Source<'a>, guard: &Sandbox, wanted: bool) -> Result<Ready<'a>> {
+/// Reads the bytes of an image if it is needed, and charges the limits for what it will take.
+fn prepare<'a>(
+    source: Source<'a>,
+    sandbox: &Sandbox,
+    is_needed: bool,
+) -> Result<PreparedImage<'a>> {
     let (bytes, name, path) = match source {
-        Source::Bytes(_, name) if !wanted => return Ok(Ready::Unread(name)),
+        Source::Bytes(_, name) if !is_needed => return Ok(PreparedImage::Unread(name)),
         Source::Bytes(bytes, name) => (bytes, name, None),
         Source::File(file) => {
             let path = file.path.clone();
             let name = path.display().to_string();
-            if !wanted {
-                return Ok(Ready::Unread(name));
+            if !is_needed {
+                return Ok(PreparedImage::Unread(name));
             }
-            (file.read(guard)?.into(), name, Some(path))
+            (file.read(sandbox)?.into(), name, Some(path))
         }
     };
-    match weigh(&bytes, &name, guard) {
-        Ok(pixels) => Ok(Ready::Encoded { bytes, name, path, pixels }),
-        Err(error) => Err(match path {
-            Some(path) => error.at(&path),
+    let mut image = EncodedImage { bytes, name, path, pixels: 0 };
+    image.pixels = image.charge_limits(sandbox).map_err(|e| image.locate(e))?;
+    Ok(PreparedImage::Encoded(image))
+}
+
+impl EncodedImage<'_> {
+    /// Adds the path to an error, if the image is a file.
+    fn locate(&self, error: Error) -> Error {
+        match &self.path {
+            Some(path) => error.at(path),
             None => error,
-        }),
-    }
-}
-
-fn reader<'a>(bytes: &'a [u8], name: &str) -> Result<ImageReader<Cursor<&'a [u8]>>> {
-    let mut reader = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(|e| Error::input(format!("the picture cannot be read: {e}")))?;
-    if reader.format().is_none() && name.to_lowercase().ends_with(".tga") {
-        // A TGA file has no signature to guess by.
-        reader.set_format(image::ImageFormat::Tga);
-    }
-    Ok(reader)
-}
-
-fn fail(error: image::ImageError) -> Error {
-    Error::input(format!("the picture cannot be decoded: {error}"))
-}
-
-/// How many pixels of 8-bit numbers a picture takes as much memory as, which are taken of the limits.
-fn weigh(bytes: &[u8], name: &str, guard: &Sandbox) -> Result<u64> {
-    guard.take(Limit::Pictures, 1)?;
-    let ([width, height], weight) = if ktx2::is_ktx(bytes) {
-        let ktx2::Header { size, is_float } = ktx2::header(bytes)?;
-        if size.into_iter().any(|side| side > MAX_SIDE) {
-            return Err(Error::input(format!("the picture is larger than {MAX_SIDE} on a side")));
         }
-        (size, if is_float { 4 } else { 1 })
-    } else {
-        let decoder = reader(bytes, name)?.into_decoder().map_err(fail)?;
-        (decoder.dimensions().into(), weight(decoder.color_type()))
-    };
-    let pixels = u64::from(width) * u64::from(height) * weight;
-    guard.take(Limit::Pixels, pixels.saturating_sub(PIXELS_PER_BYTE * bytes.len() as u64))?;
-    Ok(pixels)
-}
+    }
 
-impl Ready<'_> {
-    fn decode(self) -> Result<Image> {
-        let (bytes, name, path, pixels) = match self {
-            Self::Unread(name) => return Ok(Image::unread(name)),
-            Self::Encoded { bytes, name, path, pixels } => (bytes, name, path, pixels),
-        };
-        let decode = || {
-            if ktx2::is_ktx(&bytes) {
-                return Ok((ktx2::header(&bytes)?.size, ktx2::decode(&bytes)?));
+    /// A reader of the formats of the `image` crate.
+    fn reader(&self) -> Result<ImageReader<Cursor<&[u8]>>> {
+        let mut reader = ImageReader::new(Cursor::new(&self.bytes[..]))
+            .with_guessed_format()
+            .map_err(|e| Error::input(format!("the image cannot be read: {e}")))?;
+        if reader.format().is_none() && self.name.to_lowercase().ends_with(".tga") {
+            // A TGA file has no signature to guess by.
+            reader.set_format(image::ImageFormat::Tga);
+        }
+        Ok(reader)
+    }
+
+    /// Charges the limits for an image, and returns how many pixels of 8-bit numbers take as much
+    /// memory.
+    fn charge_limits(&self, sandbox: &Sandbox) -> Result<u64> {
+        sandbox.consume(Limit::Pictures, 1)?;
+        let ([width, height], depth) = if ktx2::is_ktx(&self.bytes) {
+            let ktx2::Header { size, is_float } = ktx2::header(&self.bytes)?;
+            if size.into_iter().any(|side| side > MAX_SIDE) {
+                return Err(Error::input(format!("the image is larger than {MAX_SIDE} on a side")));
             }
-            let mut reader = reader(&bytes, &name)?;
+            (size, if is_float { 4 } else { 1 })
+        } else {
+            let decoder = self.reader()?.into_decoder().map_err(undecodable)?;
+            (decoder.dimensions().into(), channel_bytes(decoder.color_type()))
+        };
+        let pixels = u64::from(width) * u64::from(height) * depth;
+        let free = FREE_PIXELS_PER_BYTE * self.bytes.len() as u64;
+        sandbox.consume(Limit::Pixels, pixels.saturating_sub(free))?;
+        Ok(pixels)
+    }
+
+    fn decode(self) -> Result<Image> {
+        let decode = || {
+            if ktx2::is_ktx(&self.bytes) {
+                return Ok((ktx2::header(&self.bytes)?.size, ktx2::decode(&self.bytes)?));
+            }
+            let mut reader = self.reader()?;
             let mut limits = image::Limits::default();
             limits.max_image_width = Some(MAX_SIDE);
             limits.max_image_height = Some(MAX_SIDE);
             // Four channels, more than twice, and room for what decoders need besides.
-            limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
+            limits.max_alloc = Some((16 * self.pixels).saturating_add(1 << 26));
             reader.limits(limits);
-            let picture = reader.decode().map_err(fail)?;
-            Ok(([picture.width(), picture.height()], texels(picture)))
+            let image = reader.decode().map_err(undecodable)?;
+            Ok(([image.width(), image.height()], texels(image)))
         };
-        let (size, texels) = decode().map_err(|e: Error| match &path {
-            Some(path) => e.at(path),
-            None => e,
-        })?;
-        Ok(Image::new(name, size, light(texels)))
+        let (size, texels) = decode().map_err(|e| self.locate(e))?;
+        Ok(Image::new(self.name, size, with_valid_floats(texels)))
     }
 }
 
-/// How many pixels of 8-bit numbers a pixel takes as much memory as.
-fn weight(color: ColorType) -> u64 {
+fn undecodable(error: image::ImageError) -> Error {
+    Error::input(format!("the image cannot be decoded: {error}"))
+}
+
+/// The number of bytes of a channel, for the memory that pixels take.
+fn channel_bytes(color: ColorType) -> u64 {
     use ColorType as C;
     match color {
         C::Rgb32F | C::Rgba32F => 4,
@@ -152,30 +169,30 @@ fn weight(color: ColorType) -> u64 {
     }
 }
 
-/// The pixels as finely as the file has them.
-fn texels(picture: DynamicImage) -> Texels {
+/// The pixels of an image, with channels as precise as the file has them.
+fn texels(image: DynamicImage) -> Texels {
     use DynamicImage as D;
-    match picture {
+    match image {
         D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
-            Texels::Floats(pixels(picture.into_rgba32f().into_raw()))
+            Texels::Floats(pixels(image.into_rgba32f().into_raw()))
         }
         D::ImageLuma16(_) | D::ImageLumaA16(_) | D::ImageRgb16(_) | D::ImageRgba16(_) => {
-            Texels::Words(pixels(picture.into_rgba16().into_raw()))
+            Texels::Words(pixels(image.into_rgba16().into_raw()))
         }
-        _ => Texels::Bytes(pixels(picture.into_rgba8().into_raw())),
+        _ => Texels::Bytes(pixels(image.into_rgba8().into_raw())),
     }
 }
 
-/// The same, where floats that are no light, negative or not finite, are 0.
-fn light(mut texels: Texels) -> Texels {
+/// Sets floats that are negative or not finite to 0.
+fn with_valid_floats(mut texels: Texels) -> Texels {
     if let Texels::Floats(texels) = &mut texels {
-        let is_light = |x: &f32| x.is_finite() && *x >= 0.0;
-        texels.as_flattened_mut().iter_mut().filter(|x| !is_light(x)).for_each(|x| *x = 0.0);
+        let is_valid = |x: &f32| x.is_finite() && *x >= 0.0;
+        texels.as_flattened_mut().iter_mut().filter(|x| !is_valid(x)).for_each(|x| *x = 0.0);
     }
     texels
 }
 
-/// Four values a pixel.
+/// Pixels of four values each.
 fn pixels<T: Copy>(values: Vec<T>) -> Vec<[T; 4]> {
     values.as_chunks().0.to_vec()
 }
@@ -187,29 +204,29 @@ mod tests {
     use image::{ImageBuffer, ImageFormat, Rgb, Rgba};
     use std::path::Path;
 
-    fn encoded(picture: DynamicImage, format: ImageFormat) -> Vec<u8> {
+    fn encoded(image: DynamicImage, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
-        picture.write_to(&mut bytes, format).unwrap();
+        image.write_to(&mut bytes, format).unwrap();
         bytes.into_inner()
     }
 
-    fn decoded(picture: DynamicImage, format: ImageFormat) -> Texels {
-        let guard = Sandbox::new(Path::new("a"), false, Limits::default()).unwrap();
-        let bytes = encoded(picture, format);
+    fn decoded(image: DynamicImage, format: ImageFormat) -> Texels {
+        let sandbox = Sandbox::new(Path::new("a"), false, Limits::default()).unwrap();
+        let bytes = encoded(image, format);
         let open = |_: &()| Ok(Source::Bytes(bytes.as_slice().into(), "a".to_owned()));
-        decode_all(&[()], &guard, open, |_| true).remove(0).unwrap().texels
+        decode_all(&[()], &sandbox, open, |_| true).remove(0).unwrap().texels
     }
 
     #[test]
-    fn the_first_pictures_are_those_that_the_limits_allow() {
-        let limits = Limits::default().with(Limit::Pictures, 20);
-        let guard = Sandbox::new(Path::new("a"), false, limits).unwrap();
+    fn the_first_images_are_those_that_the_limits_allow() {
+        let limits = Limits::default().with_limit(Limit::Pictures, 20);
+        let sandbox = Sandbox::new(Path::new("a"), false, limits).unwrap();
         let red = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(1, 1, Rgb([255, 0, 0])));
         let bytes = encoded(red, ImageFormat::Png);
         let open = |_: &usize| Ok(Source::Bytes(bytes.as_slice().into(), "a".to_owned()));
         let numbers: Vec<usize> = (0..50).collect();
-        let made = decode_all(&numbers, &guard, open, |_| true);
-        assert!(numbers.iter().zip(&made).all(|(&i, made)| made.is_ok() == (i < 20)));
+        let decoded = decode_all(&numbers, &sandbox, open, |_| true);
+        assert!(numbers.iter().zip(&decoded).all(|(&i, image)| image.is_ok() == (i < 20)));
     }
 
     #[test]
@@ -236,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_stay_floats_in_radiance_pictures() {
+    fn floats_stay_floats_in_radiance_images() {
         let bright =
             DynamicImage::ImageRgb32F(ImageBuffer::from_pixel(1, 1, Rgb([8.0f32, 2.0, 0.0])));
         let expected = Texels::Floats(vec![[8.0, 2.0, 0.0, 1.0]]);
@@ -244,9 +261,9 @@ mod tests {
     }
 
     #[test]
-    fn floats_that_are_no_light_become_none() {
+    fn floats_that_are_negative_or_not_finite_become_zero() {
         let odd = Rgba([f32::NAN, -1.0, f32::INFINITY, 1.0]);
         let odd = DynamicImage::ImageRgba32F(ImageBuffer::from_pixel(1, 1, odd));
-        assert_eq!(light(texels(odd)), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
+        assert_eq!(with_valid_floats(texels(odd)), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
     }
 }

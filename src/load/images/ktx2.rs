@@ -1,6 +1,6 @@
-//! Pictures in KTX 2 files, packed by Basis Universal: those of KHR_texture_basisu.
+//! Images in KTX 2 files that Basis Universal has compressed, as KHR_texture_basisu has them.
 //!
-//! The `basisu` crate unpacks them. It trusts some numbers of the header, so that these are checked
+//! The `basisu` crate transcodes them. It trusts some numbers of the header, so these are checked
 //! here first (the KTX 2.0 specification, section 3).
 
 use basisu::{DecodeFlags, SourceFormat, TargetFormat, Transcoder};
@@ -9,31 +9,31 @@ use exr::prelude::f16;
 use crate::error::{Error, Result};
 use crate::scene::Texels;
 
-/// What every KTX 2 file begins with.
+/// The first bytes of every KTX 2 file.
 const IDENTIFIER: &[u8; 12] = b"\xABKTX 20\xBB\r\n\x1A\n";
-/// Where the header gives the place and the length of what is written beside the picture.
-const KEYS_AND_VALUES: std::ops::Range<usize> = 56..64;
-/// Where it gives those of what all levels share.
+/// The place, in the header, of the offset and length of the key/value data.
+const KEY_VALUE_DATA: std::ops::Range<usize> = 56..64;
+/// The place of the offset and length of the supercompression global data.
 const GLOBAL_DATA: usize = 64;
-/// Where it gives those of the first and largest level, and how long that is once unpacked.
+/// The place of the offset, length and uncompressed length of the first and largest level.
 const LEVEL: usize = 80;
 /// Vulkan's formats: undefined, and blocks of 4×4 floats.
 const UNDEFINED: u32 = 0;
 const FLOATS: u32 = 1_000_066_000;
-/// The last of the ways in which levels are packed that glTF allows.
+/// The last of the supercompression schemes that glTF allows.
 const ZSTANDARD: u32 = 2;
-/// What a block of 4×4 pixels takes before it is packed any further, in bytes.
+/// The size of a block of 4×4 pixels without supercompression, in bytes.
 const BLOCK: u64 = 16;
 
-/// What a picture's header says, as far as it matters before the picture is unpacked.
+/// The properties in a header that matter before the image is decoded.
 pub struct Header {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// Whether its values are floats.
+    /// True if the values are floats.
     pub is_float: bool,
 }
 
-/// Whether bytes are those of a KTX 2 file.
+/// True if bytes are those of a KTX 2 file.
 pub fn is_ktx(bytes: &[u8]) -> bool {
     bytes.starts_with(IDENTIFIER)
 }
@@ -41,47 +41,48 @@ pub fn is_ktx(bytes: &[u8]) -> bool {
 /// Reads and checks the header of a KTX 2 file.
 ///
 /// # Errors
-/// When it is cut short or points beyond the file, or the picture is not one flat one that Basis
-/// Universal has packed.
+/// When it is cut short or points beyond the file, or the image is not a single flat one that Basis
+/// Universal has compressed.
 pub fn header(bytes: &[u8]) -> Result<Header> {
-    let fail = |message: &str| Error::input(format!("the picture cannot be decoded: {message}"));
-    let word = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
-    let long = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
-    let end = |at: usize| long(at)?.checked_add(long(at + 8)?);
-    let is_there = |at: usize| end(at).is_some_and(|end| end <= bytes.len() as u64);
-    let unpacked = match long(LEVEL + 16) {
-        Some(unpacked) if is_there(GLOBAL_DATA) && is_there(LEVEL) => unpacked,
-        _ => return Err(fail("the KTX file is cut short")),
-    };
-    let of = |at: usize| word(at).unwrap_or(0);
-    let (format, packing) = (of(12), of(44));
-    if !matches!(format, UNDEFINED | FLOATS) || packing > ZSTANDARD {
-        return Err(fail("the KTX file has no picture that Basis Universal has packed"));
+    let fail = |message: &str| Error::input(format!("the image cannot be decoded: {message}"));
+    let u32_at = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
+    let u64_at = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
+
+    // What the header refers to is within the file.
+    let end = |at: usize| u64_at(at)?.checked_add(u64_at(at + 8)?);
+    let is_within = |at: usize| end(at).is_some_and(|end| end <= bytes.len() as u64);
+    let uncompressed = u64_at(LEVEL + 16).filter(|_| is_within(GLOBAL_DATA) && is_within(LEVEL));
+    let uncompressed = uncompressed.ok_or_else(|| fail("the KTX file is cut short"))?;
+
+    // One image, of a size that its data can have.
+    let [format, width, height, depth, layers, faces, scheme] =
+        [12, 20, 24, 28, 32, 36, 44].map(|at| u32_at(at).unwrap_or(0));
+    if !matches!(format, UNDEFINED | FLOATS) || scheme > ZSTANDARD {
+        return Err(fail("the KTX file has no image that Basis Universal has compressed"));
     }
-    let (width, height, depth, layers, faces) = (of(20), of(24), of(28), of(32), of(36));
     if width == 0 || height == 0 || depth > 0 || layers > 1 || faces != 1 {
-        return Err(fail("the KTX file has more or less than one flat picture"));
+        return Err(fail("the KTX file has more or less than one flat image"));
     }
     let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4));
-    if unpacked > BLOCK * blocks {
+    if uncompressed > BLOCK * blocks {
         return Err(fail("the KTX file has more data than its size in pixels asks for"));
     }
     Ok(Header { size: [width, height], is_float: format == FLOATS })
 }
 
-/// Unpacks the picture of a file whose header is sound.
+/// Decodes the image of a file whose header is valid.
 ///
 /// # Errors
 /// When it is damaged.
 pub fn decode(bytes: &[u8]) -> Result<Texels> {
     let fail =
-        |error: basisu::Error| Error::input(format!("the picture cannot be decoded: {error:?}"));
-    // Nothing there matters, and the crate takes their lengths for granted.
+        |error: basisu::Error| Error::input(format!("the image cannot be decoded: {error:?}"));
+    // The key/value data do not matter, and the crate trusts their lengths.
     let mut bytes = bytes.to_vec();
-    bytes.get_mut(KEYS_AND_VALUES).into_iter().for_each(|some| some.fill(0));
-    let picture = Transcoder::new(&bytes).map_err(fail)?;
-    let transcode = |target| picture.transcode(0, target, DecodeFlags::NONE).map_err(fail);
-    match picture.source_format() {
+    bytes.get_mut(KEY_VALUE_DATA).into_iter().for_each(|range| range.fill(0));
+    let transcoder = Transcoder::new(&bytes).map_err(fail)?;
+    let transcode = |target| transcoder.transcode(0, target, DecodeFlags::NONE).map_err(fail);
+    match transcoder.source_format() {
         SourceFormat::Etc1s | SourceFormat::UastcLdr => {
             Ok(Texels::Bytes(transcode(TargetFormat::Rgba32)?.as_chunks().0.to_vec()))
         }
@@ -90,6 +91,6 @@ pub fn decode(bytes: &[u8]) -> Result<Texels> {
             let halves = halves.as_chunks().0.iter().map(|half| f16::from_le_bytes(*half).to_f32());
             Ok(Texels::Floats(halves.collect::<Vec<f32>>().as_chunks().0.to_vec()))
         }
-        other => Err(Error::input(format!("pictures of the kind {other:?} are not read"))),
+        other => Err(Error::input(format!("images of the kind {other:?} are not read"))),
     }
 }

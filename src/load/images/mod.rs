@@ -1,5 +1,7 @@
-//! Images for textures: decoding, KTX 2 containers, and placeholders for images that cannot be read.
+//! Images for textures: decoding, KTX 2 containers, placeholders for images that cannot be read,
+//! and the cache of textures that all importers share.
 
 pub mod decode;
-pub mod ktx2;
+mod ktx2;
 pub mod placeholder;
+pub mod texture_cache;

@@ -1,33 +1,34 @@
-//! What stands in for pictures that cannot be had.
+//! Placeholders for images that cannot be read.
 
 use std::sync::Arc;
 
+use super::texture_cache::set_image;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::scene::{Image, Scene, TextureId, Transfer};
 
-/// Gives a picture to the textures that show it; says whether it could be had.
+/// Gives an image to the textures that show it, or a placeholder if it could not be read; returns
+/// true if it was read.
 ///
-/// Where it cannot, colours become a checker that nobody takes for the real thing. What is no colour
-/// is as if there were no picture: white, which changes no factor, and no normal map.
-pub fn show(
+/// The placeholder of a colour is a checker of magenta and black, which nobody takes for the real
+/// image. Other values are as without an image: white, which changes no factor, and no normal map.
+pub fn set_image_or_placeholder(
     image: Result<Image>,
     name: &str,
-    shown_by: impl Iterator<Item = TextureId> + Clone,
+    textures: &[TextureId],
     scene: &mut Scene,
-    tally: &mut Diagnostics,
+    diagnostics: &mut Diagnostics,
 ) -> bool {
     let error = match image {
         Ok(image) => {
-            let image = Arc::new(image);
-            shown_by.for_each(|id| scene.textures[id.0 as usize].image = image.clone());
+            set_image(image, textures, scene);
             return true;
         }
         Err(error) => error,
     };
     let (checker, white) = (Arc::new(checker(name)), Arc::new(white(name)));
     let mut is_color = false;
-    for id in shown_by {
+    for &id in textures {
         let texture = &mut scene.textures[id.0 as usize];
         if texture.transfer == Transfer::Srgb {
             texture.image = checker.clone();
@@ -35,24 +36,26 @@ pub fn show(
             continue;
         }
         texture.image = white.clone();
-        let maps = scene.materials.iter_mut().map(|material| &mut material.normal_map);
-        maps.for_each(|map| _ = map.take_if(|map| map.texture == id));
+        for material in &mut scene.materials {
+            material.normal_map.take_if(|map| map.texture == id);
+        }
     }
-    let instead = match is_color {
-        true => "a magenta checker takes its place",
-        false => "what it would say is left out",
+    let instead = if is_color {
+        "a magenta checker takes its place"
+    } else {
+        "what it would say is left out"
     };
-    tally.placeholder(format!("{error}; {instead}"));
+    diagnostics.placeholder(format!("{error}; {instead}"));
     false
 }
 
 /// A checker of magenta and black.
 fn checker(name: &str) -> Image {
     let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
-    Image::bytes(format!("{name} (missing)"), [2, 2], vec![magenta, black, black, magenta])
+    Image::from_bytes(format!("{name} (missing)"), [2, 2], vec![magenta, black, black, magenta])
 }
 
-/// One white pixel: what textures show until their pictures are decoded.
-pub fn white(name: &str) -> Image {
-    Image::bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
+/// One white pixel.
+fn white(name: &str) -> Image {
+    Image::from_bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
 }

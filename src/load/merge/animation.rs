@@ -1,135 +1,163 @@
-//! How a placed model moves: by its own animation, and with the space that it is placed in.
+//! The animation of an instance of a model: the model's own, within the space that the instance moves
+//! with.
 
-use super::{Firsts, MergedModel, Placement};
+use std::collections::HashSet;
+
+use super::{MergedModel, ModelInstance, SceneIndices};
 use crate::scene::animation::{Animated, Animation, Node, NodeId};
 
-impl MergedModel {
-    /// Adds how the placed model moves: as its own animation says, all of it with the placement's
-    /// node.
-    pub(super) fn animate(
-        &self,
-        animation: &mut Animation,
-        placement: &Placement,
-        first: &Firsts,
-        cameras: &[Option<usize>],
-    ) {
-        let shift = animation.nodes.len() as u32;
-        let (nodes, movers) =
-            self.animation.as_ref().map_or((&[][..], &[][..]), |own| (&own.nodes, &own.movers));
-        animation.nodes.extend(nodes.iter().map(|node| match node.parent {
-            Some(NodeId(parent)) => Node { parent: Some(NodeId(parent + shift)), ..node.clone() },
-            None => Node {
-                parent: placement.node,
-                place: placement.transform * node.place,
-                motion: node.motion.clone(),
-            },
-        }));
-        let mut moves = Moves {
-            instances: vec![false; self.instances.len()],
-            spheres: vec![false; self.spheres.len()],
-            lights: vec![false; self.lights.len()],
-            cameras: vec![false; self.cameras.len()],
-        };
-        let shifted = |node: &NodeId| NodeId(node.0 + shift);
-        for mover in movers {
-            let mut mover = mover.clone();
-            match &mut mover {
-                Animated::Sphere { sphere, node, .. } => {
-                    moves.spheres[*sphere] = true;
-                    (*sphere, *node) = (*sphere + first.sphere, node.as_ref().map(shifted));
+/// An animation to which that of an instance of a model is added.
+pub(super) struct InstanceAnimation<'a> {
+    /// The model.
+    pub model: &'a MergedModel,
+    /// The instance.
+    pub instance: &'a ModelInstance,
+    /// The indices of its objects in the scene.
+    pub indices: &'a SceneIndices,
+    /// The animation of the scene.
+    pub animation: &'a mut Animation,
+}
+
+/// The indices of a model's objects that its own animation moves.
+#[derive(Default)]
+struct AnimatedObjects {
+    instances: HashSet<usize>,
+    spheres: HashSet<usize>,
+    lights: HashSet<usize>,
+    cameras: HashSet<usize>,
+}
+
+impl InstanceAnimation<'_> {
+    /// Adds the animation of the instance.
+    pub fn add(mut self) {
+        let model = self.model;
+        let mut animated = AnimatedObjects::default();
+        if let Some(own) = &model.animation {
+            // The model's nodes, of which the outermost stand in the instance's space.
+            let first_node = self.animation.nodes.len() as u32;
+            self.animation.nodes.extend(own.nodes.iter().map(|node| match node.parent {
+                Some(NodeId(parent)) => {
+                    Node { parent: Some(NodeId(parent + first_node)), ..node.clone() }
                 }
-                Animated::Instance { instance, node, .. } => {
-                    moves.instances[*instance] = true;
-                    (*instance, *node) = (*instance + first.instance, shifted(node));
-                }
-                Animated::Mesh { mesh, deformation } => {
-                    *mesh += self.first_mesh;
-                    // Placed a second time it has the same shape.
-                    let same =
-                        |m: &Animated| matches!(m, Animated::Mesh { mesh: m, .. } if m == mesh);
-                    if animation.movers.iter().any(same) {
-                        continue;
-                    }
-                    let Some(skin) = &mut deformation.skin else {
-                        animation.movers.push(mover);
-                        continue;
-                    };
-                    for joint in skin.joints.iter_mut().chain([&mut skin.space]) {
-                        match &mut joint.node {
-                            Some(node) => *node = shifted(node),
-                            None => {
-                                joint.place = placement.transform * joint.place;
-                                joint.node = placement.node;
-                            }
-                        }
-                    }
-                }
-                Animated::Light { light, node, .. } => {
-                    moves.lights[*light] = true;
-                    (*light, *node) = (*light + first.light, node.as_ref().map(shifted));
-                    if !placement.lights {
-                        continue;
-                    }
-                }
-                Animated::Camera { camera, node, .. } => {
-                    moves.cameras[*camera] = true;
-                    let Some(index) = cameras[*camera] else { continue };
-                    (*camera, *node) = (index, node.as_ref().map(shifted));
-                }
+                None => Node {
+                    parent: self.instance.node,
+                    base: self.instance.transform * node.base,
+                    motion: node.motion.clone(),
+                },
+            }));
+            // The objects that move with these nodes.
+            for object in &own.objects {
+                let object = self.own_object(object.clone(), first_node, &mut animated);
+                self.animation.objects.extend(object);
             }
-            animation.movers.push(mover);
         }
-        if let Some(node) = placement.node {
-            self.carry(animation, placement, node, first, cameras, &moves);
+        // All other objects move with the instance.
+        if let Some(node) = self.instance.node {
+            self.add_still_objects(node, &animated);
         }
     }
 
-    /// Makes what does not move by itself move with the placement's node.
-    fn carry(
+    /// Returns one of the animated objects of the model with the indices of the scene, and marks its object as
+    /// animated; none if the object is left out of the scene, or is animated already.
+    fn own_object(
         &self,
-        animation: &mut Animation,
-        placement: &Placement,
-        node: NodeId,
-        first: &Firsts,
-        cameras: &[Option<usize>],
-        moves: &Moves,
-    ) {
-        let transform = placement.transform;
-        for (i, instance) in self.instances.iter().enumerate().filter(|(i, _)| !moves.instances[*i])
-        {
-            let transform = transform * instance.transform;
-            let instance = first.instance + i;
-            animation.movers.push(Animated::Instance { instance, node, transform });
+        mut object: Animated,
+        first_node: u32,
+        animated: &mut AnimatedObjects,
+    ) -> Option<Animated> {
+        let shift = |node: &mut NodeId| node.0 += first_node;
+        match &mut object {
+            Animated::Sphere { sphere, node, .. } => {
+                animated.spheres.insert(*sphere);
+                *sphere += self.indices.first_sphere;
+                node.iter_mut().for_each(shift);
+            }
+            Animated::Instance { instance, node, .. } => {
+                animated.instances.insert(*instance);
+                *instance += self.indices.first_instance;
+                shift(node);
+            }
+            Animated::Light { light, node, .. } => {
+                animated.lights.insert(*light);
+                *light += self.indices.first_light;
+                node.iter_mut().for_each(shift);
+                if !self.instance.has_lights {
+                    return None;
+                }
+            }
+            Animated::Camera { camera, node, .. } => {
+                animated.cameras.insert(*camera);
+                *camera = self.indices.cameras[*camera]?;
+                node.iter_mut().for_each(shift);
+            }
+            Animated::Mesh { mesh, deformation } => {
+                *mesh += self.model.first_mesh;
+                // Another instance has the same mesh, and so the same shape.
+                let is_same =
+                    |m: &Animated| matches!(m, Animated::Mesh { mesh: m, .. } if m == mesh);
+                if self.animation.objects.iter().any(is_same) {
+                    return None;
+                }
+                let skin = deformation.skin.iter_mut();
+                for joint in skin.flat_map(|skin| skin.joints.iter_mut().chain([&mut skin.space])) {
+                    match &mut joint.node {
+                        Some(node) => shift(node),
+                        None => {
+                            joint.transform = self.instance.transform * joint.transform;
+                            joint.node = self.instance.node;
+                        }
+                    }
+                }
+            }
         }
-        for (i, sphere) in self.spheres.iter().enumerate().filter(|(i, _)| !moves.spheres[*i]) {
-            let (center, radius) = (transform.transform_point3(sphere.center), None);
-            let (sphere, node) = (first.sphere + i, Some(node));
-            animation.movers.push(Animated::Sphere { sphere, node, center, radius });
-        }
-        let lights = self.lights.iter().enumerate().filter(|(i, _)| !moves.lights[*i]);
-        for (i, light) in lights.filter(|_| placement.lights) {
-            animation.movers.push(Animated::Light {
-                light: first.light + i,
-                node: Some(node),
-                rest: light.placed(&transform),
-                direction: None,
-                intensity: None,
+        Some(object)
+    }
+
+    /// Makes the objects that the model's own animation leaves where they are move with the node of
+    /// the instance.
+    fn add_still_objects(&mut self, node: NodeId, animated: &AnimatedObjects) {
+        let Self { model, indices, animation, .. } = self;
+        let transform = self.instance.transform;
+        for (i, instance) in still(&model.instances, &animated.instances) {
+            animation.objects.push(Animated::Instance {
+                instance: indices.first_instance + i,
+                node,
+                transform: transform * instance.transform,
             });
         }
-        for (i, camera) in self.cameras.iter().enumerate().filter(|(i, _)| !moves.cameras[*i]) {
-            if let Some((index, rest)) = cameras[i].zip(camera.placed(&transform)) {
+        let node = Some(node);
+        for (i, sphere) in still(&model.spheres, &animated.spheres) {
+            animation.objects.push(Animated::Sphere {
+                sphere: indices.first_sphere + i,
+                node,
+                center: transform.transform_point3(sphere.center),
+                radius: None,
+            });
+        }
+        if self.instance.has_lights {
+            for (i, light) in still(&model.lights, &animated.lights) {
+                animation.objects.push(Animated::Light {
+                    light: indices.first_light + i,
+                    node,
+                    rest: light.transformed(&transform),
+                    direction: None,
+                    intensity: None,
+                });
+            }
+        }
+        for (i, camera) in still(&model.cameras, &animated.cameras) {
+            if let Some((camera, rest)) = indices.cameras[i].zip(camera.transformed(&transform)) {
                 let (aim, lens) = (None, None);
-                let node = Some(node);
-                animation.movers.push(Animated::Camera { camera: index, node, rest, aim, lens });
+                animation.objects.push(Animated::Camera { camera, node, rest, aim, lens });
             }
         }
     }
 }
 
-/// Which of a model's objects move by its own animation.
-struct Moves {
-    instances: Vec<bool>,
-    spheres: Vec<bool>,
-    lights: Vec<bool>,
-    cameras: Vec<bool>,
+/// Returns the objects that are not animated, with their indices.
+fn still<'a, T>(
+    objects: &'a [T],
+    animated: &'a HashSet<usize>,
+) -> impl Iterator<Item = (usize, &'a T)> {
+    objects.iter().enumerate().filter(|(i, _)| !animated.contains(i))
 }

@@ -1,34 +1,34 @@
-//! Mirrors and glass of an MTL material: its illumination model, opacity, index and filter.
+//! The mirrors and glass of MTL materials: illumination model, opacity, index of refraction and filter.
 
 use glam::Vec3;
 
 use crate::scene::Material;
 
-/// The index of refraction of glass that names none.
-const GLASS: f32 = 1.5;
+/// The default index of refraction of glass.
+const GLASS_IOR: f32 = 1.5;
 
-/// What a material says of light that it does not scatter.
+/// The statements of a material about light that it does not scatter.
 pub struct Illumination {
-    /// `illum`, from 0 to 10; 2 where missing.
+    /// The model, `illum`: from 0 to 10; 2 where missing.
     pub model: u8,
-    /// `d`, or 1 − `Tr`, in \[0, 1\].
+    /// The opacity, `d` or 1 − `Tr`: in \[0, 1\].
     pub opacity: f32,
-    /// `Tf`, the colour of what passes through.
+    /// The colour of what passes through, `Tf`.
     pub filter: Option<Vec3>,
-    /// `Ni`.
+    /// The index of refraction, `Ni`.
     pub ior: Option<f32>,
 }
 
 impl Illumination {
-    /// Gives the material, whose `Ks` is its specular colour, its mirror and its glass.
+    /// Sets reflection and transmission of a material, whose specular colour is its `Ks`.
     pub fn apply(&self, material: &mut Material) {
         if self.is_glass() {
             let filter = self.filter.unwrap_or(Vec3::ONE).min(Vec3::ONE);
-            let share = if self.opacity < 1.0 { 1.0 - self.opacity } else { 1.0 };
-            material.transmit = filter * share;
+            let fraction = if self.opacity < 1.0 { 1.0 - self.opacity } else { 1.0 };
+            material.transmit = filter * fraction;
             // Model 4 lets light straight through; 6 and 7 refract it.
             material.thin = self.model == 4;
-            material.ior = f64::from(self.ior.unwrap_or(GLASS).clamp(0.01, 100.0));
+            material.ior = f64::from(self.ior.unwrap_or(GLASS_IOR).clamp(0.01, 100.0));
             return;
         }
         if matches!(self.model, 3 | 5) {
@@ -41,7 +41,7 @@ impl Illumination {
         }
     }
 
-    /// Whether light goes through it as through glass.
+    /// True if light goes through the material as through glass.
     pub fn is_glass(&self) -> bool {
         // Programs write 4 to 9 for opaque things too, and a filter of 1 for anything.
         matches!(self.model, 4 | 6 | 7) && (self.opacity < 1.0 || self.has_filter())

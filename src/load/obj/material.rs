@@ -1,40 +1,40 @@
-//! An MTL material on a Lambert and Phong surface, as docs/formats.md explains.
+//! The conversion of MTL materials to Lambert and Phong surfaces, as docs/formats.md explains.
 
 use std::path::Path;
 
 use glam::Vec3;
 
 use super::illumination::Illumination;
-use super::map::Map;
+use super::texture_map::TextureMap;
 use super::textures::Textures;
 use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
-    AlphaMode, Channel, Coverage, Material, MaterialId, Metallic, MetallicMaps, NormalMap, Scene,
-    ShininessMap, TextureId, Transfer,
+    AlphaMode, Channel, Coverage, Material, MaterialId, MetallicRoughness, MetallicRoughnessMaps,
+    NormalMap, Scene, ShininessMap, TextureId, Transfer,
 };
 
-/// The range of shininess that is drawn.
+/// The range of shininess that is supported.
 const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
-/// The index of refraction of what is no glass and names none.
-const IOR: f32 = 1.5;
+/// The default index of refraction of materials that are no glass.
+const DEFAULT_IOR: f32 = 1.5;
 
-/// A material being made.
-pub struct Maker<'a, 'g> {
-    /// What [`clean`](super::mtl::clean) has left of it.
+/// A material that is being built.
+pub struct MaterialBuilder<'a, 'g> {
+    /// The material of the MTL file, as tobj has it.
     pub source: &'a tobj::Material,
-    /// That of its MTL file.
+    /// The folder of the MTL file.
     pub folder: &'a Path,
-    /// Where its textures are added.
+    /// The textures of all materials.
     pub textures: &'a mut Textures<'g>,
-    /// Where it is added next.
+    /// The scene that it is added to next.
     pub scene: &'a mut Scene,
-    /// What cannot be drawn is said here.
-    pub tally: &'a mut Diagnostics,
+    /// The diagnostics.
+    pub diagnostics: &'a mut Diagnostics,
 }
 
-impl<'a> Maker<'a, '_> {
-    /// The material.
-    pub fn make(mut self) -> Material {
+impl<'a> MaterialBuilder<'a, '_> {
+    /// Builds the material.
+    pub fn build(mut self) -> Material {
         let source = self.source;
         let mut material = Material { name: source.name.clone(), ..Material::default() };
         material.diffuse_map = self.color_map(source.diffuse_texture.as_deref());
@@ -45,25 +45,26 @@ impl<'a> Maker<'a, '_> {
         }
         // Models 0 and 1 are those without a highlight.
         if source.illumination_model.is_none_or(|model| model > 1) {
-            self.highlight(&mut material);
+            self.set_highlight(&mut material);
         }
-        material.emission_map = self.color_map(self.other("map_Ke"));
-        let whole = if material.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
-        material.emission = source.emissive.map_or(whole, Vec3::from);
-        self.light_beyond(&mut material);
+        material.emission_map = self.color_map(self.statement("map_Ke"));
+        let default = if material.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
+        material.emission = source.emissive.map_or(default, Vec3::from);
+        self.set_transport(&mut material);
         // Programs write 0 that mean no highlight: one of that exponent would be everywhere.
         if source.shininess == Some(0.0) && material.shininess_map.is_none() {
             (material.specular, material.specular_map) = (Vec3::ZERO, None);
         }
-        self.normals(&mut material);
+        self.set_normal_map(&mut material);
         material
     }
 
-    fn highlight(&mut self, material: &mut Material) {
+    /// Sets the specular colour and the shininess.
+    fn set_highlight(&mut self, material: &mut Material) {
         let source = self.source;
         material.specular_map = self.color_map(source.specular_texture.as_deref());
-        let whole = if material.specular_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
-        material.specular = source.specular.map_or(whole, Vec3::from);
+        let default = if material.specular_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
+        material.specular = source.specular.map_or(default, Vec3::from);
         if let Some(shininess) = source.shininess {
             material.shininess = shininess.clamp(*SHININESS.start(), *SHININESS.end());
         }
@@ -71,30 +72,32 @@ impl<'a> Maker<'a, '_> {
         material.shininess_map = map.map(ShininessMap::Factor);
     }
 
-    /// Mirrors, glass, opacity and metal.
-    fn light_beyond(&mut self, material: &mut Material) {
+    /// Sets all that is no diffuse or specular reflection: mirrors, glass, opacity and metal.
+    fn set_transport(&mut self, material: &mut Material) {
         let illumination = self.illumination();
         let name = || format!("`{}`", self.source.name);
         let opacity_map = self.source.dissolve_texture.as_deref();
+        // Glass.
         if illumination.is_glass() {
             let count = u64::from(opacity_map.is_some());
             let reason = "{} textures of opacity are not read: their materials are glass";
-            self.tally.unsupported(reason, count, name);
+            self.diagnostics.unsupported(reason, count, name);
             return illumination.apply(material);
         }
         if illumination.opacity == 0.0 {
-            self.tally.add("{} materials have an opacity of 0 and cannot be seen", 1, name);
+            self.diagnostics.add("{} materials have an opacity of 0 and cannot be seen", 1, name);
         }
+        // Mirrors and clear sheets, where nothing differs from point to point.
         let metallic = self.metallic(material);
         if opacity_map.is_none() && metallic.is_none() {
             return illumination.apply(material);
         }
-        // The picture, or what the metal reflects, is weighed with the opacity point by point.
+        // The map, or the metal's reflection, is weighed with the opacity point by point.
         Illumination { opacity: 1.0, ..illumination }.apply(material);
         if let Some(maps) = metallic {
             material.specular_map = None;
             material.shininess_map = None;
-            material.set_metallic(maps);
+            material.set_metallic_roughness(maps);
         }
         let map = self.channel(opacity_map);
         if map.is_none() && illumination.opacity == 1.0 {
@@ -103,18 +106,20 @@ impl<'a> Maker<'a, '_> {
         (material.thin, material.ior) = (true, 1.0);
         let mode = AlphaMode::Blend;
         material.coverage = Some(Coverage { alpha: illumination.opacity, map, mode });
-        if opacity_map.and_then(Map::parse).is_some_and(|map| map.channel.is_none()) {
+        if opacity_map.and_then(TextureMap::parse).is_some_and(|map| map.channel.is_none()) {
             self.textures.prefer_alpha(self.id());
         }
     }
 
-    /// Roughness and metalness, where anything is said of them; a map counts in place of its value,
-    /// since programs write any value beside it.
-    fn metallic(&mut self, material: &Material) -> Option<MetallicMaps> {
-        let [pr, pm, map_pr, map_pm] = ["Pr", "Pm", "map_Pr", "map_Pm"].map(|key| self.other(key));
+    /// Returns roughness and metalness, where a statement is about them; a map counts in place of its
+    /// value, since programs write any value beside it.
+    fn metallic(&mut self, material: &Material) -> Option<MetallicRoughnessMaps> {
+        let [pr, pm, map_pr, map_pm] =
+            ["Pr", "Pm", "map_Pr", "map_Pm"].map(|key| self.statement(key));
         if [pr, pm, map_pr, map_pm].iter().all(Option::is_none) {
             return None;
         }
+        // Maps, and factors beside them.
         let [roughness, metallic] = [map_pr, map_pm].map(|map| self.channel(map));
         let value = |text: Option<&str>| text.and_then(|t| t.parse().ok()).map(|x: f32| x.min(1.0));
         let factor = |map: Option<Channel>, text, missing| match map {
@@ -122,79 +127,95 @@ impl<'a> Maker<'a, '_> {
             None => value(text).unwrap_or(missing),
         };
         // The roughness whose highlight is as wide as that of Ns: 2/α² − 2 with α = roughness².
-        let of_phong = (2.0 / (material.shininess + 2.0)).powf(0.25);
-        let factors = Metallic {
+        let default_roughness = (2.0 / (material.shininess + 2.0)).powf(0.25);
+        let factors = MetallicRoughness {
             base: material.diffuse,
             metallic: factor(metallic, pm, 0.0),
-            roughness: factor(roughness, pr, of_phong),
+            roughness: factor(roughness, pr, default_roughness),
             specular: 1.0,
             specular_color: Vec3::ONE,
             transmission: 0.0,
-            ior: self.source.optical_density.filter(|n| (1.0..=100.0).contains(n)).unwrap_or(IOR),
+            ior: self
+                .source
+                .optical_density
+                .filter(|n| (1.0..=100.0).contains(n))
+                .unwrap_or(DEFAULT_IOR),
         };
         let base = material.diffuse_map;
-        Some(MetallicMaps { base, metallic, roughness, ..MetallicMaps::new(factors) })
+        Some(MetallicRoughnessMaps {
+            base,
+            metallic,
+            roughness,
+            ..MetallicRoughnessMaps::new(factors)
+        })
     }
 
-    /// `norm`, or a `bump` that turns out to be a picture of normals, as many programs write it.
-    fn normals(&mut self, material: &mut Material) {
-        let norm = self.other("norm").and_then(Map::parse);
-        let bump = self.source.normal_texture.as_deref().and_then(Map::parse);
-        if let Some(map) = norm {
-            let texture = self.texture(&map, Transfer::None);
-            material.normal_map = Some(NormalMap { texture, scale: map.gain.unwrap_or(1.0) });
-        } else if let Some(map) = bump {
-            let texture = self.texture(&map, Transfer::None);
-            let scale = map.gain.unwrap_or(1.0);
-            self.textures.may_be_normals(self.id(), texture, scale, &self.source.name);
+    /// Sets the normal map: `norm`, or a `bump` that turns out to be a normal map.
+    fn set_normal_map(&mut self, material: &mut Material) {
+        let norm = self.statement("norm").and_then(TextureMap::parse);
+        let is_norm = norm.is_some();
+        let bump = || self.source.normal_texture.as_deref().and_then(TextureMap::parse);
+        let Some(map) = norm.or_else(bump) else { return };
+        let scale = map.bump_scale.unwrap_or(1.0);
+        let normal_map = NormalMap { texture: self.texture(&map, Transfer::None), scale };
+        if is_norm {
+            material.normal_map = Some(normal_map);
+        } else {
+            self.textures.add_bump(self.id(), normal_map);
         }
     }
 
-    /// The number that the material will have.
+    /// Returns the id that the material will have.
     fn id(&self) -> MaterialId {
         MaterialId(self.scene.materials.len() as u32)
     }
 
-    fn other(&self, key: &str) -> Option<&'a str> {
+    /// Returns the value of a statement that tobj has no field for.
+    fn statement(&self, key: &str) -> Option<&'a str> {
         self.source.unknown_param.get(key).map(String::as_str)
     }
 
-    /// A texture of colours.
+    /// Returns a texture of colours.
     fn color_map(&mut self, value: Option<&str>) -> Option<TextureId> {
-        let map = Map::parse(value?)?;
+        let map = TextureMap::parse(value?)?;
         let channel = u64::from(map.channel.is_some());
         let reason = "the option `-imfchan` of {} textures of colours is not read";
-        self.tally.unsupported(reason, channel, || format!("`{}`", value.unwrap_or_default()));
-        self.say_gain(&map);
+        self.diagnostics
+            .unsupported(reason, channel, || format!("`{}`", value.unwrap_or_default()));
+        self.warn_of_bump_scale(&map);
         Some(self.texture(&map, Transfer::Srgb))
     }
 
-    /// One channel of a texture: red, where its options name none.
+    /// Returns one channel of a texture: red, where its options name none.
     fn channel(&mut self, value: Option<&str>) -> Option<Channel> {
-        let map = Map::parse(value?)?;
-        self.say_gain(&map);
+        let map = TextureMap::parse(value?)?;
+        self.warn_of_bump_scale(&map);
         Some(Channel {
             texture: self.texture(&map, Transfer::None),
             channel: map.channel.unwrap_or(0),
         })
     }
 
-    fn say_gain(&mut self, map: &Map) {
+    /// Warns of a `-bm` on a texture that is no bump.
+    fn warn_of_bump_scale(&mut self, map: &TextureMap) {
         let reason = "the option `-bm` of {} textures that are no bumps is not read";
-        self.tally.unsupported(reason, u64::from(map.gain.is_some()), || format!("`{}`", map.file));
+        self.diagnostics
+            .unsupported(reason, u64::from(map.bump_scale.is_some()), || format!("`{}`", map.file));
     }
 
-    fn texture(&mut self, map: &Map, transfer: Transfer) -> TextureId {
+    /// Returns the texture of a statement, and warns of options that are not read.
+    fn texture(&mut self, map: &TextureMap, transfer: Transfer) -> TextureId {
         for option in &map.ignored {
             let reason = format!("the option `{option}` of {{}} textures is not read");
-            self.tally.unsupported(&reason, 1, || format!("`{}`", map.file));
+            self.diagnostics.unsupported(&reason, 1, || format!("`{}`", map.file));
         }
-        self.textures.get(map, transfer, self.folder, self.scene)
+        self.textures.texture(map, transfer, self.folder, self.scene)
     }
 
+    /// Returns the statements about light that is not scattered.
     fn illumination(&mut self) -> Illumination {
-        let transparency = self.other("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
-        let filter = self.other("Tf").map(|tf| {
+        let transparency = self.statement("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
+        let filter = self.statement("Tf").map(|tf| {
             let mut numbers = tf.split_whitespace().flat_map(str::parse);
             Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
         });
@@ -208,7 +229,7 @@ impl<'a> Maker<'a, '_> {
         if self.source.dissolve.is_none() && transparency == 1.0 && !illumination.is_glass() {
             let reason = "{} materials have `Tr 1` and no `d`: they are drawn opaque, as the \
                           programs that write it mean them";
-            self.tally.add(reason, 1, || format!("`{}`", self.source.name));
+            self.diagnostics.add(reason, 1, || format!("`{}`", self.source.name));
             illumination.opacity = 1.0;
         }
         illumination

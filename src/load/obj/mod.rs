@@ -1,34 +1,46 @@
-//! Wavefront OBJ files with their MTL.
+//! The importer of Wavefront OBJ files with their MTL files; docs/formats.md says what is read, and how.
 //!
-//! [`rewrite`] checks a file and puts it in the form that tobj takes, tobj makes vertices of its
-//! separate indices, and this module makes meshes of them. What is read, and how, stands in
-//! docs/formats.md.
+//! The tobj crate parses both kinds of file. But it gives up at the first line that it does not expect,
+//! without naming the line, and it loses count where only some vertices of a mesh have normals; and
+//! files from all over the world are full of such lines. So tobj is given a text of our own to read,
+//! nearly all of which are ranges of the file as it stands:
+//!
+//! 1. `lexer` decodes the bytes, and finds the lines and their statements.
+//! 2. `normalize` splits the text into chunks, and finds the `state` at the start of each.
+//! 3. `parse` sorts the lines of each chunk, in parallel, into vertices and the faces of groups: all
+//!    faces of a group become one mesh, and have the same attributes. Lines that tobj reads right are
+//!    kept as ranges of the file (`pieces`); the others are rewritten (`vertex_data`, `indices`) or
+//!    dropped, with a warning that names the line.
+//! 4. `tobj_input` is the text that tobj reads while later chunks are still being parsed: first all
+//!    vertices, then the faces, group by group. tobj unites the three indices of a corner.
+//! 5. This module builds a mesh of each group, with `triangulate` and `smooth_normals`.
+//! 6. `material_library` finds the MTL files. `mtl` normalizes them for tobj, too; `material` converts
+//!    the materials, with `illumination`, `texture_map` and `textures`.
 
-mod corners;
-mod files;
+mod file_lookup;
 mod illumination;
-mod library;
-mod lines;
-mod map;
+mod indices;
+mod lexer;
 mod material;
+mod material_library;
 mod mtl;
-mod plain;
-mod polygon;
-mod rewrite;
-mod segments;
-mod setting;
-mod smooth;
-mod sorter;
-mod stream;
+mod normalize;
+mod parse;
+mod pieces;
+mod smooth_normals;
+mod state;
+mod texture_map;
 mod textures;
-mod vertices;
+mod tobj_input;
+mod triangulate;
+mod vertex_data;
 
 use std::path::Path;
 
 use glam::{DAffine3, DVec3};
 
-use self::library::Library;
-use self::setting::Part;
+use self::material_library::MaterialLibrary;
+use self::state::FaceGroup;
 use crate::error::{Error, Result};
 use crate::load::Loaded;
 use crate::load::diagnostics::Diagnostics;
@@ -38,66 +50,77 @@ use crate::load::report::DropReason;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Instance, Mesh, Scene, Transfer};
 
-/// Loads an `.obj` file; its pictures are read where they are `wanted`.
+/// Loads an `.obj` file; its images are read if the scene `needs_images`.
 ///
 /// # Errors
 /// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
 /// line.
-pub fn load(file: OpenedFile, guard: &Sandbox, wanted: bool) -> Result<Loaded> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, needs_images: bool) -> Result<Loaded> {
     let path = file.path.clone();
-    let bytes = file.read(guard)?;
-    import(&path, &bytes, guard, wanted).map_err(|e| e.at(&path))
+    let bytes = file.read(sandbox)?;
+    import(&path, &bytes, sandbox, needs_images).map_err(|e| e.at(&path))
 }
 
-fn import(path: &Path, bytes: &[u8], guard: &Sandbox, wanted: bool) -> Result<Loaded> {
-    let mut tally = Diagnostics::default();
-    let text = lines::decode(bytes)?;
-    let (made, read) = rewrite::rewrite(&text, &mut tally, |made| {
+fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> Result<Loaded> {
+    let mut diagnostics = Diagnostics::default();
+    // Vertices and faces, by tobj.
+    let text = lexer::decode_text(bytes)?;
+    let (info, read) = normalize::normalize(&text, &mut diagnostics, |input| {
         let options = tobj::LoadOptions { single_index: true, ..Default::default() };
         // No `mtllib` is left in the text.
-        tobj::load_obj_buf(made, &options, |_| Err(tobj::LoadError::GenericFailure))
+        tobj::load_obj_buf(input, &options, |_| Err(tobj::LoadError::GenericFailure))
     })?;
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
-    let mut library = Library::read(&made.libraries, path, guard, &mut tally);
+    // A mesh and an instance of each group.
+    let mut library = MaterialLibrary::read(&info.libraries, path, sandbox, &mut diagnostics);
     let mut scene = Scene::default();
-    let unit = unit_of_colors(&models);
+    let full_color = full_color(&models);
     for model in models {
-        let Some(part) = model.name.parse().ok().and_then(|i: usize| made.parts.get(i)) else {
+        let index = model.name.parse().ok();
+        let Some(group) = index.and_then(|i: usize| info.groups.get(i)) else { continue };
+        let Some(mesh) = build_mesh(&model.mesh, group, full_color, &mut diagnostics) else {
             continue;
         };
-        let Some(mesh) = mesh(&model.mesh, part, unit, &mut tally) else { continue };
-        let name = part.setting.material.as_deref().unwrap_or_default();
-        let material = library.get(name, &mut scene, &mut tally);
-        guard.take(Limit::Vertices, mesh.positions.len() as u64)?;
-        guard.take(Limit::Triangles, mesh.triangles.len() as u64)?;
-        guard.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
+        let name = group.settings.material.as_deref().unwrap_or_default();
+        let material = library.material(name, &mut scene, &mut diagnostics);
+        sandbox.consume(Limit::Vertices, mesh.positions.len() as u64)?;
+        sandbox.consume(Limit::Triangles, mesh.triangles.len() as u64)?;
+        sandbox.check(Limit::Instances, scene.instances.len() as u64 + 1)?;
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     }
-    library.decode(wanted, &mut scene, &mut tally);
+    // The images of the materials in use.
+    library.decode_images(needs_images, &mut scene, &mut diagnostics);
     if scene.instances.is_empty() {
-        tally.say("there is no face in the file");
+        diagnostics.note("there is no face in the file");
     }
-    let report = tally.finish(path, &scene);
+    let report = diagnostics.into_report(path, &scene);
     Ok(Loaded { scene, report })
 }
 
-/// What stands for a full vertex colour: 1, or 255 where a value is above 1.
-fn unit_of_colors(models: &[tobj::Model]) -> f32 {
+/// Returns the value of a full vertex colour: 1, or 255 where a value is above 1.
+fn full_color(models: &[tobj::Model]) -> f32 {
     let mut values = models.iter().flat_map(|model| &model.mesh.vertex_color);
     if values.any(|&x| x > 1.0) { 255.0 } else { 1.0 }
 }
 
-/// The mesh of a part; nothing where it has no triangle. Its vertices' colours go up to `unit`.
-fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Diagnostics) -> Option<Mesh> {
-    let name = part.setting.name.as_deref();
+/// Builds the mesh of a group; none where it has no triangle. Its vertices' colours go up to
+/// `full_color`.
+fn build_mesh(
+    source: &tobj::Mesh,
+    group: &FaceGroup,
+    full_color: f32,
+    diagnostics: &mut Diagnostics,
+) -> Option<Mesh> {
+    let name = group.settings.name.as_deref();
     let place = name.unwrap_or("the object without a name");
     let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
     let count = positions.len();
-    // OBJ's v runs up the picture, ours runs down.
+    // OBJ's v runs up the image, ours runs down.
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / unit));
+    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / full_color));
+    // Attributes and triangles, side by side.
     let attributes = || {
         let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
         let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
@@ -109,25 +132,27 @@ fn mesh(source: &tobj::Mesh, part: &Part, unit: f32, tally: &mut Diagnostics) ->
         }
     };
     let (attributes, triangles) =
-        rayon::join(attributes, || triangles(source, &positions, tally, place));
+        rayon::join(attributes, || triangles(source, &positions, diagnostics, place));
+    // Normals of the smoothing group, and all that makes the mesh valid.
     let name = name.unwrap_or_default().to_owned();
     let mut mesh = Mesh { name, positions, triangles, ..attributes };
-    if mesh.normals.is_empty() && part.setting.smoothing.is_some() {
-        mesh.normals = smooth::normals(&mesh);
+    if mesh.normals.is_empty() && group.settings.smoothing.is_some() {
+        mesh.normals = smooth_normals::smooth_normals(&mesh);
     }
-    repair(&mut mesh, tally, place);
+    repair(&mut mesh, diagnostics, place);
     (!mesh.triangles.is_empty()).then_some(mesh)
 }
 
-/// An attribute, if every vertex has it.
+/// Returns the values of an attribute if every vertex has one, or else none.
 fn per_vertex<T>(values: Vec<T>, count: usize) -> Vec<T> {
     if values.len() == count { values } else { Vec::new() }
 }
 
+/// Returns the triangles of a mesh of polygons.
 fn triangles(
     source: &tobj::Mesh,
     positions: &[[f32; 3]],
-    tally: &mut Diagnostics,
+    diagnostics: &mut Diagnostics,
     place: &str,
 ) -> Vec<[u32; 3]> {
     // tobj leaves the arities out where all are 3.
@@ -142,16 +167,17 @@ fn triangles(
         let Some((face, after)) = rest.split_at_checked(arity as usize) else { break };
         rest = after;
         let corners: Vec<DVec3> = face.iter().map(|&i| position(positions, i)).collect();
-        let made = polygon::triangulate(&corners);
+        let made = triangulate::triangulate(&corners);
         let vertex = |i: usize| face.get(i).copied().unwrap_or(u32::MAX);
         triangles.extend(made.into_iter().map(|t| t.map(vertex)));
     }
     // A polygon with corners at one place is cut into fewer.
     let lost = expected.saturating_sub(triangles.len() as u64);
-    tally.drop(DropReason::Degenerate, lost, || place.to_owned());
+    diagnostics.drop(DropReason::Degenerate, lost, || place.to_owned());
     triangles
 }
 
+/// Returns the position of a vertex; 0 where there is no such vertex.
 fn position(positions: &[[f32; 3]], index: u32) -> DVec3 {
     DVec3::from(positions.get(index as usize).copied().unwrap_or_default().map(f64::from))
 }

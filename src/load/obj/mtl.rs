@@ -1,38 +1,38 @@
-//! Puts an MTL file in the form that tobj takes. tobj panics at a colour of fewer than three
-//! numbers, and drops the whole file at a number it cannot read.
+//! The normalization of an MTL file to a text that tobj reads without errors. tobj panics at a colour
+//! of fewer than three numbers, and drops the whole file at a number it cannot read.
 
 use std::collections::HashSet;
 use std::fmt::Write;
 use std::path::Path;
 
-use super::lines::lines;
 use glam::{Mat3, Vec3};
 
+use super::lexer::lines;
 use crate::load::diagnostics::Diagnostics;
 
-/// The name, for tobj, of a material whose name is empty.
+/// The name of a material whose name is empty, for tobj.
 pub const UNNAMED: &str = "(unnamed)";
 
-/// What a statement is followed by.
+/// The kind of value that follows a statement's keyword.
 #[derive(Clone, Copy)]
-enum Value {
+enum ValueKind {
     /// Three numbers from 0 up, or one for a grey.
     Color,
     /// A number from 0 up.
     Number,
     /// A whole number from 0 to 10.
-    Model,
-    /// Options and the name of a picture.
-    Picture,
-    /// Whatever: it changes nothing here.
-    Silent,
-    /// What has no counterpart here; said of which thing.
-    Unread(&'static str),
+    IlluminationModel,
+    /// Options and the name of an image.
+    Texture,
+    /// Any text: it changes nothing here.
+    Ignored,
+    /// Any text about a feature that is not supported.
+    Unsupported(&'static str),
 }
 
-/// A statement's keyword as tobj takes it, and what must follow it.
-fn meaning(keyword: &str) -> Option<(&'static str, Value)> {
-    use Value::{Color, Model, Number, Picture, Silent, Unread};
+/// Returns a statement's keyword as tobj has it, and the kind of value that must follow it.
+fn statement_kind(keyword: &str) -> Option<(&'static str, ValueKind)> {
+    use ValueKind::{Color, Ignored, IlluminationModel, Number, Texture, Unsupported};
     // Programs differ in the case that they write.
     Some(match keyword.to_ascii_lowercase().as_str() {
         "kd" => ("Kd", Color),
@@ -45,93 +45,104 @@ fn meaning(keyword: &str) -> Option<(&'static str, Value)> {
         "tr" => ("Tr", Number),
         "pr" => ("Pr", Number),
         "pm" => ("Pm", Number),
-        "illum" => ("illum", Model),
-        "map_kd" => ("map_Kd", Picture),
-        "map_ks" => ("map_Ks", Picture),
-        "map_ke" => ("map_Ke", Picture),
-        "map_ns" => ("map_Ns", Picture),
-        "map_d" => ("map_d", Picture),
-        "map_pr" => ("map_Pr", Picture),
-        "map_pm" => ("map_Pm", Picture),
-        "bump" | "map_bump" => ("bump", Picture),
-        "norm" | "map_kn" => ("norm", Picture),
+        "illum" => ("illum", IlluminationModel),
+        "map_kd" => ("map_Kd", Texture),
+        "map_ks" => ("map_Ks", Texture),
+        "map_ke" => ("map_Ke", Texture),
+        "map_ns" => ("map_Ns", Texture),
+        "map_d" => ("map_d", Texture),
+        "map_pr" => ("map_Pr", Texture),
+        "map_pm" => ("map_Pm", Texture),
+        "bump" | "map_bump" => ("bump", Texture),
+        "norm" | "map_kn" => ("norm", Texture),
         // Ambient light is reflected by the diffuse colour.
-        "ka" | "map_ka" | "sharpness" | "map_aat" => ("", Silent),
-        "ps" | "map_ps" => ("", Unread("sheen")),
-        "pc" | "pcr" => ("", Unread("a clear coat")),
-        "aniso" | "anisor" => ("", Unread("anisotropy")),
-        "refl" | "map_refl" => ("", Unread("a picture that is mirrored")),
-        "disp" | "map_disp" => ("", Unread("displacement")),
-        "decal" => ("", Unread("a decal")),
-        "map_tr" => ("", Unread("a picture of transparency")),
-        "map_tf" | "map_ni" => ("", Unread("a picture of glass")),
+        "ka" | "map_ka" | "sharpness" | "map_aat" => ("", Ignored),
+        "ps" | "map_ps" => ("", Unsupported("sheen")),
+        "pc" | "pcr" => ("", Unsupported("a clear coat")),
+        "aniso" | "anisor" => ("", Unsupported("anisotropy")),
+        "refl" | "map_refl" => ("", Unsupported("an image that is mirrored")),
+        "disp" | "map_disp" => ("", Unsupported("displacement")),
+        "decal" => ("", Unsupported("a decal")),
+        "map_tr" => ("", Unsupported("an image of transparency")),
+        "map_tf" | "map_ni" => ("", Unsupported("an image of glass")),
         _ => return None,
     })
 }
 
-/// The statements that tobj is to read, of the file at `path`.
-pub fn clean(text: &str, path: &Path, tally: &mut Diagnostics) -> String {
+/// Normalizes the text of the file at `path`: one statement a line, all of them such as tobj reads.
+pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> String {
     let mut out = String::with_capacity(text.len());
     let mut names = HashSet::new();
     for line in lines(text) {
         let statement = line.statement();
         let (keyword, rest) = (statement.keyword.as_ref(), statement.rest.as_ref());
-        let at = || format!("{}:{} (`{keyword} {rest}`)", path.display(), line.number);
+        let place = || format!("{}:{} (`{keyword} {rest}`)", path.display(), line.number);
         if keyword.is_empty() {
             continue;
         }
+        // A new material.
         if keyword.eq_ignore_ascii_case("newmtl") {
             let name = if rest.is_empty() { UNNAMED } else { rest };
-            let again = u64::from(!names.insert(name.to_owned()));
-            tally.add("{} materials are there twice; the last of a name counts", again, at);
+            let is_repeated = !names.insert(name.to_owned());
+            diagnostics.add(
+                "{} materials are there twice; the last of a name counts",
+                u64::from(is_repeated),
+                place,
+            );
             let _ = writeln!(out, "newmtl {name}");
             continue;
         }
-        let Some((key, value)) = meaning(keyword) else {
-            tally.add("{} lines are ignored: their first word is none of MTL", 1, at);
+        // A statement about the present one.
+        let Some((key, kind)) = statement_kind(keyword) else {
+            diagnostics.add("{} lines are ignored: their first word is none of MTL", 1, place);
             continue;
         };
         if names.is_empty() {
-            tally.add("{} lines are ignored: they stand before the first `newmtl`", 1, at);
+            diagnostics.add("{} lines are ignored: they stand before the first `newmtl`", 1, place);
             continue;
         }
-        match value.read(rest) {
+        // Its value, where tobj is to read it.
+        match kind.read(rest) {
             Ok(Some(value)) => {
                 let _ = writeln!(out, "{key} {value}");
             }
             Ok(None) => {}
-            Err(Unusable::Broken(right)) => {
-                tally.add(&format!("{{}} lines are ignored: `{key}` wants {right}"), 1, at);
+            Err(Unusable::Malformed(expected)) => {
+                diagnostics.add(
+                    &format!("{{}} lines are ignored: `{key}` wants {expected}"),
+                    1,
+                    place,
+                );
             }
-            Err(Unusable::Unread(what)) => {
-                tally.add(&format!("{{}} lines are not read that say {what}"), 1, at);
+            Err(Unusable::Unsupported(feature)) => {
+                diagnostics.add(&format!("{{}} lines are not read that say {feature}"), 1, place);
             }
         }
     }
     out
 }
 
-/// Why a value is not used.
+/// The reason why a value is not used.
 enum Unusable {
-    /// It is not what this says.
-    Broken(&'static str),
-    /// There is nothing here that is like this.
-    Unread(&'static str),
+    /// It is not of the kind that this describes.
+    Malformed(&'static str),
+    /// It is of this feature, which is not supported.
+    Unsupported(&'static str),
 }
 
-impl Value {
-    /// What tobj is to read of the words after a keyword, if anything.
+impl ValueKind {
+    /// Returns the text of a value for tobj, if it is to read any.
     fn read(self, text: &str) -> Result<Option<String>, Unusable> {
         let number = |word: &str| word.parse::<f32>().ok().filter(|x| x.is_finite() && *x >= 0.0);
         let read = match self {
-            Self::Silent => return Ok(None),
-            Self::Unread(what) => {
+            Self::Ignored => return Ok(None),
+            Self::Unsupported(feature) => {
                 // Programs write 0 for what is not there.
                 let is_off = text.split_whitespace().all(|w| number(w) == Some(0.0));
-                return if is_off { Ok(None) } else { Err(Unusable::Unread(what)) };
+                return if is_off { Ok(None) } else { Err(Unusable::Unsupported(feature)) };
             }
             Self::Color if text.starts_with("xyz ") => {
-                xyz(text).map(|c| format!("{} {} {}", c.x, c.y, c.z))
+                parse_xyz(text).map(|c| format!("{} {} {}", c.x, c.y, c.z))
             }
             Self::Color => {
                 let numbers: Option<Vec<f32>> = text.split_whitespace().map(number).collect();
@@ -145,23 +156,24 @@ impl Value {
             Self::Number => {
                 text.split_whitespace().next_back().and_then(number).map(|x| x.to_string())
             }
-            Self::Model => {
+            Self::IlluminationModel => {
                 let model = text.parse::<f32>().ok().filter(|x| (0.0..=10.0).contains(x));
                 model.map(|model| (model as u8).to_string())
             }
-            Self::Picture => (!text.is_empty()).then(|| text.to_owned()),
+            Self::Texture => (!text.is_empty()).then(|| text.to_owned()),
         };
-        read.map(Some).ok_or(Unusable::Broken(match self {
+        read.map(Some).ok_or(Unusable::Malformed(match self {
             Self::Color => "three numbers from 0 up, or one",
             Self::Number => "a number from 0 up",
-            Self::Model => "a whole number from 0 to 10",
-            _ => "the name of a picture",
+            Self::IlluminationModel => "a whole number from 0 to 10",
+            _ => "the name of an image",
         }))
     }
 }
 
-/// `xyz` and a colour in CIE XYZ (D65): linear Rec. 709, by the matrix of IEC 61966-2-1.
-fn xyz(text: &str) -> Option<Vec3> {
+/// Parses `xyz` and a colour in CIE XYZ (D65), and returns it in linear Rec. 709, by the matrix of
+/// IEC 61966-2-1.
+fn parse_xyz(text: &str) -> Option<Vec3> {
     let to_rec_709 = Mat3::from_cols_array_2d(&[
         [3.240_6, -0.968_9, 0.055_7],
         [-1.537_2, 1.875_8, -0.204_0],
@@ -183,17 +195,17 @@ fn xyz(text: &str) -> Option<Vec3> {
 mod tests {
     use super::*;
 
-    fn cleaned(text: &str) -> (String, Vec<String>) {
-        let mut tally = Diagnostics::default();
-        let clean = clean(text, Path::new("a.mtl"), &mut tally);
-        (clean, tally.sentences(Path::new("a.obj")))
+    fn normalized(text: &str) -> (String, Vec<String>) {
+        let mut diagnostics = Diagnostics::default();
+        let text = normalize(text, Path::new("a.mtl"), &mut diagnostics);
+        (text, diagnostics.warnings(Path::new("a.obj")))
     }
 
     #[test]
     fn broken_lines_do_not_reach_tobj() {
         let text = "newmtl a\nKd 1\nKs 1 2\nNs x\nTf spectral a.rfl\nd -halo 0.5\nillum 99\nbump\n";
-        let (clean, said) = cleaned(text);
-        assert_eq!(clean, "newmtl a\nKd 1 1 1\nd 0.5\n");
+        let (text, said) = normalized(text);
+        assert_eq!(text, "newmtl a\nKd 1 1 1\nd 0.5\n");
         assert_eq!(said.len(), 5);
         let first = "a.obj: lines are ignored: `Ks` wants three numbers from 0 up, or one, at \
                      a.mtl:3 (`Ks 1 2`)";
@@ -202,27 +214,27 @@ mod tests {
 
     #[test]
     fn white_in_xyz_is_white() {
-        let white = xyz("xyz 0.9505 1 1.089").unwrap();
+        let white = parse_xyz("xyz 0.9505 1 1.089").unwrap();
         assert!((white - Vec3::ONE).abs().max_element() < 1e-3, "{white}");
-        assert_eq!((xyz("xyz 1 1"), xyz("xyz nan")), (None, None));
+        assert_eq!((parse_xyz("xyz 1 1"), parse_xyz("xyz nan")), (None, None));
     }
 
     #[test]
     fn keywords_in_any_case() {
-        assert_eq!(cleaned("NEWMTL a\nkd 1 1 1\nMAP_KD b").0, "newmtl a\nKd 1 1 1\nmap_Kd b\n");
+        assert_eq!(normalized("NEWMTL a\nkd 1 1 1\nMAP_KD b").0, "newmtl a\nKd 1 1 1\nmap_Kd b\n");
     }
 
     #[test]
-    fn what_is_not_read_is_said_unless_it_is_zero() {
-        let (clean, said) = cleaned("newmtl a\nPs 0\naniso 0.0\nPc 0.5\nrefl -type sphere a.png");
-        assert_eq!(clean, "newmtl a\n");
+    fn unsupported_features_are_said_unless_they_are_zero() {
+        let (text, said) = normalized("newmtl a\nPs 0\naniso 0.0\nPc 0.5\nrefl -type sphere a.png");
+        assert_eq!(text, "newmtl a\n");
         assert!(said.len() == 2 && said[0].contains("clear coat"), "{said:?}");
     }
 
     #[test]
-    fn statements_that_belong_nowhere_are_said() {
-        let (clean, said) = cleaned("Kd 1 1 1\nnewmtl a\nnewmtl a\nfoo");
-        assert_eq!(clean, "newmtl a\nnewmtl a\n");
+    fn misplaced_and_unknown_statements_are_said() {
+        let (text, said) = normalized("Kd 1 1 1\nnewmtl a\nnewmtl a\nfoo");
+        assert_eq!(text, "newmtl a\nnewmtl a\n");
         assert_eq!(said.len(), 3, "{said:?}");
     }
 }

@@ -1,158 +1,148 @@
-//! The textures of an OBJ file's materials. What they show is decoded when all are known, each
-//! picture once.
+//! The textures of an OBJ file's materials, whose images are decoded when all are known.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use glam::{Affine2, Vec2};
 
-use super::files::find;
-use super::map::Map;
+use super::file_lookup::open_file;
+use super::texture_map::TextureMap;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::images::decode;
-use crate::load::images::placeholder;
+use crate::load::images::placeholder::set_image_or_placeholder;
+use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
 use crate::load::sandbox::Sandbox;
 use crate::scene::{
     Channel, Image, MaterialId, NormalMap, Scene, Texture, TextureId, Transfer, Wrap,
 };
 
-/// How much of a picture must look like normals for it to be one of normals.
-const MOSTLY: f64 = 0.9;
+/// The share of an image's pixels that must look like normals for it to be a normal map.
+const MIN_NORMALS: f64 = 0.9;
 
 /// The textures of a file.
 pub struct Textures<'a> {
-    guard: &'a Sandbox,
-    /// Pictures that are still to be decoded.
-    pictures: Vec<Picture>,
-    /// Their numbers, by their canonical paths, or those that they should have.
-    numbers: HashMap<PathBuf, usize>,
-    /// Materials whose opacity is in the picture's alpha, if it has one.
-    opacities: Vec<MaterialId>,
-    /// Materials with a `bump` that may be a picture of normals, and how much it counts.
-    bumps: Vec<(MaterialId, TextureId, f32, String)>,
+    sandbox: &'a Sandbox,
+    /// The images by canonical path, or the path that they should have.
+    cache: TextureCache<PathBuf, ImageFile, TextureKey>,
+    /// The materials whose opacity is in their image's alpha, if it has one.
+    alpha_preferred: Vec<MaterialId>,
+    bumps: Vec<Bump>,
 }
 
-/// How a texture shows its picture: whether clamped, by which curve, and where.
-type Key = (bool, Transfer, Affine2);
+/// The key of a texture: its image, true if it is clamped, its curve and the bits of its transform.
+type TextureKey = (ImageIndex, bool, Transfer, [u32; 6]);
 
-/// A picture that is still to be decoded, and the textures that show it, each in another way.
-struct Picture {
-    /// The folder of the MTL file, and what that calls it.
+/// An image file that an MTL file names.
+struct ImageFile {
+    /// The folder of the MTL file.
     folder: PathBuf,
+    /// The name in the MTL file.
     name: String,
-    shown_by: Vec<(Key, TextureId)>,
+}
+
+/// A `bump` that may be a normal map.
+struct Bump {
+    material: MaterialId,
+    map: NormalMap,
 }
 
 impl<'a> Textures<'a> {
-    /// None yet.
-    pub fn new(guard: &'a Sandbox) -> Self {
-        let (pictures, numbers, opacities, bumps) = Default::default();
-        Self { guard, pictures, numbers, opacities, bumps }
+    /// Returns an empty collection of textures.
+    pub fn new(sandbox: &'a Sandbox) -> Self {
+        let cache = TextureCache::default();
+        Self { sandbox, cache, alpha_preferred: Vec::new(), bumps: Vec::new() }
     }
 
-    /// The texture of a statement, whose file is beside the MTL file in `folder`.
-    pub fn get(
+    /// Returns the texture of a statement in the MTL file in `folder`.
+    pub fn texture(
         &mut self,
-        map: &Map,
+        map: &TextureMap,
         transfer: Transfer,
         folder: &Path,
         scene: &mut Scene,
     ) -> TextureId {
-        // Files are many, and open ones few: this one is opened again when it is decoded.
-        let found = find(self.guard, folder, &map.file);
-        let path = found.map_or_else(|_| folder.join(&map.file), |file| file.identity);
-        let pictures = &mut self.pictures;
-        let number = *self.numbers.entry(path).or_insert_with(|| {
-            let (folder, name) = (folder.to_owned(), map.file.clone());
-            pictures.push(Picture { folder, name, shown_by: Vec::new() });
-            pictures.len() - 1
-        });
-        let shown_by = &mut pictures[number].shown_by;
-        let key = (map.clamp, transfer, transform(map));
-        if let Some(&(_, id)) = shown_by.iter().find(|(made, _)| *made == key) {
-            return id;
-        }
-        let wrap = if map.clamp { Wrap::Clamp } else { Wrap::Repeat };
-        let id = scene.add_texture(Texture {
+        // Only a few files are open at a time: this one is opened again when it is decoded.
+        let opened = open_file(self.sandbox, folder, &map.file);
+        let path = opened.map_or_else(|_| folder.join(&map.file), |file| file.identity);
+        let image = self
+            .cache
+            .image(path, || ImageFile { folder: folder.to_owned(), name: map.file.clone() });
+        let transform = transform(map);
+        let key = (image, map.is_clamped, transfer, transform_bits(transform));
+        let wrap = if map.is_clamped { Wrap::Clamp } else { Wrap::Repeat };
+        self.cache.texture(key, image, scene, |image| Texture {
             transfer,
             wrap: [wrap; 2],
             mipmap: true,
-            transform: key.2,
-            ..Texture::new(Arc::new(placeholder::white(&map.file)))
-        });
-        shown_by.push((key, id));
-        id
+            transform,
+            ..Texture::new(image)
+        })
     }
 
-    /// Notes that a material's opacity is in its picture's alpha, where that has one.
+    /// Records that a material's opacity is in its image's alpha, if that has one.
     pub fn prefer_alpha(&mut self, material: MaterialId) {
-        self.opacities.push(material);
+        self.alpha_preferred.push(material);
     }
 
-    /// Notes that a `bump` may be a picture of normals.
-    pub fn may_be_normals(
-        &mut self,
-        material: MaterialId,
-        texture: TextureId,
-        scale: f32,
-        name: &str,
-    ) {
-        self.bumps.push((material, texture, scale, name.to_owned()));
+    /// Records that the `bump` of a material may be a normal map.
+    pub fn add_bump(&mut self, material: MaterialId, map: NormalMap) {
+        self.bumps.push(Bump { material, map });
     }
 
-    /// Decodes the pictures, side by side, if they are `wanted`, and settles what depends on them.
-    pub fn decode(self, wanted: bool, scene: &mut Scene, tally: &mut Diagnostics) {
-        let open = |picture: &Picture| {
-            find(self.guard, &picture.folder, &picture.name).map(decode::Source::File)
+    /// Decodes the images, in parallel, if the scene `needs_images`, and decides what depends on them.
+    pub fn decode(self, needs_images: bool, scene: &mut Scene, diagnostics: &mut Diagnostics) {
+        let Self { sandbox, cache, alpha_preferred, bumps } = self;
+        let open = |file: &ImageFile| {
+            open_file(sandbox, &file.folder, &file.name).map(decode::Source::File)
         };
-        let images = decode::decode_all(&self.pictures, self.guard, open, |_| wanted);
         let mut missing = HashSet::new();
-        for (image, picture) in images.into_iter().zip(&self.pictures) {
-            let image = image.map_err(|e| e.at(&picture.folder.join(&picture.name)));
-            let shown_by = picture.shown_by.iter().map(|(_, id)| *id);
-            if !placeholder::show(image, &picture.name, shown_by.clone(), scene, tally) {
-                missing.extend(shown_by);
+        for decoded in cache.decode(sandbox, open, |_| needs_images) {
+            let ImageFile { folder, name } = &decoded.source;
+            let (image, textures) = (decoded.image, &decoded.textures);
+            let image = image.map_err(|e| e.at(&folder.join(name)));
+            if !set_image_or_placeholder(image, name, textures, scene, diagnostics) {
+                missing.extend(decoded.textures);
             }
         }
-        for material in self.opacities {
+        // Opacities that are in an alpha channel.
+        for material in alpha_preferred {
             let Scene { materials, textures, .. } = scene;
-            let coverage = &mut materials[material.0 as usize].coverage;
-            if let Some(Channel { texture, channel }) =
-                coverage.as_mut().and_then(|c| c.map.as_mut())
-            {
+            let coverage = materials[material.0 as usize].coverage.as_mut();
+            if let Some(Channel { texture, channel }) = coverage.and_then(|c| c.map.as_mut()) {
                 let image = &textures[texture.0 as usize].image;
-                if image.is_read() && !image.is_full(3) {
+                if image.is_read() && !image.is_channel_full(3) {
                     *channel = 3;
                 }
             }
         }
-        for (material, texture, scale, name) in self.bumps {
-            let image = &scene.textures[texture.0 as usize].image;
-            if !image.is_read() || missing.contains(&texture) {
+        // Bumps that are normal maps, as many programs write them.
+        for Bump { material, map } in bumps {
+            let image = &scene.textures[map.texture.0 as usize].image;
+            if !image.is_read() || missing.contains(&map.texture) {
                 continue;
             }
-            if are_normals(image) {
-                let map = NormalMap { texture, scale };
-                scene.materials[material.0 as usize].normal_map = Some(map);
+            let is_normal_map = is_normal_map(image);
+            let material = &mut scene.materials[material.0 as usize];
+            if is_normal_map {
+                material.normal_map = Some(map);
             } else {
                 let reason = "{} textures of heights (`bump`) are not read";
-                tally.unsupported(reason, 1, || format!("`{name}`"));
+                diagnostics.unsupported(reason, 1, || format!("`{}`", material.name));
             }
         }
     }
 }
 
-/// From our texture coordinates, whose v runs down, to those on the picture: MTL scales those whose v
-/// runs up, and then shifts them.
-fn transform(map: &Map) -> Affine2 {
+/// Returns the transform from our texture coordinates, whose v runs down, to those of the image: MTL
+/// scales those whose v runs up, and then shifts them.
+fn transform(map: &TextureMap) -> Affine2 {
     let ([su, sv], [ou, ov]) = (map.scale, map.offset);
     Affine2::from_scale_angle_translation(Vec2::new(su, sv), 0.0, Vec2::new(ou, 1.0 - sv - ov))
 }
 
-/// Whether a picture is one of normals: nearly everywhere a vector of length 1 that points out of
-/// the surface, and not a grey.
-fn are_normals(image: &Image) -> bool {
+/// True if an image is a normal map: nearly everywhere a vector of length 1 that points out of the
+/// surface, and not a grey.
+fn is_normal_map(image: &Image) -> bool {
     let count = image.texels.len();
     let is_normal = |i: &usize| {
         let n = image.texels.linear(*i, Transfer::None).truncate() * 2.0 - 1.0;
@@ -162,7 +152,7 @@ fn are_normals(image: &Image) -> bool {
             && n.x.min(n.y) < n.z - 0.02
     };
     let normals = (0..count).filter(is_normal).count();
-    normals as f64 >= MOSTLY * count as f64
+    normals as f64 >= MIN_NORMALS * count as f64
 }
 
 #[cfg(test)]
@@ -171,18 +161,18 @@ mod tests {
 
     #[test]
     fn greys_are_heights_and_blues_are_normals() {
-        let picture = |texel: [u8; 3]| {
+        let image = |texel: [u8; 3]| {
             let [r, g, b] = texel;
-            Image::bytes("", [1, 1], vec![[r, g, b, 255]])
+            Image::from_bytes("", [1, 1], vec![[r, g, b, 255]])
         };
         let blues = [[128, 128, 255], [180, 128, 240], [128, 60, 230]];
-        assert!(blues.iter().all(|&texel| are_normals(&picture(texel))));
-        assert!((0..=255).all(|grey| !are_normals(&picture([grey; 3]))));
+        assert!(blues.iter().all(|&texel| is_normal_map(&image(texel))));
+        assert!((0..=255).all(|grey| !is_normal_map(&image([grey; 3]))));
     }
 
     #[test]
     fn coordinates_are_scaled_and_then_shifted_with_v_up() {
-        let map = Map::parse("-s 2 3 -o .25 .5 a.png").unwrap();
+        let map = TextureMap::parse("-s 2 3 -o .25 .5 a.png").unwrap();
         // u 1, v 1 becomes 2.25, 3.5: with v down, 0 becomes −2.5.
         assert_eq!(transform(&map).transform_point2(Vec2::new(1.0, 0.0)), Vec2::new(2.25, -2.5));
     }

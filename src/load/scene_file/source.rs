@@ -1,4 +1,4 @@
-//! The text that a scene is read from, and errors that point into it.
+//! The text of a scene file, and errors that point into it.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -8,59 +8,62 @@ use crate::error::{Error, Place};
 /// A range of bytes in the text.
 pub type Span = Range<usize>;
 
-/// A scene file's path and text.
+/// The path and the text of a scene file.
+#[derive(Clone, Copy)]
 pub struct Source<'a> {
-    path: &'a Path,
+    /// The file's path.
+    pub path: &'a Path,
     /// The whole text.
     pub text: &'a str,
 }
 
-impl<'a> Source<'a> {
-    /// The source with this path and text.
-    pub fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text }
-    }
-
-    /// An error at a place in the text.
+impl Source<'_> {
+    /// Returns an error at a place in the text.
     pub fn error(&self, span: &Span, message: impl Into<String>) -> Error {
-        self.place(span, Error::input(message))
+        self.locate(span, Error::input(message))
     }
 
     /// Adds a place in the text to an error that names no file yet.
-    pub fn place(&self, span: &Span, error: Error) -> Error {
+    pub fn locate(&self, span: &Span, error: Error) -> Error {
         error.at(self.path).place(Place::in_text(self.text, span.clone()))
     }
 
-    /// The scene file's folder, to which the paths that it names are relative.
+    /// Returns the folder of the scene file, to which the paths that it names are relative.
     pub fn folder(&self) -> &Path {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// The path of a file that the scene names.
-    pub fn file(&self, name: &str) -> PathBuf {
+    /// Returns the path of a file that the scene names.
+    pub fn resolve_path(&self, name: &str) -> PathBuf {
         self.folder().join(name)
     }
 
-    /// The error that a file, a model or a picture, which the scene names is not to be had.
-    pub fn cannot_have(&self, span: &Span, what: &str, name: &str, error: &Error) -> Error {
-        let message = format!("the {what} {}: {}", self.file(name).display(), error.message());
+    /// Returns the error that a file that the scene names, `kind` "model" or "image", cannot be
+    /// read.
+    pub fn unreadable(&self, span: &Span, kind: &str, name: &str, error: &Error) -> Error {
+        let path = self.resolve_path(name);
+        let message = format!("the {kind} {}: {}", path.display(), error.message());
         let help = error.advice().unwrap_or("a path is relative to the scene file's folder");
-        self.error(span, message).help(help)
+        let located = self.error(span, message).help(help);
+        match error.remedy() {
+            Some(remedy) => located.remedied_by(remedy),
+            None => located,
+        }
     }
 
-    /// The line of a place, counted from 1.
+    /// Returns the line of a place, counted from 1.
     pub fn line(&self, span: &Span) -> usize {
         self.text[..span.start].matches('\n').count() + 1
     }
 
-    /// FILE:line:column of a place, for warnings.
-    pub fn shown(&self, span: &Span) -> String {
+    /// Returns the place as FILE:line:column, for warnings.
+    pub fn location(&self, span: &Span) -> String {
         format!("{}:{}", self.path.display(), Place::in_text(self.text, span.clone()))
     }
 
-    /// The place of `key` in `key = value`, by the place of the value; that of the value itself
-    /// when the key is written another way.
-    pub fn key(&self, key: &str, value: &Span) -> Span {
+    /// Returns the place of `key` in `key = value`, by the place of the value; that of the value
+    /// itself when the key is written another way.
+    pub fn key_span(&self, key: &str, value: &Span) -> Span {
         let before = self.text[..value.start].trim_end();
         match before.strip_suffix('=').map(str::trim_end).and_then(|b| b.strip_suffix(key)) {
             Some(rest) => rest.len()..rest.len() + key.len(),
@@ -68,12 +71,12 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// What stands at a place, cut short when it is long or goes on over several lines.
+    /// Returns the text at a place, cut short when it is long or goes on over several lines.
     pub fn excerpt(&self, span: &Span) -> String {
-        const LONGEST: usize = 40;
+        const MAX_LENGTH: usize = 40;
         let text = self.text.get(span.clone()).unwrap_or_default();
         let line = text.lines().next().unwrap_or_default();
-        match line.char_indices().nth(LONGEST) {
+        match line.char_indices().nth(MAX_LENGTH) {
             Some((cut, _)) => format!("{}…", &line[..cut]),
             None if line.len() < text.len() => format!("{line}…"),
             None => line.to_owned(),

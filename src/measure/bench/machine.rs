@@ -1,18 +1,18 @@
-//! The machine that was measured.
+//! The description of the machine that a benchmark runs on.
 
 use serde::Serialize;
 use sysinfo::{CpuRefreshKind, RefreshKind, System};
 
-/// The machine that was measured, as far as it tells.
+/// The description of a machine, as far as the system tells.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Machine {
-    /// The processor's own name.
+    /// The processor's model name.
     pub processor: String,
-    /// Cores, without what hyper-threading adds; null where the system does not tell.
+    /// The number of physical cores; null where the system does not tell.
     pub cores: Option<usize>,
-    /// Threads that this process may run at once.
+    /// The number of threads that this process may run at once.
     pub threads: usize,
-    /// Instruction sets that matter to a tracer, the widest last.
+    /// The instruction sets that matter to a ray tracer, the widest last.
     pub features: Vec<&'static str>,
     /// The system's name, version and architecture.
     pub system: String,
@@ -23,10 +23,10 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// This one.
-    pub fn here() -> Self {
-        let what = RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing());
-        let system = System::new_with_specifics(what);
+    /// Returns the description of the machine that this runs on.
+    pub fn current() -> Self {
+        let refresh = RefreshKind::nothing().with_cpu(CpuRefreshKind::nothing());
+        let system = System::new_with_specifics(refresh);
         let processor = system.cpus().first().map(|cpu| cpu.brand().trim().to_owned());
         let name = System::long_os_version().unwrap_or(std::env::consts::OS.to_owned());
         let kernel = System::kernel_version().unwrap_or_default();
@@ -46,6 +46,7 @@ impl Machine {
     }
 }
 
+/// Returns the names of the instruction sets that the processor supports.
 #[cfg(target_arch = "x86_64")]
 fn features() -> Vec<&'static str> {
     [
@@ -56,10 +57,11 @@ fn features() -> Vec<&'static str> {
         ("AVX-512", is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")),
     ]
     .into_iter()
-    .filter_map(|(name, there)| there.then_some(name))
+    .filter_map(|(name, is_supported)| is_supported.then_some(name))
     .collect()
 }
 
+/// Returns the names of the instruction sets that this build uses.
 #[cfg(not(target_arch = "x86_64"))]
 fn features() -> Vec<&'static str> {
     if cfg!(target_feature = "neon") { vec!["NEON"] } else { Vec::new() }

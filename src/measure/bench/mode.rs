@@ -1,112 +1,116 @@
-//! The ways to make a picture between which a user can choose.
+//! The modes that a benchmark compares: an intersector's setup and a number of samples per pixel.
 
 use crate::error::Result;
 use crate::intersect::{Backend, BuildQuality, Intersector, IntersectorBuilder, Precision};
-use crate::scene::{Adaptive, FilmSettings, Scene};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
 
-/// What has to be built before the first ray: one serves pictures of any number of samples.
+/// The setup of an intersector, which is built once for pictures of any number of samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
-    /// Who finds the hits.
+    /// The ray tracing backend.
     pub backend: Backend,
-    /// How far the hits can be trusted.
+    /// The precision of the hits.
     pub precision: Precision,
-    /// How good Embree's trees are; nothing where there is no Embree.
+    /// The build quality of Embree's BVH; none for the pure-Rust BVH.
     pub quality: Option<BuildQuality>,
 }
 
-/// One way to make a picture.
+/// A way to render a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mode {
-    /// What is built.
+    /// The intersector.
     pub setup: Setup,
-    /// Samples per pixel.
+    /// The samples per pixel.
     pub samples: Samples,
 }
 
-/// How many samples a pixel has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A number of samples per pixel; in order, regular ones come before adaptive ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Samples {
-    /// As many as any other.
+    /// The same number for every pixel.
     Regular(u32),
-    /// From some to others, with the usual threshold; see [`Adaptive`].
-    Adaptive(u32, u32),
+    /// AdaptiveSampling sampling with the default threshold; see [`AdaptiveSampling`].
+    Adaptive {
+        /// The fewest samples of a pixel.
+        min: u32,
+        /// The most samples of a pixel.
+        max: u32,
+    },
 }
 
 impl Setup {
-    /// Every setup of this build, Embree's before the pure-Rust ones, and its better trees before
-    /// the worse.
+    /// Returns every setup of this build: Embree's before the pure-Rust ones, and better build
+    /// quality before lower.
     pub fn all() -> Vec<Self> {
-        let backends = [Backend::default(), Backend::Rust];
-        let backends = if backends[0] == backends[1] { &backends[1..] } else { &backends[..] };
-        let mut all = Vec::new();
-        for &backend in backends {
-            let qualities: &[_] = match backend {
-                Backend::Rust => &[None],
-                #[cfg(feature = "embree")]
-                Backend::Embree => &[Some(BuildQuality::Medium), Some(BuildQuality::Low)],
-            };
+        let builds = [
+            #[cfg(feature = "embree")]
+            (Backend::Embree, &[Some(BuildQuality::Medium), Some(BuildQuality::Low)][..]),
+            (Backend::Rust, &[None][..]),
+        ];
+        let mut setups = Vec::new();
+        for (backend, qualities) in builds {
             for precision in [Precision::Fast, Precision::Certified] {
-                all.extend(qualities.iter().map(|&quality| Self { backend, precision, quality }));
+                setups.extend(qualities.iter().map(|&quality| Self {
+                    backend,
+                    precision,
+                    quality,
+                }));
             }
         }
-        all
+        setups
     }
 
-    /// What it is called, such as `embree fast low`; what has no quality or the better one says
-    /// nothing of it.
+    /// Returns the name, such as `embree fast low`; medium quality is not mentioned.
     pub fn name(&self) -> String {
-        let quality = match self.quality {
-            Some(BuildQuality::Low) => " low",
-            _ => "",
-        };
+        let quality = if self.quality == Some(BuildQuality::Low) { " low" } else { "" };
         format!("{} {}{quality}", self.backend.name(), self.precision.name())
     }
 
-    /// Builds it for a checked scene, on the current rayon pool.
+    /// Builds the intersector of a checked scene, on the current rayon pool.
     ///
     /// # Errors
     /// When Embree cannot be started or runs out of memory.
     pub fn build<'s>(&self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
-        let builder =
-            IntersectorBuilder::new(self.backend, self.precision, rayon::current_num_threads());
+        let threads = rayon::current_num_threads();
         let quality = self.quality.unwrap_or(BuildQuality::Medium);
-        builder.with_quality(quality).build(scene)
+        IntersectorBuilder::new(self.backend, self.precision, threads)
+            .with_quality(quality)
+            .build(scene)
     }
 }
 
 impl Mode {
-    /// What it is called, such as `embree fast 4 spp`.
+    /// Returns the name, such as `embree fast 4 spp`.
     pub fn name(&self) -> String {
         format!("{} {} spp", self.setup.name(), self.samples.name())
     }
 }
 
 impl Samples {
-    /// What they are called, such as `4` or `1..25`.
+    /// Returns the name, such as `4` or `1..25`.
     pub fn name(self) -> String {
         match self {
             Samples::Regular(spp) => spp.to_string(),
-            Samples::Adaptive(min, max) => format!("{min}..{max}"),
+            Samples::Adaptive { min, max } => format!("{min}..{max}"),
         }
     }
 
-    /// The film settings of pictures with so many.
+    /// Returns film settings with this number of samples.
     pub fn film(self, film: &FilmSettings) -> FilmSettings {
         let (spp, adaptive) = match self {
             Samples::Regular(spp) => (spp, None),
-            Samples::Adaptive(min, max) => {
-                (min, Some(Adaptive { max, threshold: Adaptive::THRESHOLD }))
+            Samples::Adaptive { min, max } => {
+                (min, Some(AdaptiveSampling { max, threshold: AdaptiveSampling::THRESHOLD }))
             }
         };
         FilmSettings { spp, adaptive, ..film.clone() }
     }
 
-    /// The most that a pixel has.
-    pub fn most(self) -> u32 {
+    /// Returns the most samples that a pixel can have.
+    pub fn max_spp(self) -> u32 {
         match self {
             Samples::Regular(spp) => spp,
-            Samples::Adaptive(_, max) => max,
+            Samples::Adaptive { max, .. } => max,
         }
     }
 }

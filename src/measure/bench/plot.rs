@@ -1,15 +1,15 @@
-//! The plot of run time against error.
+//! The benchmark's plot of run time against error.
 
 use std::ops::Range;
 
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::report::{Report, Row, Standing};
+use super::report::{BenchReport, ParetoRank, Row};
 use crate::error::{Error, Result};
 
 const SIZE: (u32, u32) = (900, 600);
-/// A colour for each setup.
+/// The colours of the setups.
 const COLORS: [RGBColor; 8] = [
     RGBColor(0x2f, 0x6d, 0xb5),
     RGBColor(0x2e, 0x8b, 0x57),
@@ -24,73 +24,78 @@ const DARK: RGBColor = RGBColor(0x33, 0x33, 0x33);
 const FRONT: RGBColor = RGBColor(0xb8, 0xb8, 0xb8);
 const RADIUS: i32 = 6;
 
-type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
-
-/// An SVG: each mode by the time that building and rendering take and its RMSE, both on
-/// logarithmic scales, with the front drawn as stairs and dominated modes marked by crosses. A mode
-/// without error stands on the lower border.
+/// Returns the plot as SVG: the modes by their time to build and render and their RMSE, both on
+/// logarithmic scales, with the Pareto front drawn as steps and dominated modes marked by crosses. A
+/// mode without error is drawn on the lower border.
 ///
 /// # Errors
 /// When the plot cannot be drawn.
-pub fn plot(report: &Report) -> Result<String> {
+pub fn plot(report: &BenchReport) -> Result<String> {
     let mut svg = String::new();
     draw(&mut svg, report).map_err(|e| Error::failed(format!("the plot cannot be drawn: {e}")))?;
     Ok(svg)
 }
 
-fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
+fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error::Error>> {
     let rows = &report.modes;
     let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let text = |size: u32| ("sans-serif", size).into_font().color(&DARK);
-    let times = range(rows.iter().map(|r| r.total_ms));
-    let errors = range(rows.iter().map(|r| r.rmse));
-    let at = |row: &Row| (row.total_ms, row.rmse.max(errors.start));
+    // Axes, their labels and the grid.
+    let times = axis_range(rows.iter().map(|r| r.total_ms));
+    let errors = axis_range(rows.iter().map(|r| r.rmse));
+    let position = |row: &Row| (row.total_ms, row.rmse.max(errors.start));
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
         .margin_right(28)
-        .caption(format!("{}: run time against error", report.scene), text(22))
+        .caption(format!("{}: time and error", report.scene), text(22))
         .x_label_area_size(52)
         .y_label_area_size(84)
         .build_cartesian_2d(times.clone().log_scale(), errors.clone().log_scale())?;
     chart
         .configure_mesh()
-        .x_desc("building and rendering, milliseconds (median)")
+        .x_desc("time to build and render, milliseconds (median)")
         .y_desc(format!("RMSE against {}", report.reference.mode))
         .x_labels(12)
         .y_labels(10)
-        .x_label_formatter(&|x| short(*x))
-        .y_label_formatter(&|y| short(*y))
+        .x_label_formatter(&|x| axis_label(*x))
+        .y_label_formatter(&|y| axis_label(*y))
         .label_style(text(15))
         .axis_desc_style(text(16))
         .bold_line_style(RGBColor(0xe2, 0xe2, 0xe2))
         .light_line_style(TRANSPARENT)
         .axis_style(RGBColor(0x88, 0x88, 0x88))
         .draw()?;
+    // The Pareto front.
+    let front = front_steps(rows, &position, &times, &errors);
     chart
-        .draw_series(LineSeries::new(stairs(rows, &at, &times, &errors), FRONT.stroke_width(5)))?
+        .draw_series(LineSeries::new(front, FRONT.stroke_width(5)))?
         .label("front")
         .legend(|(x, y)| PathElement::new([(x, y), (x + 24, y)], FRONT.stroke_width(5)));
+    // A curve for each setup, with a mark and a label for each mode.
     for (setup, color) in rows.chunk_by(|a, b| a.setup() == b.setup()).zip(COLORS.iter().cycle()) {
         let color = *color;
         chart
-            .draw_series(LineSeries::new(in_order(setup, &at), color.stroke_width(1)))?
+            .draw_series(LineSeries::new(curve(setup, &position), color.stroke_width(1)))?
             .label(setup[0].setup())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
-        let of = |standing| setup.iter().filter(move |r| r.standing == standing).map(at);
+        let ranked = |rank| setup.iter().filter(move |r| r.rank == rank).map(position);
         let (disc, ring) = (color.filled(), color.stroke_width(2));
-        chart.draw_series(of(Standing::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
-        chart.draw_series(of(Standing::Hits).map(|p| Circle::new(p, RADIUS, ring)))?;
-        chart.draw_series(of(Standing::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
+        chart.draw_series(ranked(ParetoRank::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
+        chart.draw_series(
+            ranked(ParetoRank::FewerWrongHits).map(|p| Circle::new(p, RADIUS, ring)),
+        )?;
+        chart.draw_series(ranked(ParetoRank::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
         let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
-        let label = |row: &Row| match row.rmse > 0.0 {
-            true => row.samples.clone(),
-            false => format!("{}, no error", row.samples),
+        let label = |row: &Row| {
+            let error = if row.rmse > 0.0 { "" } else { ", no error" };
+            format!("{}{error}", row.samples)
         };
         chart.draw_series(setup.iter().map(|row| {
-            EmptyElement::at(at(row)) + Text::new(label(row), (6, -6), above.clone())
+            EmptyElement::at(position(row)) + Text::new(label(row), (6, -6), above.clone())
         }))?;
     }
+    // The legend of the marks.
     let none = || std::iter::empty::<Circle<(f64, f64), i32>>();
     chart
         .draw_series(none())?
@@ -98,7 +103,7 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
         .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.filled()));
     chart
         .draw_series(none())?
-        .label("behind it, with fewer wrong hits")
+        .label("behind the front, fewer wrong hits")
         .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
     chart
         .draw_series(none())?
@@ -117,23 +122,23 @@ fn draw(svg: &mut String, report: &Report) -> Drawn<()> {
     Ok(())
 }
 
-/// The modes of a setup from the fastest to the slowest.
-fn in_order(rows: &[Row], at: &dyn Fn(&Row) -> (f64, f64)) -> Vec<(f64, f64)> {
-    let mut points: Vec<_> = rows.iter().map(at).collect();
+/// Returns the positions of a setup's modes, from the fastest to the slowest.
+fn curve(rows: &[Row], position: &dyn Fn(&Row) -> (f64, f64)) -> Vec<(f64, f64)> {
+    let mut points: Vec<_> = rows.iter().map(position).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
 }
 
-/// The front as stairs, from the upper border to the right one: what lies on them or beyond is to
-/// be had.
-fn stairs(
+/// Returns the Pareto front as steps from the upper border to the right one. Some mode is at least as
+/// good as any point on or above them.
+fn front_steps(
     rows: &[Row],
-    at: &dyn Fn(&Row) -> (f64, f64),
+    position: &dyn Fn(&Row) -> (f64, f64),
     times: &Range<f64>,
     errors: &Range<f64>,
 ) -> Vec<(f64, f64)> {
-    let on_front = rows.iter().filter(|row| row.standing == Standing::Front);
-    let mut corners: Vec<(f64, f64)> = on_front.map(at).collect();
+    let on_front = rows.iter().filter(|row| row.rank == ParetoRank::Front);
+    let mut corners: Vec<(f64, f64)> = on_front.map(position).collect();
     corners.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut error = errors.end;
     let mut line = Vec::new();
@@ -145,8 +150,9 @@ fn stairs(
     line
 }
 
-/// What an axis spans: what is above 0, and some room.
-fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
+/// Returns the range of an axis: the positive values, and a margin. Values of 0 extend the lower
+/// margin.
+fn axis_range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
     let positive = || values.clone().filter(|x| *x > 0.0 && x.is_finite());
     let (least, most) = (positive().fold(f64::MAX, f64::min), positive().fold(0.0, f64::max));
     let (least, most) = if most > 0.0 { (least, most) } else { (1e-3, 1.0) };
@@ -154,7 +160,7 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
     if values.clone().any(|x| x == 0.0) {
         start /= 5.0;
     }
-    // Powers of ten lie within, so that the axis has labels.
+    // The range contains powers of ten, so that the axis has labels.
     if end.log10().floor() - start.log10().ceil() < 1.0 {
         start = 10f64.powf(start.log10().floor());
         end = 10f64.powf(end.log10().ceil());
@@ -162,8 +168,8 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> Range<f64> {
     start..end
 }
 
-/// A number of an axis.
-fn short(x: f64) -> String {
+/// Returns the label of a number on an axis.
+fn axis_label(x: f64) -> String {
     if (1e-4..1e5).contains(&x) {
         format!("{}", (x * 1e6).round() / 1e6)
     } else {

@@ -1,95 +1,98 @@
-//! The picture that every other is held against.
+//! The reference image of a benchmark, and the error of other images against it.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::mode::Mode;
 use crate::error::Result;
 use crate::film::{Film, View};
 use crate::intersect::Intersector;
-use crate::measure::flip::{Flip, Seen};
-use crate::measure::{Comparison, Picture, compare};
+use crate::measure::flip::{Flip, PerceivedImage};
+use crate::measure::{Comparison, Picture, compare_pictures};
 use crate::render::{Renderer, Traced};
 use crate::scene::{Scene, Transfer};
 use crate::write::{Settings, png_bytes};
 
-/// The picture that every other is held against, and what its rays hit.
+/// The reference image, with the primitive that the ray through each pixel's centre hits.
 pub struct Reference {
+    /// The mode that it was rendered in.
+    pub mode: Mode,
     radiance: Picture,
-    seen: Seen,
-    /// The bytes of its PNG.
+    perceived: PerceivedImage,
+    /// The bytes of its PNG: red, green and blue of each pixel.
     pub bytes: Vec<u8>,
     ids: Film,
-    /// Time to build its intersector.
+    /// The time to build the intersector.
     pub build: Duration,
-    /// Time to render it.
+    /// The time to render.
     pub render: Duration,
 }
 
-/// How far a picture is from the reference.
-pub struct Distance {
-    /// Of the radiance.
+/// The error of an image against the reference.
+pub struct ImageError {
+    /// The difference of the radiance.
     pub radiance: Comparison,
-    /// Of the PNGs.
+    /// The perceived difference of the PNGs.
     pub flip: Flip,
-    /// The bytes of its PNG.
+    /// The bytes of the image's PNG.
     pub bytes: Vec<u8>,
 }
 
 impl Reference {
-    /// Renders it.
-    pub fn new(
+    /// Renders the reference of a checked scene.
+    ///
+    /// # Errors
+    /// When the intersector cannot be built.
+    pub fn render(
         scene: &Scene,
         mode: Mode,
         camera: usize,
         progress: &(dyn Fn(f32) + Sync),
     ) -> Result<Self> {
-        let start = std::time::Instant::now();
+        let start = Instant::now();
         let intersector = mode.setup.build(scene)?;
         let build = start.elapsed();
-        let of_mode = Scene { film: mode.samples.film(&scene.film), ..scene.clone() };
-        let renderer = Renderer::new(&of_mode).camera(camera).on_progress(progress);
+        let sampled = Scene { film: mode.samples.film(&scene.film), ..scene.clone() };
+        let renderer = Renderer::new(&sampled).camera(camera).on_progress(progress);
         let Traced { film, duration: render, .. } = renderer.render_with(&*intersector);
-        let ids = ids(scene, camera, &*intersector);
-        let (shown, bytes) = shown(&film, scene);
-        let seen = seen(&shown);
-        Ok(Self { radiance: radiance(&film), seen, bytes, ids, build, render })
+        let ids = primitive_ids(scene, camera, &*intersector);
+        let (perceived, bytes) = perceived(&film, scene);
+        Ok(Self { mode, radiance: radiance(&film), perceived, bytes, ids, build, render })
     }
 
-    /// How far a picture of the same scene and size is from this one.
+    /// Returns the error of an image of the same scene and size.
     ///
     /// # Errors
     /// When the size is another one.
-    pub fn distance(&self, film: &Film, scene: &Scene) -> Result<Distance> {
-        let (shown, bytes) = shown(film, scene);
-        let radiance = compare(&self.radiance, &radiance(film), 0.0)?;
-        Ok(Distance { radiance, flip: self.seen.flip(&seen(&shown)), bytes })
+    pub fn error(&self, film: &Film, scene: &Scene) -> Result<ImageError> {
+        let (perceived, bytes) = perceived(film, scene);
+        let radiance = compare_pictures(&self.radiance, &radiance(film), 0.0)?;
+        Ok(ImageError { radiance, flip: self.perceived.flip(&perceived), bytes })
     }
 
-    /// In how many pixels the ray through the centre hits something else, or not what is there.
-    pub fn wrong_hits(&self, scene: &Scene, camera: usize, by: &dyn Intersector) -> u64 {
-        let ids = ids(scene, camera, by);
+    /// Returns the number of pixels in which the ray through the centre hits another primitive than
+    /// in the reference, or only one of the two hits anything.
+    pub fn wrong_hits(&self, scene: &Scene, camera: usize, intersector: &dyn Intersector) -> u64 {
+        let ids = primitive_ids(scene, camera, intersector);
         ids.pixels.iter().zip(&self.ids.pixels).filter(|(a, b)| a != b).count() as u64
     }
 }
 
-/// What one ray of each pixel hits.
-fn ids(scene: &Scene, camera: usize, intersector: &dyn Intersector) -> Film {
+/// Renders the id of the primitive that one ray of each pixel hits.
+fn primitive_ids(scene: &Scene, camera: usize, intersector: &dyn Intersector) -> Film {
     Renderer::new(scene).camera(camera).view(View::Id).render_with(intersector).film
 }
 
-/// The values of an EXR.
+/// Returns the values of a film's EXR.
 fn radiance(film: &Film) -> Picture {
     let channels = film.view.channels().iter().map(|c| c.to_string()).collect();
     Picture { size: film.size, channels, values: film.pixels.as_flattened().to_vec() }
 }
 
-/// The values of a PNG, and its bytes.
-fn shown(film: &Film, scene: &Scene) -> (Picture, Vec<u8>) {
-    let bytes = png_bytes(film, &Settings::of(&scene.film));
+/// Returns a film's PNG as FLIP compares it, and its bytes.
+fn perceived(film: &Film, scene: &Scene) -> (PerceivedImage, Vec<u8>) {
+    let bytes = png_bytes(film, &Settings::from_film(&scene.film));
     let values = bytes.iter().map(|&b| f32::from(b) / 255.0).collect();
-    (Picture { values, ..radiance(film) }, bytes)
-}
-
-fn seen(shown: &Picture) -> Seen {
-    Seen::of(shown, Transfer::Srgb).expect("a film has the channels R, G and B")
+    let png = Picture { values, ..radiance(film) };
+    let perceived = PerceivedImage::from_picture(&png, Transfer::Srgb);
+    (perceived.expect("a film has the channels R, G and B"), bytes)
 }

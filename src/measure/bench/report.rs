@@ -1,248 +1,252 @@
-//! What a bench found: rows and pictures.
+//! The results of a benchmark: a row for each mode, and the images.
 
 use std::time::Duration;
 
 use serde::Serialize;
 
-use super::front::dominators;
+use super::BenchOptions;
 use super::machine::Machine;
-use super::mode::Mode;
+use super::mode::{Mode, Setup};
+use super::pareto::dominators;
 use super::reference::Reference;
-use super::trial::{Attempt, Trial};
-use super::{Options, Setup};
+use super::runs::{ModeRuns, SetupRuns};
 use crate::scene::Scene;
 
-/// What a bench found.
+/// The results of a benchmark.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
-    /// What the scene is called.
+pub struct BenchReport {
+    /// The name of the scene.
     pub scene: String,
-    /// Width and height in pixels.
+    /// The width and height in pixels.
     pub size: [u32; 2],
-    /// Which camera, by its index.
+    /// The index of the camera.
     pub camera: usize,
-    /// Threads used.
+    /// The number of threads.
     pub threads: usize,
-    /// The machine that was measured.
+    /// The machine that the benchmark ran on.
     pub machine: Machine,
-    /// What every picture was held against.
-    pub reference: Stated,
+    /// The reference that every image is compared with.
+    pub reference: ReferenceSummary,
     /// The modes that were run: setup by setup, with ascending samples.
     pub modes: Vec<Row>,
     /// The modes that had no time for a single run.
-    pub left_out: Vec<LeftOut>,
-    /// The pictures, the reference's first; the others in the order of the modes, equal ones once.
+    #[serde(rename = "left_out")]
+    pub skipped: Vec<SkippedMode>,
+    /// The images: first the reference, then the others in the order of the modes; equal images
+    /// once.
     #[serde(skip)]
-    pub plates: Vec<Plate>,
+    pub images: Vec<ModeImage>,
 }
 
-/// How the reference was made.
+/// The mode and the times of the reference.
 #[derive(Clone, Debug, Serialize)]
-pub struct Stated {
-    /// Its mode.
+pub struct ReferenceSummary {
+    /// The name of its mode.
     pub mode: String,
-    /// Samples per pixel.
+    /// The samples per pixel.
     pub spp: u32,
-    /// Time to build its intersector, once.
+    /// The time to build its intersector, once.
     pub build_ms: f64,
-    /// Time to render it, once.
+    /// The time to render it, once.
     pub render_ms: f64,
 }
 
-/// One mode: what it takes, and how far its picture is from the reference.
+/// The times of a mode, and the error of its image.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What it is called, such as `embree fast 4 spp`.
+    /// The name, such as `embree fast 4 spp`.
     pub mode: String,
-    /// Who finds the hits.
+    /// The name of the ray tracing backend.
     pub backend: &'static str,
-    /// How far hits can be trusted.
+    /// The precision of the hits.
     pub precision: &'static str,
-    /// How good Embree's trees are; empty where there is no Embree.
+    /// The build quality of Embree's BVH; empty for the pure-Rust BVH.
     pub quality: &'static str,
-    /// Samples per pixel, such as `4` or, where they are adaptive, `1..25`.
+    /// The samples per pixel, such as `4` or, where they are adaptive, `1..25`.
     pub samples: String,
-    /// How often it was run.
+    /// The number of runs.
     pub runs: usize,
-    /// Median time to build the intersector, in milliseconds.
+    /// The median time to build the intersector, in milliseconds.
     pub build_ms: f64,
-    /// Median time to render, in milliseconds.
+    /// The median time to render, in milliseconds.
     pub render_ms: f64,
-    /// Both together.
+    /// The sum of both medians.
     pub total_ms: f64,
-    /// Root of the mean squared difference of the radiance.
+    /// The root-mean-square error of the radiance.
     pub rmse: f64,
-    /// Largest difference of the radiance.
+    /// The largest difference of the radiance.
     pub max: f64,
-    /// Mean FLIP of the PNG.
+    /// The mean FLIP of the PNG.
     pub flip: f64,
-    /// Pixels whose ray hits something else than a certified one.
-    pub hits_wrong: u64,
-    /// What speaks for it.
-    pub standing: Standing,
-    /// The fastest mode that is no worse in anything, if it is dominated.
+    /// The number of pixels whose ray hits something else than a certified one.
+    #[serde(rename = "hits_wrong")]
+    pub wrong_hits: u64,
+    /// The place of the mode relative to the Pareto front.
+    #[serde(rename = "standing")]
+    pub rank: ParetoRank,
+    /// The fastest mode that dominates this one, if any does.
     pub dominated_by: Option<String>,
 }
 
-/// What speaks for a mode.
+/// The place of a mode relative to the Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Standing {
-    /// No other is as fast with as small an RMSE.
+pub enum ParetoRank {
+    /// The front of time and RMSE: no other mode is as fast with as small an RMSE.
     Front,
-    /// One is, but has more wrong hits.
-    Hits,
-    /// Another is no slower, with no larger an RMSE and no more wrong hits.
+    /// The front of time, RMSE and wrong hits, but not that of time and RMSE.
+    #[serde(rename = "hits")]
+    FewerWrongHits,
+    /// A dominated mode: another is no slower, with no larger RMSE and no more wrong hits.
     Dominated,
 }
 
 /// A mode that was not run.
 #[derive(Clone, Debug, Serialize)]
-pub struct LeftOut {
-    /// What it is called.
+pub struct SkippedMode {
+    /// The name of the mode.
     pub mode: String,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
-/// A picture, as a PNG shows it, and where it differs from the reference.
+/// An image as a PNG shows it, and its FLIP error map.
 #[derive(Clone, Debug)]
-pub struct Plate {
-    /// The modes that make it.
+pub struct ModeImage {
+    /// The modes that render this image; none for the reference.
     pub modes: Vec<String>,
-    /// Red, green, blue of each pixel.
+    /// The red, green and blue of each pixel.
     pub bytes: Vec<u8>,
-    /// FLIP of each pixel; empty for the reference.
+    /// The FLIP of each pixel against the reference; empty for the reference.
     pub flip: Vec<f32>,
-    /// The mean of it.
+    /// The mean FLIP.
     pub mean: f64,
 }
 
-impl Standing {
-    /// What it is called.
+impl ParetoRank {
+    /// Returns the name: `front`, `hits` or `dominated`.
     pub fn name(self) -> &'static str {
         match self {
-            Standing::Front => "front",
-            Standing::Hits => "hits",
-            Standing::Dominated => "dominated",
+            ParetoRank::Front => "front",
+            ParetoRank::FewerWrongHits => "hits",
+            ParetoRank::Dominated => "dominated",
         }
     }
 }
 
-impl Report {
+impl BenchReport {
+    /// Sums up the finished runs of all setups.
     pub(super) fn new(
         name: &str,
         scene: &Scene,
-        options: &Options,
-        (mode, reference): (Mode, Reference),
-        trials: Vec<Trial>,
+        options: &BenchOptions,
+        reference: Reference,
+        setups: Vec<SetupRuns>,
     ) -> Self {
-        let stated = Stated {
-            mode: mode.name(),
-            spp: mode.samples.most(),
+        let summary = ReferenceSummary {
+            mode: reference.mode.name(),
+            spp: reference.mode.samples.max_spp(),
             build_ms: milliseconds(reference.build),
             render_ms: milliseconds(reference.render),
         };
         let bytes = reference.bytes;
-        let mut plates = vec![Plate { modes: Vec::new(), bytes, flip: Vec::new(), mean: 0.0 }];
-        let (mut modes, mut left_out) = (Vec::new(), Vec::new());
-        for trial in trials {
-            for attempt in &trial.modes {
-                match Row::new(attempt, &trial) {
+        let mut images = vec![ModeImage { modes: Vec::new(), bytes, flip: Vec::new(), mean: 0.0 }];
+        let (mut modes, mut skipped) = (Vec::new(), Vec::new());
+        for setup in setups {
+            for runs in &setup.modes {
+                match Row::new(runs, &setup) {
                     Some(row) => modes.push(row),
-                    None => left_out.push(LeftOut {
-                        mode: attempt.mode.name(),
-                        reason: trial.why_left_out(&attempt.mode),
+                    None => skipped.push(SkippedMode {
+                        mode: runs.mode.name(),
+                        reason: setup.skip_reason(&runs.mode),
                     }),
                 }
             }
-            let made = trial.modes.into_iter().filter_map(|a| Some((a.mode.name(), a.distance?)));
-            for (mode, distance) in made {
-                match plates[1..].iter_mut().find(|plate| plate.bytes == distance.bytes) {
-                    Some(plate) => plate.modes.push(mode),
-                    None => plates.push(Plate {
+            for runs in setup.modes {
+                let (mode, Some(error)) = (runs.mode.name(), runs.error) else { continue };
+                match images[1..].iter_mut().find(|image| image.bytes == error.bytes) {
+                    Some(image) => image.modes.push(mode),
+                    None => images.push(ModeImage {
                         modes: vec![mode],
-                        bytes: distance.bytes,
-                        flip: distance.flip.map,
-                        mean: distance.flip.mean,
+                        bytes: error.bytes,
+                        flip: error.flip.map,
+                        mean: error.flip.mean,
                     }),
                 }
             }
         }
-        judge(&mut modes);
+        rank(&mut modes);
         Self {
             scene: name.to_owned(),
             size: scene.film.size,
             camera: options.camera,
             threads: rayon::current_num_threads(),
-            machine: Machine::here(),
-            reference: stated,
+            machine: Machine::current(),
+            reference: summary,
             modes,
-            left_out,
-            plates,
+            skipped,
+            images,
         }
     }
 }
 
 impl Row {
-    /// What was built for it, such as `embree fast`.
+    /// Returns the name of the setup, such as `embree fast`.
     pub fn setup(&self) -> &str {
         self.mode.strip_suffix(&format!(" {} spp", self.samples)).unwrap_or(&self.mode)
     }
 
-    /// None where the mode was not run.
-    fn new(attempt: &Attempt, trial: &Trial) -> Option<Self> {
-        let distance = attempt.distance.as_ref()?;
-        let Mode { setup: Setup { backend, precision, quality }, samples } = attempt.mode;
-        let (build_ms, render_ms) = (median(&trial.builds), median(&attempt.renders));
+    /// Creates the row of a mode, not yet ranked; none if the mode was not run.
+    fn new(runs: &ModeRuns, setup: &SetupRuns) -> Option<Self> {
+        let error = runs.error.as_ref()?;
+        let Mode { setup: Setup { backend, precision, quality }, samples } = runs.mode;
+        let (build_ms, render_ms) = (median(&setup.builds), median(&runs.renders));
         Some(Self {
-            mode: attempt.mode.name(),
+            mode: runs.mode.name(),
             backend: backend.name(),
             precision: precision.name(),
             quality: quality.map_or("", |quality| quality.name()),
             samples: samples.name(),
-            runs: attempt.renders.len(),
+            runs: runs.renders.len(),
             build_ms,
             render_ms,
-            total_ms: whole_nanoseconds(build_ms + render_ms),
-            rmse: distance.radiance.rmse,
-            max: distance.radiance.max,
-            flip: distance.flip.mean,
-            hits_wrong: trial.wrong_hits?,
-            standing: Standing::Front,
+            total_ms: round_to_nanoseconds(build_ms + render_ms),
+            rmse: error.radiance.rmse,
+            max: error.radiance.max,
+            flip: error.flip.mean,
+            wrong_hits: setup.wrong_hits?,
+            rank: ParetoRank::Front,
             dominated_by: None,
         })
     }
 }
 
-/// Finds out what speaks for each mode.
-fn judge(rows: &mut [Row]) {
-    let seen: Vec<_> = rows.iter().map(|r| [r.total_ms, r.rmse]).collect();
-    let all: Vec<_> = rows.iter().map(|r| [r.total_ms, r.rmse, r.hits_wrong as f64]).collect();
+/// Ranks the modes relative to the Pareto fronts of two and of three costs.
+fn rank(rows: &mut [Row]) {
+    let visible: Vec<_> = rows.iter().map(|r| [r.total_ms, r.rmse]).collect();
+    let all: Vec<_> = rows.iter().map(|r| [r.total_ms, r.rmse, r.wrong_hits as f64]).collect();
     let names: Vec<String> = rows.iter().map(|r| r.mode.clone()).collect();
-    let (seen, all) = (dominators(&seen), dominators(&all));
-    for ((row, seen), all) in rows.iter_mut().zip(seen).zip(all) {
-        row.standing = match (seen, all) {
-            (None, _) => Standing::Front,
-            (_, None) => Standing::Hits,
-            _ => Standing::Dominated,
+    let dominators = dominators(&visible).into_iter().zip(dominators(&all));
+    for (row, (visible, all)) in rows.iter_mut().zip(dominators) {
+        (row.rank, row.dominated_by) = match (visible, all) {
+            (None, _) => (ParetoRank::Front, None),
+            (_, None) => (ParetoRank::FewerWrongHits, None),
+            (_, Some(other)) => (ParetoRank::Dominated, Some(names[other].clone())),
         };
-        row.dominated_by =
-            all.filter(|_| row.standing == Standing::Dominated).map(|i| names[i].clone());
     }
 }
 
 fn milliseconds(time: Duration) -> f64 {
-    whole_nanoseconds(time.as_secs_f64() * 1e3)
+    round_to_nanoseconds(time.as_secs_f64() * 1e3)
 }
 
-/// Milliseconds without digits that no clock gave.
-fn whole_nanoseconds(milliseconds: f64) -> f64 {
+/// Returns milliseconds without the digits that no clock measures.
+fn round_to_nanoseconds(milliseconds: f64) -> f64 {
     (milliseconds * 1e6).round() / 1e6
 }
 
-/// The median in milliseconds, of an even number of times the mean of the two in the middle; 0 of
-/// none.
+/// Returns the median in milliseconds: of an even number of times the mean of the two in the
+/// middle, of none 0.
 fn median(times: &[Duration]) -> f64 {
     let mut times: Vec<f64> = times.iter().copied().map(milliseconds).collect();
     times.sort_by(f64::total_cmp);

@@ -1,28 +1,28 @@
-//! Properties that the paper's construction has, and a few values.
+//! Tests of properties that follow from the paper's construction, and of a few values.
 
 use glam::Vec3;
 
-use super::{Flip, PIXELS_PER_DEGREE, Seen};
+use super::{Flip, PIXELS_PER_DEGREE, PerceivedImage};
 use crate::measure::Picture;
 use crate::scene::Transfer;
 
 const SIZE: [u32; 2] = [40, 30];
 
-/// A picture by its colour at each column and row.
-fn picture(color: impl Fn(u32, u32) -> Vec3) -> Seen {
+/// Returns a picture with the colour of each column and row.
+fn picture(color: impl Fn(u32, u32) -> Vec3) -> PerceivedImage {
     let [width, height] = SIZE;
     let pixels: Vec<Vec3> = (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))
         .map(|(x, y)| color(x, y))
         .collect();
-    Seen::new(SIZE, &pixels, PIXELS_PER_DEGREE)
+    PerceivedImage::new(SIZE, &pixels, PIXELS_PER_DEGREE)
 }
 
-fn edge_at(column: u32) -> Seen {
+fn edge_at(column: u32) -> PerceivedImage {
     picture(move |x, _| if x < column { Vec3::ZERO } else { Vec3::ONE })
 }
 
-fn waves(phase: f32) -> Seen {
+fn waves(phase: f32) -> PerceivedImage {
     let wave = move |x: u32, y: u32| (x as f32 * 0.7 + y as f32 * 0.3 + phase).sin() * 0.5 + 0.5;
     picture(move |x, y| Vec3::new(wave(x, y), wave(y, x), wave(x, x)))
 }
@@ -92,7 +92,7 @@ fn detail_that_is_too_fine_to_see_differs_less_from_afar() {
         let [width, height] = SIZE;
         let color = |i: u32| if i % width % 2 == odd { Vec3::ONE } else { Vec3::ZERO };
         let pixels: Vec<Vec3> = (0..width * height).map(color).collect();
-        Seen::new(SIZE, &pixels, pixels_per_degree)
+        PerceivedImage::new(SIZE, &pixels, pixels_per_degree)
     };
     let [near, far] = [20.0, 150.0].map(|p| stripes(0, p).flip(&stripes(1, p)).mean);
     assert!(far < 0.5 * near, "{near} {far}");
@@ -105,9 +105,12 @@ fn channels_are_found_by_name_and_values_clamped() {
         channels: channels.map(String::from).into(),
         values: values.into(),
     };
-    let seen = |p: &Picture| Seen::of(p, Transfer::None).unwrap();
-    let a = seen(&of(["B", "G", "R"], [0.25, -3.0, 7.0]));
-    let b = seen(&of(["R", "G", "B"], [1.0, f32::NAN, 0.25]));
+    let perceived = |p: &Picture| PerceivedImage::from_picture(p, Transfer::None).unwrap();
+    let a = perceived(&of(["B", "G", "R"], [0.25, -3.0, 7.0]));
+    let b = perceived(&of(["R", "G", "B"], [1.0, f32::NAN, 0.25]));
     assert_eq!(a.flip(&b).mean, 0.0);
-    assert!(Seen::of(&of(["N.X", "N.Y", "N.Z"], [0.0; 3]), Transfer::None).is_none());
+    assert!(
+        PerceivedImage::from_picture(&of(["N.X", "N.Y", "N.Z"], [0.0; 3]), Transfer::None)
+            .is_none()
+    );
 }

@@ -1,19 +1,18 @@
-//! Why precision `fast` and exact arithmetic may disagree about a ray.
+//! The classification of mismatches: rays on which precision `fast` and exact arithmetic disagree.
 //!
-//! An f32 ray stays within a margin of the exact one (derived in `intersect/embree/frame.rs`), and
-//! an instance's own space may magnify that. So the two may rightly disagree about a triangle that
-//! the ray passes at most that far from an edge, and about the order of two surfaces that lie, along
-//! the ray, closer together than the margin divided by the cosine at which the ray meets them.
+//! An f32 ray stays within a margin of the exact one (derived in
+//! `intersect/embree/f32_space.rs`), which an instance's object space may magnify. So a mismatch is
+//! explained for a triangle whose edge the ray passes within that margin, and for two surfaces that
+//! lie, along the ray, closer together than the margin divided by the cosine of the angle of incidence.
 //!
-//! Spheres and planes are intersected in f64 whatever the rays are traced with. Let f be the way
-//! from a sphere's centre to the ray's origin and r its radius: the formula of `geometry::sphere`
-//! rounds f, its dot product with the direction, the quotient by |d|² and the nearest point, all in
-//! all by 6 ε |f| to first order, and squares r, so that it takes the line for at most
-//! 8 ε (|f| + r) nearer to the centre or farther from it than it is. Two that compute so may differ
-//! by 16 ε (|f| + r), and that is what is allowed, whoever is compared. A plane is met within 16 ε of
-//! the coordinates involved.
+//! Spheres and planes are intersected in f64 in either precision. Let f be the vector from a sphere's
+//! centre to the ray's origin and r its radius: the formula of `geometry::sphere`
+//! rounds f, its dot product with the direction, the quotient by |d|² and the nearest point,
+//! together by 6 ε |f| to first order, and squares r. So its distance of the line from the centre is
+//! off by at most 8 ε (|f| + r). Two backends that compute so may differ by 16 ε (|f| + r), which is
+//! the margin for any pair of backends. The margin of a plane is 16 ε times the coordinates involved.
 //!
-//! Whatever is not of this kind is an error in one of the two.
+//! Any other mismatch is an error in one of the two.
 
 #[cfg(test)]
 mod tests;
@@ -25,7 +24,7 @@ use crate::intersect::Precision;
 use crate::intersect::primitive::Primitives;
 use crate::scene::Scene;
 
-/// What explains a disagreement.
+/// The explanation of a mismatch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MismatchCause {
     /// The ray passes the edge of a triangle within the margin.
@@ -37,7 +36,7 @@ pub enum MismatchCause {
 }
 
 impl MismatchCause {
-    /// What it is called: `edge`, `tangency` or `tie`.
+    /// Returns the name: `edge`, `tangency` or `tie`.
     pub const fn name(self) -> &'static str {
         match self {
             MismatchCause::Edge => "edge",
@@ -47,40 +46,56 @@ impl MismatchCause {
     }
 }
 
-/// How far f64 may be off a sphere or a plane, in units of ε and the numbers involved.
+/// The margin of f64 formulas for a sphere or a plane, relative to the coordinates involved.
 const F64_MARGIN: f64 = 16.0 * f64::EPSILON;
 
-/// Judges disagreements about rays in one scene.
+/// A classifier of mismatches in one scene.
 pub struct MismatchClassifier<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// How far a ray that triangles are found with may be from the exact one, in world units:
-    /// `Embree::margin`.
+    /// The greatest distance of an f32 ray from the exact one, in world units: `Embree::margin`.
     pub margin: f64,
 }
 
+/// The outcome for a shadow ray and one primitive.
+enum Occlusion {
+    /// The primitive certainly does not block the ray.
+    Clear,
+    /// The primitive certainly blocks the ray.
+    Blocked,
+    /// Either outcome is within the margin.
+    Uncertain(MismatchCause),
+}
+
 impl MismatchClassifier<'_> {
-    /// Two closest hits of one ray that differ.
-    pub fn primary(&self, ray: &Ray, a: Option<&Hit>, b: Option<&Hit>) -> Option<MismatchCause> {
+    /// Returns what explains that two backends find different closest hits of a ray; none for an
+    /// unexplained mismatch.
+    pub fn classify_hits(
+        &self,
+        ray: &Ray,
+        a: Option<&Hit>,
+        b: Option<&Hit>,
+    ) -> Option<MismatchCause> {
         let hits = || [a, b].into_iter().flatten();
         if let (Some(a), Some(b)) = (a, b) {
             let cosine = hits().map(|h| self.cosine(ray, h)).fold(1.0, f64::min);
             let apart = (a.t - b.t).abs() * ray.direction.length();
-            let magnified = hits().map(|h| self.margin_at(ray, h.id)).fold(0.0, f64::max);
+            let magnified = hits().map(|h| self.primitive_margin(ray, h.id)).fold(0.0, f64::max);
             if apart * cosine <= magnified {
                 return Some(MismatchCause::Tie);
             }
         }
-        if hits().any(|h| self.touches(ray, h.id)) {
+        if hits().any(|h| self.is_tangent(ray, h.id)) {
             return Some(MismatchCause::Tangency);
         }
-        hits().any(|h| self.passes_edge(ray, h.id)).then_some(MismatchCause::Edge)
+        hits().any(|h| self.passes_near_edge(ray, h.id)).then_some(MismatchCause::Edge)
     }
 
-    /// A shadow ray that one says is blocked and the other is not; `truth` is the exact answer.
+    /// Returns what explains that two backends disagree whether a shadow ray is occluded; none for an
+    /// unexplained mismatch. `is_occluded` is the exact answer.
     ///
-    /// Tries every primitive: this is for the few rays in dispute.
-    pub fn shadow(&self, ray: &Ray, truth: bool) -> Option<MismatchCause> {
+    /// Tests every primitive, which is slow: mismatches are few.
+    pub fn classify_occlusion(&self, ray: &Ray, is_occluded: bool) -> Option<MismatchCause> {
         let mut cause = None;
         let spheres = (0..self.scene.spheres.len() as u32).map(PrimitiveId::sphere);
         let planes = (0..self.scene.planes.len() as u32).map(PrimitiveId::plane);
@@ -93,41 +108,38 @@ impl MismatchClassifier<'_> {
             if !self.scene.blocks_light(id) {
                 continue;
             }
-            let doubt = match id.geometry {
-                Geometry::Mesh(_) => self.doubt(ray, id),
-                _ => self.doubt_in_f64(ray, id),
+            let occlusion = match id.geometry {
+                Geometry::Mesh(_) => self.triangle_occlusion(ray, id),
+                _ => self.sphere_or_plane_occlusion(ray, id),
             };
-            let Some(doubt) = doubt else { continue };
-            match doubt {
-                // The exact ray is clearly blocked: no excuse for saying that it is not.
-                None if truth => return None,
-                None => {}
-                found => cause = found,
+            match occlusion {
+                // The exact ray is certainly blocked: nothing explains the other answer.
+                Occlusion::Blocked if is_occluded => return None,
+                Occlusion::Clear | Occlusion::Blocked => {}
+                Occlusion::Uncertain(found) => cause = Some(found),
             }
         }
         cause
     }
 
-    /// As `doubt`, of a sphere or a plane.
-    fn doubt_in_f64(&self, ray: &Ray, id: PrimitiveId) -> Option<Option<MismatchCause>> {
+    /// Returns the outcome for a sphere or a plane.
+    fn sphere_or_plane_occlusion(&self, ray: &Ray, id: PrimitiveId) -> Occlusion {
+        if self.is_tangent(ray, id) {
+            return Occlusion::Uncertain(MismatchCause::Tangency);
+        }
+        let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
         let unbounded = Ray { tmax: f64::INFINITY, ..*ray };
-        let hit =
-            |ray| Primitives { scene: self.scene, precision: Precision::Certified }.test(id, ray);
-        if self.touches(ray, id) {
-            return Some(Some(MismatchCause::Tangency));
-        }
-        let hit = hit(&unbounded)?;
-        let length = ray.direction.length() * self.cosine(ray, &hit).max(1e-12);
-        let slack = self.margin_at(ray, id) / length;
+        let Some(hit) = primitives.test(id, &unbounded) else { return Occlusion::Clear };
+        let slack = self.t_margin(ray, &hit);
         if hit.t > ray.tmax + slack {
-            return None;
+            return Occlusion::Clear;
         }
-        let inside = hit.t > slack && hit.t < ray.tmax - slack;
-        Some((!inside).then_some(MismatchCause::Tie))
+        occlusion_between_ends(ray, hit.t, slack)
     }
 
-    /// Whether the ray's line touches the sphere, to within the rounding of f64.
-    fn touches(&self, ray: &Ray, id: PrimitiveId) -> bool {
+    /// True if the ray's line is a tangent of the sphere, within the margin of f64; false for other
+    /// primitives.
+    fn is_tangent(&self, ray: &Ray, id: PrimitiveId) -> bool {
         if id.geometry != Geometry::Spheres {
             return false;
         }
@@ -135,69 +147,65 @@ impl MismatchClassifier<'_> {
         let f = ray.origin - s.center;
         let along = f.dot(ray.direction) / ray.direction.length_squared();
         let distance = (f - ray.direction * along).length();
-        (distance - s.radius).abs() <= self.margin_at(ray, id)
+        (distance - s.radius).abs() <= self.primitive_margin(ray, id)
     }
 
-    /// Whether the ray comes within the margin of a triangle between its ends: `None` when it does
-    /// not, `Some(None)` when it is clearly blocked, `Some(cause)` when f32 may say either.
-    fn doubt(&self, ray: &Ray, id: PrimitiveId) -> Option<Option<MismatchCause>> {
+    /// Returns the outcome for a triangle.
+    fn triangle_occlusion(&self, ray: &Ray, id: PrimitiveId) -> Occlusion {
         if ray.departure.is_some_and(|from| from.id == id) {
-            return None;
+            return Occlusion::Clear;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
-        let margin = self.margin_at(ray, id);
-        let near_edge = self.passes_edge(ray, id) && self.within(&edges, corners, ray, margin);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
+        let margin = self.primitive_margin(ray, id);
+        let near_edge =
+            self.passes_near_edge(ray, id) && crosses_within(&edges, corners, ray, margin);
         if !edges.crosses() && !near_edge {
-            return None;
+            return Occlusion::Clear;
         }
         let hit = Hit { t: edges.t, u: 0.0, v: 0.0, id };
-        let length = ray.direction.length() * self.cosine(ray, &hit).max(1e-12);
-        let slack = margin / length;
+        let slack = self.t_margin(ray, &hit);
         if edges.t < -slack || edges.t > ray.tmax + slack {
-            return None;
+            return Occlusion::Clear;
         }
         if near_edge {
-            return Some(Some(MismatchCause::Edge));
+            return Occlusion::Uncertain(MismatchCause::Edge);
         }
-        let inside = edges.t > slack && edges.t < ray.tmax - slack;
-        Some((!inside).then_some(MismatchCause::Tie))
+        occlusion_between_ends(ray, edges.t, slack)
     }
 
-    /// Whether the line passes the triangle within the margin: on the inner side of each edge, or
-    /// no farther outside it than the margin.
-    fn within(&self, edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray, margin: f64) -> bool {
-        let sign = (edges.functions[0] + edges.functions[1] + edges.functions[2]).signum();
-        let distances = edge_distances(edges, corners, ray);
-        edges.functions.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
-    }
-
-    /// Whether the ray passes an edge of the triangle within the margin.
-    fn passes_edge(&self, ray: &Ray, id: PrimitiveId) -> bool {
+    /// True if the ray passes an edge of the triangle within the margin; false for other primitives.
+    fn passes_near_edge(&self, ray: &Ray, id: PrimitiveId) -> bool {
         if !matches!(id.geometry, Geometry::Mesh(_)) {
             return false;
         }
         let corners = self.scene.triangle_vertices(id);
-        let edges = triangle::Edges::new(corners, ray.origin, ray.direction);
-        let margin = self.margin_at(ray, id);
+        let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
+        let margin = self.primitive_margin(ray, id);
         edge_distances(&edges, corners, ray).into_iter().any(|d| d <= margin)
     }
 
-    /// The cosine at which the ray meets the surface.
+    /// Returns the cosine of the angle between the ray and the surface normal, without its sign.
     fn cosine(&self, ray: &Ray, hit: &Hit) -> f64 {
         let index = hit.id.primitive as usize;
         let normal = match hit.id.geometry {
-            Geometry::Spheres => ray.at(hit.t) - self.scene.spheres[index].center,
+            Geometry::Spheres => ray.position(hit.t) - self.scene.spheres[index].center,
             Geometry::Planes => self.scene.planes[index].normal,
             Geometry::Mesh(_) => triangle::area_normal(self.scene.triangle_vertices(hit.id)),
         };
         normal.normalize_or_zero().dot(ray.direction.normalize()).abs()
     }
 
-    /// The margin in world space for a primitive: of f64 for spheres and planes; for a triangle
-    /// that of the rays, magnified by its instance's own space, where it has one, by at most the
-    /// ratio of the transform's longest stretch to its shortest.
-    fn margin_at(&self, ray: &Ray, id: PrimitiveId) -> f64 {
+    /// Returns the margin of a hit's distance, in units of the ray's |direction|.
+    fn t_margin(&self, ray: &Ray, hit: &Hit) -> f64 {
+        let length = ray.direction.length() * self.cosine(ray, hit).max(1e-12);
+        self.primitive_margin(ray, hit.id) / length
+    }
+
+    /// Returns the margin of a primitive in world units: for spheres and planes that of f64; for a
+    /// triangle that of the rays, magnified by the largest scale of its instance's transform over the
+    /// smallest.
+    fn primitive_margin(&self, ray: &Ray, id: PrimitiveId) -> f64 {
         let index = id.primitive as usize;
         match id.geometry {
             Geometry::Spheres => {
@@ -219,13 +227,36 @@ impl MismatchClassifier<'_> {
     }
 }
 
-/// How far the ray's line passes from the line of each edge; the edge opposite the first vertex
-/// first. For edges p, q relative to the origin this is |d·(p×q)| / |d×(q−p)|.
-fn edge_distances(edges: &triangle::Edges, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
+/// Returns the outcome for a primitive that the ray hits at `t`: blocked if that lies between the
+/// ray's ends by more than the slack.
+fn occlusion_between_ends(ray: &Ray, t: f64, slack: f64) -> Occlusion {
+    if t > slack && t < ray.tmax - slack {
+        Occlusion::Blocked
+    } else {
+        Occlusion::Uncertain(MismatchCause::Tie)
+    }
+}
+
+/// True if the line crosses the triangle enlarged by the margin: it passes each edge on the inner
+/// side, or outside by no more than the margin.
+fn crosses_within(
+    edges: &triangle::EdgeFunctions,
+    corners: [DVec3; 3],
+    ray: &Ray,
+    margin: f64,
+) -> bool {
+    let sign = (edges.values[0] + edges.values[1] + edges.values[2]).signum();
+    let distances = edge_distances(edges, corners, ray);
+    edges.values.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
+}
+
+/// Returns the distance of the ray's line from the line of each edge, the edge opposite the first
+/// vertex first. For edges p, q relative to the origin this is |d·(p×q)| / |d×(q−p)|.
+fn edge_distances(edges: &triangle::EdgeFunctions, corners: [DVec3; 3], ray: &Ray) -> [f64; 3] {
     let [a, b, c] = corners;
     let sides = [c - b, a - c, b - a];
     std::array::from_fn(|i| {
         let across = ray.direction.cross(sides[i]).length();
-        if across == 0.0 { f64::INFINITY } else { edges.functions[i].abs() / across }
+        if across == 0.0 { f64::INFINITY } else { edges.values[i].abs() / across }
     })
 }

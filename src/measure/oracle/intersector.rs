@@ -1,4 +1,4 @@
-//! The oracle in an intersector's place.
+//! The intersector that tests every primitive in exact arithmetic.
 
 use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
 use crate::intersect::primitive::{
@@ -7,16 +7,17 @@ use crate::intersect::primitive::{
 use crate::intersect::{Coherence, Intersector};
 use crate::scene::Scene;
 
-/// Tries every primitive in exact arithmetic; for small pictures that others are held against.
+/// An intersector in exact arithmetic; slow, for small pictures that others are compared with.
 ///
-/// Boxes, wider than any rounding, only leave out what a ray is nowhere near.
+/// Boxes, enlarged by far more than any rounding error, exclude primitives that a ray cannot hit.
 pub struct Oracle<'s> {
     scene: &'s Scene,
+    /// The boxes of spheres and triangles.
     boxes: Vec<(PrimitiveId, Bounds)>,
 }
 
 impl<'s> Oracle<'s> {
-    /// The oracle of a checked scene.
+    /// Creates the oracle of a checked scene.
     pub fn new(scene: &'s Scene) -> Self {
         let spheres = (0..).zip(&scene.spheres).map(|(i, s)| (PrimitiveId::sphere(i), s.bounds()));
         let triangles = (0..).zip(&scene.instances).flat_map(|(instance, placed)| {
@@ -24,14 +25,14 @@ impl<'s> Oracle<'s> {
             let count = scene.meshes[mesh as usize].triangles.len() as u32;
             (0..count).map(move |t| {
                 let id = PrimitiveId::triangle(mesh, t, instance);
-                (id, Bounds::of(scene.triangle_vertices(id)))
+                (id, Bounds::from_points(scene.triangle_vertices(id)))
             })
         });
         Self { scene, boxes: spheres.chain(triangles).collect() }
     }
 
-    /// Every hit of the ray, in no particular order.
-    pub fn all(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+    /// Returns every hit of the ray, in no particular order.
+    pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let (ray, planes) = (*ray, self.scene.planes.len() as u32);
         let near = self.boxes.iter().filter(move |(_, bounds)| passes_near(bounds, &ray));
         near.map(|(id, _)| *id)
@@ -39,6 +40,7 @@ impl<'s> Oracle<'s> {
             .filter_map(move |id| self.hit(id, &ray))
     }
 
+    /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed.
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
         let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
         if past.crossed.id != id {
@@ -50,7 +52,7 @@ impl<'s> Oracle<'s> {
         inside.then(|| self.crossing(id, ray, true))?.filter(|hit| hit.t >= past.t)
     }
 
-    /// Where the ray meets a primitive; a sphere first, or at its far side.
+    /// Returns where the ray crosses a primitive; a sphere at its first root, or at its far one.
     fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<Hit> {
         if ray.departure.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
             return None;
@@ -89,8 +91,8 @@ impl<'s> Oracle<'s> {
     }
 }
 
-/// Whether the ray's line comes near the box before `ray.tmax`: false only when it certainly does
-/// not. The margin of 1e-9 of the coordinates is ten million times what the few operations round.
+/// True if the ray's line may pass the box before `ray.tmax`. The box is enlarged by 1e-9 of the
+/// coordinates, ten million times the rounding error of these few operations.
 fn passes_near(bounds: &Bounds, ray: &Ray) -> bool {
     let margin = 1e-9 * (bounds.max_abs() + ray.origin.abs().max_element());
     let (lower, upper) = (bounds.lower - margin - ray.origin, bounds.upper + margin - ray.origin);
@@ -123,14 +125,14 @@ impl Intersector for Oracle<'_> {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         for (ray, best) in rays.iter().zip(hits) {
             *best = None;
-            self.all(ray).for_each(|hit| Hit::keep_closest(best, hit));
+            self.all_hits(ray).for_each(|hit| Hit::keep_closest(best, hit));
         }
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, blocked: &mut [bool]) {
         assert_eq!(rays.len(), blocked.len(), "one answer for each ray");
         for (ray, blocked) in rays.iter().zip(blocked) {
-            *blocked = self.all(ray).any(|hit| self.scene.blocks_light(hit.id));
+            *blocked = self.all_hits(ray).any(|hit| self.scene.blocks_light(hit.id));
         }
     }
 }

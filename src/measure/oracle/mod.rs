@@ -1,13 +1,13 @@
-//! The exact oracle: what a ray meets, in integers of any size.
+//! The exact oracle: ray intersections in integers of any size.
 //!
-//! A float is an integer times a power of two, so that hit or miss is the sign of an integer and
-//! needs no tolerance, and a distance is a quotient or the root of a quadratic equation, of which
-//! any number of bits can be had. Nothing here is shared with `geometry`'s arithmetic: the two
-//! can judge each other.
+//! A float is an integer times a power of two. So hit or miss is the sign of an integer and needs no
+//! tolerance, and a distance is a quotient or the root of a quadratic equation, which can be computed
+//! to any number of bits. The oracle shares no arithmetic with `geometry`, so that each can check the
+//! other.
 //!
-//! All the numbers given must be finite; the functions panic otherwise.
+//! All arguments must be finite; the functions panic otherwise.
 
-mod exact;
+mod exact_number;
 mod integers;
 mod intersector;
 
@@ -19,48 +19,50 @@ use glam::DVec3;
 
 use crate::geometry::Ray;
 
-pub use exact::ExactNumber;
+pub use exact_number::ExactNumber;
 pub use intersector::Oracle;
 
-use integers::{Vector, common_scale, common_scale_of, cross, decode, dot, sub};
+use integers::{IntegerVector, common_scale, common_scale_of_vectors, cross, decode, dot, sub};
 
-/// Where a ray crosses a triangle.
+/// The point at which a ray crosses a triangle.
 #[derive(Clone, Debug)]
 pub struct Crossing {
     /// The distance, in units of the ray's |direction|.
     pub t: ExactNumber,
-    /// Weight of the second vertex, correctly rounded, in \[0, 1\].
+    /// The weight of the second vertex, correctly rounded, in \[0, 1\].
     pub u: f64,
-    /// Weight of the third vertex, correctly rounded, in \[0, 1\].
+    /// The weight of the third vertex, correctly rounded, in \[0, 1\].
     pub v: f64,
 }
 
-/// The first t with 0 < t < `ray.tmax` at which the ray meets the sphere; touching it counts.
+/// Returns the first t with 0 < t < `ray.tmax` at which the ray hits the sphere; a tangent
+/// hits it.
 ///
-/// `leaving_inward` leaves the near root out. The far root is not tried when the near one lies
-/// beyond `ray.tmax`. What the ray left (`ray.from`) plays no part.
+/// `leaving_inward` skips the near root. The far root is not tried when the near one lies beyond
+/// `ray.tmax`. The ray's departure is ignored.
 pub fn sphere(center: DVec3, radius: f64, ray: &Ray, leaving_inward: bool) -> Option<ExactNumber> {
-    let line = Line::new(center, radius, ray)?;
-    let near = line.root(Sign::Negative);
+    let equation = Quadratic::new(center, radius, ray)?;
+    let near = equation.root(Sign::Negative);
     if !leaving_inward && near.compare(0.0) == Ordering::Greater {
         return within(near, ray.tmax);
     }
-    within(line.root(Sign::Positive), ray.tmax)
+    within(equation.root(Sign::Positive), ray.tmax)
 }
 
-/// The distance of the ray's point at `t` from the sphere, in radii: 0 on it, negative inside.
+/// Returns the signed distance of the ray's point at `t` from the sphere, in radii: 0 on it,
+/// negative inside.
 ///
 /// The point is exact; the distance is rounded to about 15 digits.
-pub fn height(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
-    let ([center, origin], scale) = common_scale_of([center, ray.origin]);
-    let ([direction], direction_scale) = common_scale_of([ray.direction]);
+pub fn signed_distance(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
+    let ([center, origin], scale) = common_scale_of_vectors([center, ray.origin]);
+    let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
     let (t, t_scale) = decode(t);
     let (r, r_scale) = decode(radius);
     let way = direction.map(|x| x * IBig::from(t));
     let way_scale = direction_scale + t_scale;
     let low = scale.min(way_scale).min(r_scale);
     let lift = |x: &IBig, from: i64| x << (from - low) as usize;
-    let from_center: Vector =
+    let from_center: IntegerVector =
         std::array::from_fn(|i| lift(&(&origin[i] - &center[i]), scale) + lift(&way[i], way_scale));
     let r = lift(&IBig::from(r), r_scale);
     let r2 = &r * &r;
@@ -68,16 +70,16 @@ pub fn height(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
     let excess = dot(&from_center, &from_center) - &r2;
     let sign = if excess.sign() == Sign::Negative { -1.0 } else { 1.0 };
     let quotient = (excess.unsigned_abs() << 200usize) / r2.unsigned_abs();
-    let x = sign * exact::truncate(&quotient, -200);
+    let x = sign * exact_number::truncate(&quotient, -200);
     x / (1.0 + (1.0 + x).sqrt())
 }
 
-/// Where the ray meets the plane through `point` with normal `normal`, of any length, at
-/// 0 < t < `ray.tmax`; a ray along the plane does not meet it.
+/// Returns where the ray hits the plane through `point` with a `normal` of any length, at
+/// 0 < t < `ray.tmax`; a ray parallel to the plane does not hit it.
 pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<ExactNumber> {
-    let ([point, origin], scale) = common_scale_of([point, ray.origin]);
-    let ([normal], _) = common_scale_of([normal]);
-    let ([direction], direction_scale) = common_scale_of([ray.direction]);
+    let ([point, origin], scale) = common_scale_of_vectors([point, ray.origin]);
+    let ([normal], _) = common_scale_of_vectors([normal]);
+    let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
     let toward = dot(&normal, &direction);
     if toward.is_zero() {
         return None;
@@ -86,20 +88,20 @@ pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<ExactNumber> {
     within(ExactNumber::quotient(away, toward, scale - direction_scale), ray.tmax)
 }
 
-/// Where the ray meets the plane through three points, at 0 < t < `ray.tmax`; `None` also when the
-/// points lie on a line.
-pub fn plane_of(corners: [DVec3; 3], ray: &Ray) -> Option<ExactNumber> {
-    Facet::new(corners, ray).t(ray.tmax)
+/// Returns where the ray hits the plane of a triangle, at 0 < t < `ray.tmax`; none also for a
+/// degenerate triangle.
+pub fn triangle_plane(corners: [DVec3; 3], ray: &Ray) -> Option<ExactNumber> {
+    RayTriangle::new(corners, ray).t(ray.tmax)
 }
 
-/// Where the ray crosses the triangle at 0 < t < `ray.tmax`.
+/// Returns where the ray crosses the triangle at 0 < t < `ray.tmax`.
 ///
 /// A line along the triangle's plane does not cross it, and nothing crosses a degenerate one. A
 /// line through an edge or a vertex is decided by one rule for all triangles: the origin counts as
-/// moved by (ε, ε², ε³) with ε > 0 and beyond all measure small, so that of the triangles at an
-/// edge or a vertex exactly one of each sheet is crossed.
+/// moved by (ε, ε², ε³) with an infinitesimal ε > 0 (simulation of simplicity), so that of the
+/// triangles at an edge or a vertex exactly one of each sheet is crossed.
 pub fn triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Crossing> {
-    let facet = Facet::new(corners, ray);
+    let facet = RayTriangle::new(corners, ray);
     let t = facet.t(ray.tmax)?;
     let [a, b, c] = &facet.corners;
     let edges = [(b, c), (c, a), (a, b)].map(|(p, q)| Edge::new(p, q, &facet));
@@ -116,28 +118,29 @@ pub fn triangle(corners: [DVec3; 3], ray: &Ray) -> Option<Crossing> {
     Some(Crossing { t, u: weight(&edges[1]), v: weight(&edges[2]) })
 }
 
-/// A ray and three points, in integers.
-struct Facet {
-    corners: [Vector; 3],
-    origin: Vector,
-    direction: Vector,
-    /// d·n, with n across the plane of the points.
+/// A ray and the corners of a triangle, in integers.
+struct RayTriangle {
+    corners: [IntegerVector; 3],
+    origin: IntegerVector,
+    direction: IntegerVector,
+    /// d·n, with n the normal of the triangle's plane.
     toward: IBig,
     /// n·(a − o): the distance is this over d·n.
     away: IBig,
     exponent: i64,
 }
 
-impl Facet {
+impl RayTriangle {
     fn new([a, b, c]: [DVec3; 3], ray: &Ray) -> Self {
-        let ([a, b, c, origin], scale) = common_scale_of([a, b, c, ray.origin]);
-        let ([direction], direction_scale) = common_scale_of([ray.direction]);
+        let ([a, b, c, origin], scale) = common_scale_of_vectors([a, b, c, ray.origin]);
+        let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
         let normal = cross(&sub(&b, &a), &sub(&c, &a));
         let (toward, away) = (dot(&direction, &normal), dot(&normal, &sub(&a, &origin)));
         let exponent = scale - direction_scale;
         Self { corners: [a, b, c], origin, direction, toward, away, exponent }
     }
 
+    /// Returns the distance of the triangle's plane.
     fn t(&self, tmax: f64) -> Option<ExactNumber> {
         if self.toward.is_zero() {
             return None;
@@ -146,7 +149,7 @@ impl Facet {
     }
 }
 
-/// On which side a line passes an edge.
+/// The side on which a line passes an edge.
 struct Edge {
     /// det(d, p − o, q − o).
     function: IBig,
@@ -155,10 +158,10 @@ struct Edge {
 }
 
 impl Edge {
-    fn new(p: &Vector, q: &Vector, facet: &Facet) -> Self {
-        let Facet { origin, direction, .. } = facet;
+    fn new(p: &IntegerVector, q: &IntegerVector, facet: &RayTriangle) -> Self {
+        let RayTriangle { origin, direction, .. } = facet;
         let function = dot(direction, &cross(&sub(p, origin), &sub(q, origin)));
-        // Moving the origin by δ adds δ · (d × (q − p)); the powers of ε come one after another.
+        // Moving the origin by δ adds δ · (d × (q − p)); a lower power of ε outweighs a higher one.
         let shift = cross(direction, &sub(q, p));
         let side = std::iter::once(&function)
             .chain(&shift)
@@ -168,24 +171,23 @@ impl Edge {
     }
 }
 
-/// A line beside a sphere: a t² − 2 h t + c = 0.
-struct Line {
+/// The quadratic equation a t² − 2 h t + c = 0 of a ray and a sphere.
+struct Quadratic {
     a: IBig,
     h: IBig,
     /// h² − a c, not negative.
     discriminant: IBig,
-    /// A root of the integers counts 2 to the power of this.
+    /// The exponent of the power of two by which a root of the integers is multiplied.
     exponent: i64,
 }
 
-impl Line {
+impl Quadratic {
+    /// Sets up the equation; none if the line misses the sphere.
     fn new(center: DVec3, radius: f64, ray: &Ray) -> Option<Self> {
-        let (all, scale) = {
-            let [c, o] = [center, ray.origin];
-            common_scale([c.x, c.y, c.z, o.x, o.y, o.z, radius])
-        };
+        let (c, o) = (center, ray.origin);
+        let (all, scale) = common_scale([c.x, c.y, c.z, o.x, o.y, o.z, radius]);
         let [cx, cy, cz, ox, oy, oz, radius] = all;
-        let ([direction], direction_scale) = common_scale_of([ray.direction]);
+        let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
         let to_center = [cx - ox, cy - oy, cz - oz];
         let a = dot(&direction, &direction);
         let h = dot(&to_center, &direction);
@@ -201,7 +203,7 @@ impl Line {
     }
 }
 
-/// The distance, if it lies within 0 < t < `tmax`.
+/// Returns the distance if it lies within 0 < t < `tmax`.
 fn within(t: ExactNumber, tmax: f64) -> Option<ExactNumber> {
     let inside = t.compare(0.0) == Ordering::Greater && t.compare(tmax) == Ordering::Less;
     inside.then_some(t)

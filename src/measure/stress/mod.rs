@@ -1,57 +1,57 @@
-//! The numerical stability sweeps: what this renderer promises of its hits, tried where numbers
-//! are at their worst, and judged by the exact oracle.
+//! The numerical stress test: sweeps over rays for which rounding errors are worst, checked against
+//! the exact oracle.
 //!
-//! A sweep is a set of cells; a cell tries rays of one kind and becomes a row of the report.
-//! Random numbers come from (seed, goal, cell, ray), so that a run can be repeated on any number
-//! of threads.
+//! A sweep is a set of cases, each with rays of one kind, which become the rows of the report.
+//! Random numbers are determined by seed, goal, case and ray, so that a run can be repeated on any
+//! number of threads.
 
-mod cell;
+mod case;
 mod grazing;
-mod leaks;
-mod metamorphic;
-mod naive;
-mod paths;
+mod invariance;
+mod meshes;
 mod plot;
 mod random;
 mod report;
 mod resume;
-mod shadows;
-mod shapes;
-mod spheres;
+mod self_shadow;
+mod sphere_distance;
 mod tangency;
+mod textbook;
+mod traversal;
+mod watertight;
 
 use std::path::PathBuf;
 
 use crate::error::Result;
 
 pub use plot::plot;
-pub use report::{Beside, Row, Table, Tally};
-pub use spheres::{Method, certified};
+pub use report::{BaselineStats, CaseStats, Row, Table};
+pub use sphere_distance::{Method, certified};
 
-use cell::Cell;
-use resume::{Conditions, Finished};
+use case::Case;
+use resume::{FinishedCases, RunConditions};
 
-/// What is promised; one sweep each.
+/// A goal: something that the renderer promises about its hits, tested by one sweep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Goal {
-    /// Distances to spheres are exact, correctly rounded.
+    /// G1: distances to spheres are exact, correctly rounded.
     SphereDistance,
-    /// So they are at a tangent.
+    /// G2: distances to spheres are exact for tangents and rays close to a tangent, too.
     Tangency,
-    /// The trees find what trying every primitive finds.
+    /// G3: the traversal of a BVH finds the same hits as brute force.
     Traversal,
-    /// Closed meshes have no holes.
+    /// G4: closed meshes have no holes.
     Watertight,
-    /// Thin triangles met at a small angle.
+    /// G5: thin triangles hit at a grazing angle are found, at the right distance.
     Grazing,
-    /// Nothing shadows itself, and nothing close is passed over.
+    /// G6: no surface shadows itself, and no occluder close to a surface is missed.
     SelfShadow,
-    /// Scale and threads do not change a picture.
+    /// G7: scale, threads and tiles do not change a picture.
     Invariance,
 }
 
 impl Goal {
-    /// All of them.
+    /// All goals, from G1 to G7.
     pub const ALL: [Goal; 7] = [
         Goal::SphereDistance,
         Goal::Tangency,
@@ -62,87 +62,79 @@ impl Goal {
         Goal::Invariance,
     ];
 
-    /// What it is called: `SphereDistance` to `Invariance`.
+    /// Returns the name, `G1` to `G7`.
     pub const fn name(self) -> &'static str {
-        match self {
-            Goal::SphereDistance => "G1",
-            Goal::Tangency => "G2",
-            Goal::Traversal => "G3",
-            Goal::Watertight => "G4",
-            Goal::Grazing => "G5",
-            Goal::SelfShadow => "G6",
-            Goal::Invariance => "G7",
-        }
+        ["G1", "G2", "G3", "G4", "G5", "G6", "G7"][self as usize]
     }
 
-    fn cells(self, method: Method) -> Vec<Cell> {
+    fn cases(self, method: Method) -> Vec<Case> {
         match self {
-            Goal::SphereDistance => spheres::cells(method),
-            Goal::Tangency => tangency::cells(method),
-            Goal::Traversal => paths::cells(),
-            Goal::Watertight => leaks::cells(),
-            Goal::Grazing => grazing::cells(),
-            Goal::SelfShadow => shadows::cells(),
-            Goal::Invariance => metamorphic::cells(),
+            Goal::SphereDistance => sphere_distance::cases(method),
+            Goal::Tangency => tangency::cases(method),
+            Goal::Traversal => traversal::cases(),
+            Goal::Watertight => watertight::cases(),
+            Goal::Grazing => grazing::cases(),
+            Goal::SelfShadow => self_shadow::cases(),
+            Goal::Invariance => invariance::cases(),
         }
     }
 }
 
-/// What to try, and how much of it.
+/// The sweeps to run, and the number of their rays.
 #[derive(Clone, Debug)]
-pub struct Options {
-    /// Which sweeps.
+pub struct StressOptions {
+    /// The goals to test.
     pub goals: Vec<Goal>,
-    /// Rays of each kind in a cell, at least 1; a sweep of few cells takes more, so that it has ten
-    /// times as many in all.
+    /// The number of rays of each kind in a case, at least 1; a sweep of fewer than ten cases gets
+    /// more, so that it has ten times as many in all.
     pub rays: u64,
-    /// What the random numbers depend on.
+    /// The seed of the random numbers.
     pub seed: u64,
-    /// Where finished cells are kept, and looked up before they are tried.
+    /// The file in which finished cases are recorded; cases found there are not run again.
     pub resume: Option<PathBuf>,
-    /// What finds the distances to spheres in G1 and G2: [`certified`], unless a test wants to see
-    /// the sweep fail.
+    /// The method that is tested for G1 and G2: [`certified`], except in tests that need a sweep to
+    /// fail.
     pub method: Method,
 }
 
-impl Options {
-    /// Rays of a cell in a full run.
+impl StressOptions {
+    /// The rays of a case in a full run.
     pub const FULL: u64 = 100_000;
-    /// Rays of a cell in a quick run: every cell, in less than a minute on two cores.
+    /// The rays of a case in a quick run: every case, in less than a minute on two cores.
     pub const QUICK: u64 = 500;
 }
 
-impl Default for Options {
+impl Default for StressOptions {
     fn default() -> Self {
         let (goals, rays) = (Goal::ALL.into(), Self::FULL);
         Self { goals, rays, seed: 1, resume: None, method: certified }
     }
 }
 
-/// Runs the sweeps. `progress` is called with the share done, in (0, 1], after each cell.
+/// Runs the sweeps. `progress` is called with the share done, in (0, 1], after each case.
 ///
 /// # Errors
-/// When an intersector cannot be built, or the file of finished cells cannot be read or written.
-pub fn stress(options: &Options, progress: &dyn Fn(f32)) -> Result<Vec<Row>> {
-    let conditions = Conditions {
+/// When an intersector cannot be built, or the file of finished cases cannot be read or written.
+pub fn run(options: &StressOptions, progress: &dyn Fn(f32)) -> Result<Vec<Row>> {
+    let conditions = RunConditions {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         embree: cfg!(feature = "embree"),
         seed: options.seed,
         size: options.rays,
     };
-    let mut finished = Finished::open(options.resume.as_deref(), conditions)?;
-    let sweeps: Vec<(Goal, Vec<Cell>)> =
-        options.goals.iter().map(|goal| (*goal, goal.cells(options.method))).collect();
-    let total: usize = sweeps.iter().map(|(_, cells)| cells.len()).sum();
+    let mut finished = FinishedCases::open(options.resume.as_deref(), conditions)?;
+    let sweeps: Vec<(Goal, Vec<Case>)> =
+        options.goals.iter().map(|goal| (*goal, goal.cases(options.method))).collect();
+    let total: usize = sweeps.iter().map(|(_, cases)| cases.len()).sum();
     let mut rows = Vec::with_capacity(total);
-    for (goal, cells) in &sweeps {
-        let rays = options.rays.max((10 * options.rays).div_ceil(cells.len() as u64));
-        for cell in cells {
-            let row = match finished.row(goal.name(), &cell.name, &cell.method) {
+    for (goal, cases) in &sweeps {
+        let rays = options.rays.max((10 * options.rays).div_ceil(cases.len() as u64));
+        for case in cases {
+            let row = match finished.row(goal.name(), case) {
                 Some(row) => row.clone(),
                 None => {
-                    let row = cell.row(goal.name(), options.seed, rays)?;
-                    finished.keep(&row)?;
+                    let row = case.run(goal.name(), options.seed, rays)?;
+                    finished.append(&row)?;
                     row
                 }
             };

@@ -1,83 +1,108 @@
-//! How far the hits of each formula are from the sphere, as the sphere moves away.
+//! The plot of the error of each formula for ray and sphere over the distance of the sphere.
 
 use glam::DVec3;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
 use super::random::Random;
-use super::{naive, spheres};
+use super::sphere_distance::{self, Method};
+use super::textbook;
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::measure::oracle;
 
-/// A formula, its name and its colour.
-type Curve = (&'static str, RGBColor, spheres::Method);
+/// A formula that is plotted.
+struct Curve {
+    name: &'static str,
+    color: RGBColor,
+    method: Method,
+    /// True if the formula gets arguments that are rounded to f32.
+    is_f32: bool,
+}
+
+impl Curve {
+    const fn new(name: &'static str, color: u32, method: Method, is_f32: bool) -> Self {
+        let [_, red, green, blue] = color.to_be_bytes();
+        Self { name, color: RGBColor(red, green, blue), method, is_f32 }
+    }
+}
 
 const CURVES: [Curve; 4] = [
-    ("b² − 4ac in f32", RGBColor(0xc4, 0x4e, 0x32), naive::sphere_f32),
-    ("b² − 4ac in f64", RGBColor(0xd9, 0x9a, 0x2b), naive::sphere),
-    ("Haines in f64 (fast)", RGBColor(0x2f, 0x6d, 0xb5), spheres::fast),
-    ("certified", RGBColor(0x2e, 0x8b, 0x57), spheres::certified),
+    Curve::new("b² − 4ac in f32", 0xc44e32, textbook::sphere_f32, true),
+    Curve::new("b² − 4ac in f64", 0xd99a2b, textbook::sphere, false),
+    Curve::new("Haines in f64 (fast)", 0x2f6db5, sphere_distance::fast, false),
+    Curve::new("certified", 0x2e8b57, sphere_distance::certified, false),
 ];
 const SIZE: (u32, u32) = (900, 560);
 
-/// An SVG: for each formula the worst distance of its hits from the sphere, in radii, over the
-/// distance of the sphere in radii; the worst of `rays` rays a point, aimed at a disc of 1.1 radii.
+/// Returns the plot as SVG: for each formula the largest distance of its hits from the sphere, over the
+/// distance of the sphere, both in radii. Each point is the largest of `rays` rays, aimed at a disc of
+/// 1.1 radii.
 ///
-/// The f32 formula is given numbers that f32 holds, and judged by the sphere that these describe:
-/// what is shown is the formula's own error. Its curve ends where such numbers hardly ever describe
-/// a ray that meets its sphere. A ray that a formula says misses does not count in its maximum.
+/// The f32 formula gets arguments that f32 can represent, and is compared with the exact sphere of
+/// these arguments, so that only the error of the formula itself is shown. Its curve ends where rays
+/// that are rounded to f32 hardly ever hit their sphere. A ray that a formula misses does not count in
+/// its maximum.
 ///
 /// # Errors
-/// When the picture cannot be drawn.
+/// When the plot cannot be drawn.
 pub fn plot(seed: u64, rays: u64) -> Result<String> {
     let distances: Vec<f64> = (0..=40).map(|i| 2.0 * 5e9f64.powf(f64::from(i) / 40.0)).collect();
     let errors: Vec<[f64; CURVES.len()]> =
-        distances.par_iter().map(|distance| worst(*distance, seed, rays)).collect();
+        distances.par_iter().map(|distance| max_errors(*distance, seed, rays)).collect();
     let mut svg = String::new();
     draw(&mut svg, &distances, &errors)
         .map_err(|e| Error::failed(format!("the plot cannot be drawn: {e}")))?;
     Ok(svg)
 }
 
-/// The worst error of each formula at a distance; 0 where there is none to show.
-fn worst(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
-    let mut worst = [(0u64, 0.0f64); CURVES.len()];
+/// Returns the largest error of each formula at a distance; 0 where fewer than a quarter of the rays
+/// hit the sphere.
+fn max_errors(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
+    let mut hits = [0u64; CURVES.len()];
+    let mut errors = [0.0f64; CURVES.len()];
+    let round = |v: DVec3, is_f32: bool| if is_f32 { v.as_vec3().as_dvec3() } else { v };
     for index in 0..rays {
         let random = &mut Random::new(seed, &format!("plot/{distance:e}"), index);
         let toward = random.direction();
         let center = toward * distance;
-        let aim = center + random.across(toward) * (1.1 * random.unit().sqrt());
-        let direction = aim.normalize();
-        let single = |v: DVec3| v.as_vec3().as_dvec3();
-        let given = [(single(center), single(direction)), (center, direction)];
-        let given = given.map(|(center, direction)| (center, Ray::new(DVec3::ZERO, direction)));
-        let hit = given.map(|(center, ray)| oracle::sphere(center, 1.0, &ray, false).is_some());
-        for ((count, worst), (i, (_, _, method))) in worst.iter_mut().zip((0..).zip(CURVES)) {
-            // The first formula is the one in f32.
-            let which = usize::from(i > 0);
-            let (center, ray) = &given[which];
-            *count += u64::from(hit[which]);
-            if let Some(t) = method(*center, 1.0, ray).filter(|t| t.is_finite() && hit[which]) {
-                *worst = worst.max(oracle::height(*center, 1.0, ray, t).abs());
+        let target = center + random.perpendicular(toward) * (1.1 * random.unit().sqrt());
+        let direction = target.normalize();
+        // The ray and sphere in f64 and in f32, and whether they hit.
+        let arguments = [false, true].map(|is_f32| {
+            let (center, direction) = (round(center, is_f32), round(direction, is_f32));
+            let ray = Ray::new(DVec3::ZERO, direction);
+            (center, ray, oracle::sphere(center, 1.0, &ray, false).is_some())
+        });
+        // A curve for each formula.
+        for (i, Curve { method, is_f32, .. }) in CURVES.iter().enumerate() {
+            let (center, ray, is_hit) = arguments[usize::from(*is_f32)];
+            if !is_hit {
+                continue;
+            }
+            hits[i] += 1;
+            if let Some(t) = method(center, 1.0, &ray).filter(|t| t.is_finite()) {
+                let error = oracle::signed_distance(center, 1.0, &ray, t).abs();
+                errors[i] = errors[i].max(error);
             }
         }
     }
-    worst.map(|(count, error)| if count >= rays / 4 { error } else { 0.0 })
+    std::array::from_fn(|i| if hits[i] >= rays / 4 { errors[i] } else { 0.0 })
 }
 
 fn draw(
     svg: &mut String,
     distances: &[f64],
     errors: &[[f64; CURVES.len()]],
-) -> std::result::Result<(), Box<dyn std::error::Error>> {
+) -> Result<(), Box<dyn std::error::Error>> {
     let area = SVGBackend::with_string(svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let text = |size: u32| ("sans-serif", size).into_font().color(&RGBColor(0x33, 0x33, 0x33));
+    // Axes, their labels and the grid.
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
         .margin_right(28)
-        .caption("Distance of the hit from the sphere, worst case", text(22))
+        .caption("Error of the hit: its distance from the sphere, worst case", text(22))
         .x_label_area_size(52)
         .y_label_area_size(78)
         .build_cartesian_2d((2.0..1e10f64).log_scale(), (1e-17..1e5f64).log_scale())?;
@@ -96,7 +121,8 @@ fn draw(
         .light_line_style(TRANSPARENT)
         .axis_style(RGBColor(0x88, 0x88, 0x88))
         .draw()?;
-    for (i, (name, color, _)) in CURVES.into_iter().enumerate() {
+    // A curve for each formula.
+    for (i, Curve { name, color, .. }) in CURVES.into_iter().enumerate() {
         let points: Vec<(f64, f64)> = distances
             .iter()
             .zip(errors)

@@ -1,4 +1,4 @@
-//! Finished cells in a file, so that a long sweep can be taken up again.
+//! The file of finished cases, from which an interrupted sweep can be resumed.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};
@@ -7,42 +7,42 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::case::Case;
 use super::report::Row;
 use crate::error::{Error, Result};
 
-/// What a row depends on besides its cell.
+/// The conditions of a run, on which the results of its cases depend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Conditions {
+pub struct RunConditions {
     pub version: String,
     pub embree: bool,
     pub seed: u64,
-    /// Rays of a cell.
+    /// The rays of a case.
     pub size: u64,
 }
 
-/// One line of the file.
+/// A line of the file.
 #[derive(Serialize, Deserialize)]
 struct Line {
     #[serde(flatten)]
-    conditions: Conditions,
+    conditions: RunConditions,
     row: Row,
 }
 
-type Key = (String, String, String);
-
-/// The rows that are finished, and the file that they are kept in.
-pub struct Finished {
-    rows: HashMap<Key, Row>,
-    conditions: Conditions,
+/// The finished cases, and the file in which they are recorded.
+pub struct FinishedCases {
+    /// The rows by goal, case and method.
+    rows: HashMap<[String; 3], Row>,
+    conditions: RunConditions,
     file: Option<(PathBuf, File)>,
 }
 
-impl Finished {
-    /// Reads what is finished, and opens the file for what will be.
+impl FinishedCases {
+    /// Reads the finished cases, and opens the file to append others.
     ///
     /// # Errors
-    /// When the file cannot be read or written, or holds something else.
-    pub fn open(path: Option<&Path>, conditions: Conditions) -> Result<Self> {
+    /// When the file cannot be read or written, or has other contents.
+    pub fn open(path: Option<&Path>, conditions: RunConditions) -> Result<Self> {
         let Some(path) = path else {
             return Ok(Self { rows: HashMap::new(), conditions, file: None });
         };
@@ -51,24 +51,26 @@ impl Finished {
             Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
             Err(e) => return Err(Error::io("read", path, &e)),
         };
-        // A run that was killed may have left its last line unfinished.
-        let (whole, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
+        // A run that was killed may have left its last line incomplete.
+        let (complete, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
         let mut rows = HashMap::new();
-        let unfinished = Some(rest).filter(|rest| !rest.is_empty());
-        for (i, line) in whole.lines().chain(unfinished).enumerate() {
+        let incomplete = Some(rest).filter(|rest| !rest.is_empty());
+        for (i, line) in complete.lines().chain(incomplete).enumerate() {
             match serde_json::from_str::<Line>(line) {
-                Ok(_) if unfinished == Some(line) => {} // Only its end of line is missing: again.
+                Ok(_) if incomplete == Some(line) => {} // Only the end of the line is missing: run again.
                 Ok(line) if line.conditions == conditions => {
-                    rows.insert(key(&line.row.goal, &line.row.cell, &line.row.method), line.row);
+                    let Row { goal, case, method, .. } = &line.row;
+                    rows.insert([goal, case, method].map(String::clone), line.row);
                 }
                 Ok(_) => {}
-                Err(_) if unfinished == Some(line) && line.starts_with("{\"version\":") => {}
+                Err(_) if incomplete == Some(line) && line.starts_with("{\"version\":") => {}
                 Err(e) => {
-                    return Err(Error::input(format!("line {} is no finished cell: {e}", i + 1))
-                        .at(path)
-                        .help(
-                            "name a file of `envers stress --resume`, or one that is not there",
-                        ));
+                    return Err(Error::input(format!(
+                        "line {} is not a finished case: {e}",
+                        i + 1
+                    ))
+                    .at(path)
+                    .help("name a file of an earlier run, or one that does not exist"));
                 }
             }
         }
@@ -76,30 +78,26 @@ impl Finished {
             .append(true)
             .create(true)
             .open(path)
-            .and_then(|file| file.set_len(whole.len() as u64).map(|()| file))
+            .and_then(|file| file.set_len(complete.len() as u64).map(|()| file))
             .map_err(|e| Error::io("write", path, &e))?;
         Ok(Self { rows, conditions, file: Some((path.to_owned(), file)) })
     }
 
-    /// The row of a cell, if it is finished.
-    pub fn row(&self, goal: &str, cell: &str, method: &str) -> Option<&Row> {
-        self.rows.get(&key(goal, cell, method))
+    /// Returns the row of a case, if it is finished.
+    pub fn row(&self, goal: &str, case: &Case) -> Option<&Row> {
+        self.rows.get(&[goal, &case.name, &case.method].map(str::to_owned))
     }
 
-    /// Keeps a finished row.
+    /// Appends a finished row to the file.
     ///
     /// # Errors
     /// When the file cannot be written.
-    pub fn keep(&mut self, row: &Row) -> Result<()> {
+    pub fn append(&mut self, row: &Row) -> Result<()> {
         let Some((path, file)) = &mut self.file else { return Ok(()) };
         let line = Line { conditions: self.conditions.clone(), row: row.clone() };
         let mut text = serde_json::to_string(&line)
-            .map_err(|e| Error::failed(format!("the JSON cannot be made: {e}")))?;
+            .map_err(|e| Error::failed(format!("cannot create the JSON: {e}")))?;
         text.push('\n');
         file.write_all(text.as_bytes()).map_err(|e| Error::io("write", path, &e))
     }
-}
-
-fn key(goal: &str, cell: &str, method: &str) -> Key {
-    (goal.to_owned(), cell.to_owned(), method.to_owned())
 }

@@ -1,69 +1,69 @@
-//! G2: rays that all but touch a sphere, or touch it.
+//! G2: tangents of spheres, and rays close to a tangent.
 
 use glam::DVec3;
 
-use super::cell::Cell;
+use super::case::Case;
 use super::random::Random;
-use super::spheres::{Method, judge};
+use super::sphere_distance::{Method, check};
 use crate::geometry::Ray;
 
-/// The cells, for the certified distance or one that is to fail.
-pub fn cells(method: Method) -> Vec<Cell> {
-    let beside = (20..=52).map(|k| Cell {
+/// Returns the cases, for the certified method or one that should fail.
+pub fn cases(method: Method) -> Vec<Case> {
+    let near_tangents = (20..=52).map(|k| Case {
         max_ulp: 0.5,
-        ..Cell::new(format!("impact R (1 ± 4·2^-{k})"), "certified", move |draw| {
-            Ok(draw.each(|_, random, tally| {
-                let (center, radius, ray) = almost_touching(k, random);
-                judge(method, center, radius, &ray, tally);
+        ..Case::new(format!("impact R (1 ± 4·2^-{k})"), "certified", move |sampler| {
+            Ok(sampler.for_each_ray(|_, random, stats| {
+                let (center, radius, ray) = near_tangent(k, random);
+                check(method, center, radius, &ray, stats);
             }))
         })
     });
-    let touching = Cell {
+    let tangents = Case {
         max_ulp: 0.5,
-        ..Cell::new("impact R exactly", "certified", move |draw| {
-            Ok(draw.each(|_, random, tally| {
-                let (center, radius, ray) = touching(random);
-                judge(method, center, radius, &ray, tally);
+        ..Case::new("impact R exactly", "certified", move |sampler| {
+            Ok(sampler.for_each_ray(|_, random, stats| {
+                let (center, radius, ray) = tangent(random);
+                check(method, center, radius, &ray, stats);
             }))
         })
     };
-    beside.chain([touching]).collect()
+    near_tangents.chain([tangents]).collect()
 }
 
-/// A ray whose line passes the centre at R (1 ± 4·2⁻ᵏ), up to what the coordinates round: half of
-/// them along an axis, where they round next to nothing.
-fn almost_touching(k: i32, random: &mut Random) -> (DVec3, f64, Ray) {
+/// Returns a sphere and a ray whose line passes the centre at R (1 ± 4·2⁻ᵏ), up to the rounding of
+/// the coordinates. Half of the rays are along an axis, where this rounding is least.
+fn near_tangent(k: i32, random: &mut Random) -> (DVec3, f64, Ray) {
     let radius = random.range(0.5, 2.0);
     let sign = random.pick(&[1.0, -1.0]);
     let impact = radius * (1.0 + sign * 4.0 * f64::powi(2.0, -k));
-    let way = random.range(1.5, 16.0);
-    let (along, beside) = if random.coin() {
+    let distance = random.range(1.5, 16.0);
+    let (along, across) = if random.coin() {
         let axis = random.below(3);
         (DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3])
     } else {
         let along = random.direction();
-        (along, random.across(along))
+        (along, random.perpendicular(along))
     };
     let ray = Ray::new(DVec3::ZERO, along * random.power_of_ten(-3.0, 3.0));
-    (along * way + beside * impact, radius, ray)
+    (along * distance + across * impact, radius, ray)
 }
 
-/// A ray that touches exactly: (p, q) along it and (−q, p) across it have the length of a
-/// Pythagorean triple, and every coordinate is a whole number, times a power of two.
-fn touching(random: &mut Random) -> (DVec3, f64, Ray) {
+/// Returns a sphere and a ray that is exactly a tangent: (p, q) along it and (−q, p) across it have the
+/// length of a Pythagorean triple, and every coordinate is an integer times a power of two.
+fn tangent(random: &mut Random) -> (DVec3, f64, Ray) {
     let (p, q, length) =
         random.pick(&[(3.0, 4.0, 5.0), (5.0, 12.0, 13.0), (8.0, 15.0, 17.0), (20.0, 21.0, 29.0)]);
-    let whole = |random: &mut Random, n: usize| 1.0 + random.below(n) as f64;
-    let (way, size) = (whole(random, 1 << 20), whole(random, 1 << 10));
+    let integer = |random: &mut Random, n: usize| 1.0 + random.below(n) as f64;
+    let (distance, size) = (integer(random, 1 << 20), integer(random, 1 << 10));
     let scale = f64::powi(2.0, random.below(41) as i32 - 20);
     let axis = random.below(3);
-    let place = |x: f64, y: f64| {
+    let in_plane = |x: f64, y: f64| {
         let mut v = [0.0; 3];
         (v[axis], v[(axis + 1) % 3]) = (x * scale, y * scale);
         DVec3::from(v)
     };
-    let away: [f64; 3] = std::array::from_fn(|_| whole(random, 1 << 20) * scale);
-    let away = DVec3::from(away);
-    let center = away + place(p, q) * way + place(-q, p) * size;
-    (center, length * size * scale, Ray::new(away, place(p, q)))
+    let origin: [f64; 3] = std::array::from_fn(|_| integer(random, 1 << 20) * scale);
+    let origin = DVec3::from(origin);
+    let center = origin + in_plane(p, q) * distance + in_plane(-q, p) * size;
+    (center, length * size * scale, Ray::new(origin, in_plane(p, q)))
 }

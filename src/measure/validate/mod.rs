@@ -1,4 +1,4 @@
-//! Embree against the certified pure-Rust intersector: hit by hit and pixel by pixel.
+//! The comparison of Embree with the certified pure-Rust BVH, hit by hit and pixel by pixel.
 
 #[cfg(any(feature = "embree", test))]
 mod compare;
@@ -14,30 +14,31 @@ use crate::intersect::Precision;
 use crate::measure::mismatch::MismatchCause;
 use crate::scene::Scene;
 
-/// Disagreements, by cause. In precision `fast` the first three are explained by what it promises
-/// ([`MismatchClassifier`](crate::measure::MismatchClassifier) derives the margins); in `certified` nothing is, and
-/// every disagreement is `other`.
+/// The numbers of mismatches by cause. In precision `fast` the first three are explained by its
+/// margins ([`MismatchClassifier`](crate::measure::MismatchClassifier) derives them); in `certified`
+/// no mismatch is explained, and every one is `other`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Causes {
+pub struct MismatchCounts {
     /// The ray passes the edge of a triangle within the margin.
     pub edge: u64,
     /// The ray touches a sphere, to within the rounding of f64.
     pub tangency: u64,
-    /// Two surfaces lie, along the ray, as close together as the margin, or a surface lies as
-    /// close to the end of a shadow ray.
+    /// Two surfaces lie, along the ray, within the margin of each other, or a surface lies within the
+    /// margin of the end of a shadow ray.
     pub tie: u64,
-    /// Nothing explains it: an error in one of the two.
+    /// Unexplained: an error in one of the two backends.
     pub other: u64,
 }
 
-impl Causes {
-    /// How many of them the promises of `fast` explain.
+impl MismatchCounts {
+    /// Returns the number of explained mismatches.
     pub fn explained(&self) -> u64 {
         self.edge + self.tangency + self.tie
     }
 
+    /// Returns the count of one cause; none stands for unexplained.
     #[cfg(any(feature = "embree", test))]
-    fn of(&mut self, cause: Option<MismatchCause>) -> &mut u64 {
+    fn count_mut(&mut self, cause: Option<MismatchCause>) -> &mut u64 {
         match cause {
             Some(MismatchCause::Edge) => &mut self.edge,
             Some(MismatchCause::Tangency) => &mut self.tangency,
@@ -47,68 +48,69 @@ impl Causes {
     }
 }
 
-/// The ray that came out worst: an unexplained mismatch before an explained one, and then the
-/// largest error of t; of several the first in the picture.
+/// The ray with the worst difference: an unexplained mismatch before an explained one, then the
+/// largest error of t; of equal ones the first in the picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Worst {
-    /// Column and row of its pixel, from the upper left.
+pub struct WorstRay {
+    /// The column and row of its pixel, from the upper left.
     pub pixel: [u32; 2],
-    /// `other`, `edge`, `tangency` or `tie` where the two disagree; null where they hit the same
-    /// and only t differs.
+    /// The cause of the mismatch: `other`, `edge`, `tangency` or `tie`; null where only t differs.
     pub cause: Option<&'static str>,
-    /// Whether it is about a shadow ray from what the ray hits, rather than about the ray itself.
-    pub shadow: bool,
-    /// By how much t differs, in units in the last place; null where the two do not hit the same
-    /// primitive, and for shadow rays.
+    /// True if the mismatch is that of a shadow ray from the hit, rather than of the ray itself.
+    #[serde(rename = "shadow")]
+    pub is_shadow_ray: bool,
+    /// The difference of t, in units in the last place; null unless both hit the same primitive, and
+    /// for shadow rays.
     pub t_error_ulp: Option<u64>,
-    /// The ray from the eye as `envers validate SCENE --ray` takes it, every bit of it.
+    /// The camera ray, as [`ray_to_text`](crate::measure::ray_to_text) writes it.
     pub ray: String,
 }
 
-/// What came out.
+/// The result of a validation.
 #[derive(Clone, Debug, Serialize)]
 pub struct Validation {
-    /// In which precision Embree was held against the judge, which is always certified.
+    /// The precision of Embree; the reference is always certified.
     pub precision: &'static str,
-    /// Rays traced by both: from the eye, from there to the lights, and those that mirrors and
-    /// glass send on.
+    /// The number of rays traced with both: camera rays, shadow rays from their hits, and secondary
+    /// rays.
     pub rays_compared: u64,
-    /// Of these, rays from the eye.
+    /// The number of camera rays.
     pub primary_rays: u64,
-    /// Of these, rays that mirrors and glass send on; they have no place in the heat map, and none
-    /// of them is the worst ray.
+    /// The number of secondary rays, off mirrors and through glass. They are not shown in the heat
+    /// map, and never the worst ray.
     pub secondary_rays: u64,
-    /// Rays about which the two disagree: which primitive, or whether any; in `certified` also
-    /// any bit of t, u or v.
+    /// The number of rays on which the two hit different primitives, or only one of them hits any; in
+    /// `certified` also of rays with any bit of t, u or v different.
     pub primitive_mismatches: u64,
-    /// The same, by cause.
-    pub causes: Causes,
-    /// Those that nothing explains: `causes.other`.
+    /// The mismatches by cause.
+    pub causes: MismatchCounts,
+    /// The number of unexplained mismatches: `causes.other`.
     pub unexplained_mismatches: u64,
-    /// Largest difference of t, in units in the last place, where both hit the same primitive.
+    /// The largest difference of t, in units in the last place, where both hit the same primitive.
     pub max_t_error_ulp: u64,
-    /// Pixels compared.
+    /// The number of pixels.
     pub pixels: u64,
-    /// Pixels of which a channel of the PNG differs by more than 1 of 255.
+    /// The number of pixels with a channel of the PNG that differs by more than 1 of 255.
     pub pixels_differing: u64,
-    /// Largest difference of a channel of the PNG, of 255.
+    /// The largest difference of a channel of the PNG, of 255.
     pub max_channel_difference: u8,
-    /// Values of the EXR that differ at all.
+    /// The number of values of the EXR that differ in any bit.
     pub values_differing: u64,
     /// The worst ray; null where there is no difference.
-    pub worst: Option<Worst>,
-    /// In `fast`: no unexplained mismatch, at most 1e-4 of the rays explained ones, at most 1e-5
-    /// of the pixels differing. In `certified`: no difference of any bit.
+    pub worst: Option<WorstRay>,
+    /// True if the validation passed. In `fast`: no mismatch is unexplained, at most 1e-4 of the rays
+    /// are explained mismatches, and at most 1e-5 of the pixels differ. In `certified`: no bit
+    /// differs.
     pub passed: bool,
-    /// Where they differ: red an unexplained mismatch, yellow an explained one, blue a pixel that
-    /// differs; and grey where they agree that something is hit.
+    /// The heat map: red for an unexplained mismatch, yellow for an explained one, blue for a pixel
+    /// that differs, grey where both hit something, black where both hit nothing.
     #[serde(skip)]
     pub heatmap: Film,
 }
 
 impl fmt::Display for Validation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Causes { edge, tangency, tie, other } = self.causes;
+        let MismatchCounts { edge, tangency, tie, other } = self.causes;
         write!(
             f,
             "{}: {}: {} rays compared, {} mismatches ({edge} edge, {tangency} tangency, {tie} tie, \
@@ -127,11 +129,11 @@ impl fmt::Display for Validation {
     }
 }
 
-impl fmt::Display for Worst {
+impl fmt::Display for WorstRay {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y] = self.pixel;
         write!(f, "worst ray, of pixel ({x}, {y}): ")?;
-        let what = if self.shadow { "its shadow ray" } else { "what it hits" };
+        let what = if self.is_shadow_ray { "its shadow ray" } else { "its hit" };
         match (self.cause, self.t_error_ulp) {
             (Some(cause), None) => write!(f, "{what} differs ({cause})"),
             (Some(cause), Some(ulp)) => write!(f, "{what} differs ({cause}), t by {ulp} ulp"),
@@ -140,39 +142,43 @@ impl fmt::Display for Worst {
     }
 }
 
-/// Renders a scene with Embree in `precision` and with the certified pure-Rust intersector, and
-/// compares every hit, every shadow ray from what the eye sees, and every pixel. `threads` 0 means all there are.
+/// Renders a scene with Embree in `precision` and with the certified pure-Rust BVH, and compares
+/// every hit, every shadow ray from the hits of camera rays, and every pixel. `threads` 0 means all
+/// there are.
 ///
 /// # Errors
-/// When the scene is not valid, has no such camera, or this build has no Embree.
-#[cfg(not(feature = "embree"))]
-pub fn validate(_: &Scene, _: Precision, _: usize, _: usize) -> Result<Validation> {
-    Err(crate::error::Error::input("this envers was built without Embree: nothing to compare")
-        .help("build with the feature `embree` (run scripts/setup first)"))
-}
-
-/// Renders a scene with Embree in `precision` and with the certified pure-Rust intersector, and
-/// compares every hit, every shadow ray from what the eye sees, and every pixel. `threads` 0 means all there are.
-///
-/// # Errors
-/// When the scene is not valid, has no such camera, or Embree cannot be started.
-#[cfg(feature = "embree")]
+/// When the scene is not valid, has no such camera, or Embree cannot be started or is not built in.
+#[cfg_attr(not(feature = "embree"), expect(unused_variables))]
 pub fn validate(
     scene: &Scene,
     precision: Precision,
     camera: usize,
     threads: usize,
 ) -> Result<Validation> {
-    use crate::intersect::{Bvh, Embree};
-    use crate::render;
+    #[cfg(not(feature = "embree"))]
+    return Err(crate::error::Error::input(
+        "this envers was built without Embree: nothing to compare",
+    )
+    .help("build with the feature `embree` (run scripts/setup first)"));
 
-    scene.check()?;
-    render::check_camera(scene, camera)?;
-    render::in_pool(threads, || {
-        let embree = Embree::build(scene, precision, rayon::current_num_threads())?;
-        let judge = Bvh::build(scene, Precision::Certified);
-        let (subject, margin) = (&embree, embree.margin());
-        let judge = &judge;
-        Ok(compare::Comparer { scene, precision, subject, margin, judge, camera }.run())
-    })
+    #[cfg(feature = "embree")]
+    {
+        use crate::intersect::{Bvh, Embree};
+        use crate::render;
+
+        scene.check()?;
+        render::check_camera(scene, camera)?;
+        render::in_pool(threads, || {
+            let embree = Embree::build(scene, precision, rayon::current_num_threads())?;
+            let comparer = compare::Comparer {
+                scene,
+                precision,
+                tested: &embree,
+                margin: embree.margin(),
+                reference: &Bvh::build(scene, Precision::Certified),
+                camera,
+            };
+            Ok(comparer.run())
+        })
+    }
 }

@@ -1,143 +1,123 @@
-//! What makes an animation valid.
+//! The validity checks of an animation.
 
 use glam::DAffine3;
 
 use super::{
-    Animated, Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Node, NodeId, Rotation,
-    Toward, naming,
+    AimTarget, Animated, Animation, Curve, Deformation, MAX_FPS, MAX_FRAMES, Motion, Node, NodeId,
+    Rotation, prefixed,
 };
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::scene::Scene;
+use crate::scene::check::require;
 
 impl Animation {
-    /// Checks what the rest of the program takes for granted, for the objects of `scene`;
-    /// `Scene::check` calls it.
+    /// Checks that frames, curves and indices into `scene` are valid; `Scene::check` calls it.
     ///
     /// # Errors
-    /// The first thing that is not so.
+    /// The first condition that does not hold.
     pub(in crate::scene) fn check(&self, scene: &Scene) -> Result<()> {
-        check_frames(self.frames)?;
-        check_fps(self.fps)?;
+        require((1..=MAX_FRAMES).contains(&self.frames), || {
+            format!("an animation of {} frames cannot be made", self.frames)
+        })
+        .map_err(|e| e.help(format!("from 1 to {MAX_FRAMES}")))?;
+        require((1e-6..=MAX_FPS).contains(&self.fps), || {
+            format!("{} frames a second cannot be made", self.fps)
+        })
+        .map_err(|e| e.help(format!("a number above 0 (and at most {MAX_FPS})")))?;
         for (i, node) in self.nodes.iter().enumerate() {
-            check_node(i, node).map_err(|e| naming(&format!("animation node {i}"), &e))?;
+            check_node(i, node).map_err(|e| prefixed(&format!("animation node {i}"), &e))?;
         }
-        for mover in &self.movers {
-            check_mover(mover, self.nodes.len(), scene)?;
-        }
-        Ok(())
+        self.objects.iter().try_for_each(|object| check_object(object, self.nodes.len(), scene))
     }
 }
 
-/// Checks the number of frames of an animation.
-///
-/// # Errors
-/// When there are none or more than [`MAX_FRAMES`].
-fn check_frames(frames: u32) -> Result<()> {
-    if (1..=MAX_FRAMES).contains(&frames) {
-        return Ok(());
-    }
-    Err(Error::input(format!("an animation of {frames} frames cannot be made"))
-        .help(format!("from 1 to {MAX_FRAMES}")))
+/// Requires a condition whose message has nothing to fill in.
+fn require_that(holds: bool, message: &str) -> Result<()> {
+    require(holds, || message.to_owned())
 }
 
-/// Checks how many frames are in a second.
-///
-/// # Errors
-/// When that is not above 0, or above [`MAX_FPS`].
-fn check_fps(fps: f64) -> Result<()> {
-    if (1e-6..=MAX_FPS).contains(&fps) {
-        return Ok(());
-    }
-    Err(Error::input(format!("{fps} frames a second cannot be made"))
-        .help(format!("a number above 0 (and at most {MAX_FPS})")))
-}
-
+/// Checks node `index`.
 fn check_node(index: usize, node: &Node) -> Result<()> {
-    let require = |holds: bool, what: &str| match holds {
-        true => Ok(()),
-        false => Err(Error::input(what)),
-    };
-    let before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
-    require(before(&node.parent), "its parent does not stand before it")?;
-    require(node.place.is_finite(), "its place is not finite")?;
+    let is_before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
+    require_that(is_before(&node.parent), "its parent does not come before it")?;
+    require_that(node.base.is_finite(), "its base transform is not finite")?;
     match &node.motion {
-        Motion::Keys(keys) => {
+        Motion::Keyframes(keys) => {
             keys.translation.check()?;
             match &keys.rotation {
                 Rotation::Angles(curve) => curve.check()?,
                 Rotation::Quaternions(curve) => curve.check()?,
             }
             keys.scale.check()?;
-            require(keys.repeats.is_none_or(|p| p > 0.0), "it repeats after no time")
+            require_that(keys.period.is_none_or(|p| p > 0.0), "its period must be above 0")
         }
         Motion::Orbit(orbit) => {
-            require(before(&orbit.around.node), "its centre does not stand before it")?;
-            let alone = node.parent.is_none() && node.place == DAffine3::IDENTITY;
-            require(alone, "an orbit has neither parent nor place")?;
+            require_that(is_before(&orbit.around.node), "its centre does not come before it")?;
+            let is_root = node.parent.is_none() && node.base == DAffine3::IDENTITY;
+            require_that(is_root, "an orbit must have neither a parent nor a base transform")?;
             let points = [orbit.around.point, orbit.center, orbit.start];
-            require(points.iter().all(|p| p.is_finite()), "its centre is not finite")?;
-            require((orbit.axis.length() - 1.0).abs() < 1e-6, "its axis must have length 1")?;
-            require(orbit.period != 0.0 && !orbit.period.is_nan(), "its period must not be 0")
+            require_that(points.iter().all(|p| p.is_finite()), "its centre is not finite")?;
+            let has_unit_axis = (orbit.axis.length() - 1.0).abs() < 1e-6;
+            require_that(has_unit_axis, "its axis must have length 1")?;
+            let has_period = orbit.period != 0.0 && !orbit.period.is_nan();
+            require_that(has_period, "its period must not be 0")
         }
     }
 }
 
+/// Checks the deformation of a mesh, whose nodes `check_node_id` checks.
 fn check_deformation(
     deformation: &Deformation,
-    node: impl Fn(&Option<NodeId>) -> Result<()>,
+    check_node_id: impl Fn(&Option<NodeId>) -> Result<()>,
 ) -> Result<()> {
-    let require = |holds: bool, what: &str| match holds {
-        true => Ok(()),
-        false => Err(Error::input(what)),
-    };
-    let Deformation { base, morphs, weights, repeats, skin } = deformation;
-    require(weights.len() == morphs.len(), "there must be a weight for each morph")?;
+    let Deformation { base, morph_targets, weights, period, skin } = deformation;
+    let is_weighted = weights.len() == morph_targets.len();
+    require_that(is_weighted, "there must be a weight for each morph target")?;
     weights.iter().try_for_each(Curve::check)?;
-    require(repeats.is_none_or(|p| p > 0.0), "it repeats after no time")?;
+    require_that(period.is_none_or(|p| p > 0.0), "its period must be above 0")?;
     let Some(skin) = skin else { return Ok(()) };
-    node(&skin.space.node)?;
-    skin.joints.iter().try_for_each(|joint| node(&joint.node))?;
-    let numbers = base.positions.len() * skin.influences.per_vertex;
-    let fits = [skin.influences.joints.len(), skin.influences.weights.len()] == [numbers; 2];
-    require(fits, "the joints are not as many for each vertex")
+    check_node_id(&skin.space.node)?;
+    skin.joints.iter().try_for_each(|joint| check_node_id(&joint.node))?;
+    let count = base.positions.len() * skin.influences.per_vertex;
+    let fits = [skin.influences.joints.len(), skin.influences.weights.len()] == [count; 2];
+    require_that(fits, "all vertices must have the same number of joints")
 }
 
-fn check_mover(mover: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
-    let there = |what: &str, index: usize, count: usize| {
-        if index < count {
-            return Ok(());
-        }
-        Err(Error::input(format!("the animation moves {what} {index}, of {count}")))
+/// Checks the indices and the curves of an animated object.
+fn check_object(object: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
+    let check_index = |what: &str, index: usize, count: usize| {
+        require(index < count, || format!("the animation moves {what} {index}, of {count}"))
     };
-    let node = |id: &Option<NodeId>| id.map_or(Ok(()), |id| there("node", id.0 as usize, nodes));
-    match mover {
-        Animated::Sphere { sphere, node: of, radius, .. } => {
-            there("sphere", *sphere, scene.spheres.len())?;
-            node(of)?;
+    let check_node_id =
+        |id: &Option<NodeId>| id.map_or(Ok(()), |id| check_index("node", id.0 as usize, nodes));
+    match object {
+        Animated::Sphere { sphere, node, radius, .. } => {
+            check_index("sphere", *sphere, scene.spheres.len())?;
+            check_node_id(node)?;
             radius.iter().try_for_each(Curve::check)
         }
-        Animated::Instance { instance, node: of, .. } => {
-            there("instance", *instance, scene.instances.len())?;
-            node(&Some(*of))
+        Animated::Instance { instance, node, .. } => {
+            check_index("instance", *instance, scene.instances.len())?;
+            check_node_id(&Some(*node))
         }
         Animated::Mesh { mesh, deformation } => {
-            there("mesh", *mesh, scene.meshes.len())?;
-            check_deformation(deformation, node)
-                .map_err(|e| naming(&format!("the deformation of mesh {mesh}"), &e))
+            check_index("mesh", *mesh, scene.meshes.len())?;
+            check_deformation(deformation, check_node_id)
+                .map_err(|e| prefixed(&format!("the deformation of mesh {mesh}"), &e))
         }
-        Animated::Light { light, node: of, direction, intensity, .. } => {
-            there("light", *light, scene.lights.len())?;
-            node(of)?;
+        Animated::Light { light, node, direction, intensity, .. } => {
+            check_index("light", *light, scene.lights.len())?;
+            check_node_id(node)?;
             direction.iter().try_for_each(Curve::check)?;
             intensity.iter().try_for_each(Curve::check)
         }
-        Animated::Camera { camera, node: of, aim, lens, .. } => {
-            there("camera", *camera, scene.cameras.len())?;
-            node(of)?;
+        Animated::Camera { camera, node, aim, lens, .. } => {
+            check_index("camera", *camera, scene.cameras.len())?;
+            check_node_id(node)?;
             lens.iter().try_for_each(Curve::check)?;
-            match aim.as_ref().map(|aim| &aim.toward) {
-                Some(Toward::Anchor(anchor)) => node(&anchor.node),
-                Some(Toward::Points(curve) | Toward::Directions(curve)) => curve.check(),
+            match aim.as_ref().map(|aim| &aim.target) {
+                Some(AimTarget::Anchor(anchor)) => check_node_id(&anchor.node),
+                Some(AimTarget::Points(curve) | AimTarget::Directions(curve)) => curve.check(),
                 None => Ok(()),
             }
         }

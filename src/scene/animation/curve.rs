@@ -1,63 +1,56 @@
-//! Values that change with time.
+//! The animation curve: a value at each keyframe, and the interpolation between keyframes.
 
 use std::fmt::Debug;
 
 use glam::{DQuat, DVec3};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::scene::check::require;
 
-/// What a [`Curve`] can lead through: numbers, points and directions, rotations.
-pub trait Value: Copy + Debug + PartialEq {
-    /// The value at `share` of the way from `a` to `b`, in \[0, 1\].
-    fn mix(a: Self, b: Self, share: f64) -> Self;
+/// A type that a [`Curve`] can interpolate: a number, a point or direction, a rotation.
+pub trait Interpolate: Copy + Debug + PartialEq {
+    /// The linear interpolation from `a` to `b`, for `s` in \[0, 1\].
+    fn lerp(a: Self, b: Self, s: f64) -> Self;
 
     /// The weighted sum of four values, for splines.
-    fn sum(terms: [(f64, Self); 4]) -> Self;
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self;
 
-    /// Whether it is made of finite numbers, and a value of its kind.
+    /// True if its numbers are finite, and a rotation has length 1.
     fn is_valid(self) -> bool;
 }
 
-impl Value for f64 {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
-        a + (b - a) * share
-    }
+macro_rules! interpolate_componentwise {
+    ($($T:ty),*) => {$(
+        impl Interpolate for $T {
+            fn lerp(a: Self, b: Self, s: f64) -> Self {
+                a + (b - a) * s
+            }
 
-    fn sum(terms: [(f64, Self); 4]) -> Self {
-        terms.into_iter().map(|(weight, value)| weight * value).sum()
-    }
+            fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
+                terms.into_iter().map(|(weight, value)| value * weight).sum()
+            }
 
-    fn is_valid(self) -> bool {
-        self.is_finite()
-    }
+            fn is_valid(self) -> bool {
+                self.is_finite()
+            }
+        }
+    )*};
 }
 
-impl Value for DVec3 {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
-        a + (b - a) * share
+interpolate_componentwise!(f64, DVec3);
+
+/// Rotations have length 1 and are interpolated along the shorter arc (slerp). A spline's sum is
+/// normalised, as glTF prescribes.
+impl Interpolate for DQuat {
+    fn lerp(a: Self, b: Self, s: f64) -> Self {
+        a.slerp(b, s)
     }
 
-    fn sum(terms: [(f64, Self); 4]) -> Self {
-        terms.into_iter().map(|(weight, value)| value * weight).sum()
-    }
-
-    fn is_valid(self) -> bool {
-        self.is_finite()
-    }
-}
-
-/// Rotations: of length 1, mixed along the shorter arc (slerp). A spline's sum is brought back to
-/// length 1, as glTF has it.
-impl Value for DQuat {
-    fn mix(a: Self, b: Self, share: f64) -> Self {
-        a.slerp(b, share)
-    }
-
-    fn sum(terms: [(f64, Self); 4]) -> Self {
+    fn weighted_sum(terms: [(f64, Self); 4]) -> Self {
         let sum =
             terms.into_iter().fold(DQuat::from_array([0.0; 4]), |sum, (w, value)| sum + value * w);
         let length = sum.length();
-        // Halfway between opposite rotations there is none.
+        // Halfway between opposite rotations the sum is 0.
         if length > 1e-9 { sum / length } else { terms[0].1 }
     }
 
@@ -66,31 +59,33 @@ impl Value for DQuat {
     }
 }
 
-/// How a value goes from one key to the next.
+/// The interpolation between two keyframes, as of glTF's animation samplers.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Interpolation<T> {
-    /// It stays, and then jumps.
+    /// The value stays until the next keyframe (`STEP`).
     Step,
-    /// In a straight line, rotations along the shorter arc, at constant speed.
+    /// The value changes at constant speed, rotations along the shorter arc (`LINEAR`).
     Linear,
-    /// Along a cubic Hermite spline: for each key the slopes at which the value comes to it and
-    /// leaves it, per second.
+    /// The value follows a cubic Hermite spline (`CUBICSPLINE`): for each keyframe its in-tangent and
+    /// out-tangent, per second.
     Cubic(Vec<[T; 2]>),
 }
 
-/// A value at certain times, and between them. Before the first and after the last it stays.
+/// An animation curve (glTF: a sampler): a value at each keyframe, and between keyframes. Before the
+/// first and after the last keyframe the value stays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve<T> {
-    /// When, in seconds; increasing, and at least one.
+    /// The times of the keyframes in seconds; increasing, and at least one.
     pub times: Vec<f64>,
-    /// A value for each of the times.
+    /// The values of the keyframes.
     pub values: Vec<T>,
-    /// What is between them.
+    /// The interpolation between keyframes.
     pub interpolation: Interpolation<T>,
 }
 
-impl<T: Value> Curve<T> {
-    /// The value that does not change.
+impl<T: Interpolate> Curve<T> {
+    /// The curve of a value that does not change.
     pub fn constant(value: T) -> Self {
         Self { times: vec![0.0], values: vec![value], interpolation: Interpolation::Step }
     }
@@ -99,7 +94,8 @@ impl<T: Value> Curve<T> {
     ///
     /// # Panics
     /// When the curve is empty.
-    pub fn at(&self, time: f64) -> T {
+    pub fn sample(&self, time: f64) -> T {
+        // The keyframes before and after the time; the value stays beyond either end.
         let after = self.times.partition_point(|&t| t <= time);
         if after == 0 {
             return self.values[0];
@@ -108,20 +104,21 @@ impl<T: Value> Curve<T> {
         if after == self.times.len() || time == self.times[key] {
             return self.values[key];
         }
+        // Interpolation by the fraction s of the time between the two.
         let (a, b) = (self.values[key], self.values[after]);
         let seconds = self.times[after] - self.times[key];
         let s = (time - self.times[key]) / seconds;
         match &self.interpolation {
             Interpolation::Step => a,
-            Interpolation::Linear => T::mix(a, b, s),
-            Interpolation::Cubic(slopes) => {
+            Interpolation::Linear => T::lerp(a, b, s),
+            Interpolation::Cubic(tangents) => {
                 // The Hermite basis, as in appendix C of the glTF 2.0 specification.
                 let (s2, s3) = (s * s, s * s * s);
-                T::sum([
+                T::weighted_sum([
                     (2.0 * s3 - 3.0 * s2 + 1.0, a),
-                    (seconds * (s3 - 2.0 * s2 + s), slopes[key][1]),
+                    (seconds * (s3 - 2.0 * s2 + s), tangents[key][1]),
                     (-2.0 * s3 + 3.0 * s2, b),
-                    (seconds * (s3 - s2), slopes[after][0]),
+                    (seconds * (s3 - s2), tangents[after][0]),
                 ])
             }
         }
@@ -130,45 +127,38 @@ impl<T: Value> Curve<T> {
     /// Checks that there is a value for each time, all of them finite, and that the times increase.
     ///
     /// # Errors
-    /// The first thing that is not so.
+    /// The first condition that does not hold.
     pub fn check(&self) -> Result<()> {
         let (times, values) = (&self.times, &self.values);
-        if times.is_empty() || times.len() != values.len() {
-            return Err(Error::input(format!(
-                "{} times and {} values, where there must be one for each",
-                times.len(),
-                values.len()
-            )));
+        require(!times.is_empty() && times.len() == values.len(), || {
+            let (times, values) = (times.len(), values.len());
+            format!("{times} times and {values} values, where there must be one for each")
+        })?;
+        for (i, time) in times.iter().enumerate() {
+            require(time.is_finite(), || format!("time {i} is not finite"))?;
         }
-        if let Some(i) = (0..times.len()).find(|&i| !times[i].is_finite()) {
-            return Err(Error::input(format!("time {i} is not finite")));
+        for pair in times.windows(2) {
+            require(pair[0] < pair[1], || {
+                format!("the times do not increase: {} after {}", pair[1], pair[0])
+            })?;
         }
-        if let Some(i) = (1..times.len()).find(|&i| times[i] <= times[i - 1]) {
-            return Err(Error::input(format!(
-                "the times do not increase: {} after {}",
-                times[i],
-                times[i - 1]
-            )));
+        for (i, value) in values.iter().enumerate() {
+            require(value.is_valid(), || format!("value {i} is out of range: {value:?}"))?;
         }
-        if let Some(i) = values.iter().position(|value| !value.is_valid()) {
-            return Err(Error::input(format!("value {i} is out of range: {:?}", values[i])));
-        }
-        match &self.interpolation {
-            Interpolation::Cubic(slopes) if slopes.len() != values.len() => Err(Error::input(
-                format!("{} pairs of slopes for {} values", slopes.len(), values.len()),
-            )),
-            _ => Ok(()),
-        }
+        let Interpolation::Cubic(slopes) = &self.interpolation else { return Ok(()) };
+        require(slopes.len() == values.len(), || {
+            format!("{} pairs of slopes for {} values", slopes.len(), values.len())
+        })
     }
 }
 
 impl Curve<f64> {
-    /// The smooth curve through the values: it starts and ends at rest, and nowhere goes beyond
-    /// the values beside it.
+    /// The smooth curve through the values: it starts and ends at rest, and never leaves the range of
+    /// the two neighbouring values.
     ///
     /// Fritsch and Butland, *A method for constructing local monotone piecewise cubic
-    /// interpolants* (1984): the slope at a key is the weighted harmonic mean of those before and
-    /// after it, and 0 where these point in opposite directions.
+    /// interpolants* (1984): the slope at a keyframe is the weighted harmonic mean of those before and
+    /// after it, and 0 where these have opposite signs.
     pub fn smooth(times: Vec<f64>, values: Vec<f64>) -> Self {
         let slopes = slopes(&times, &values).into_iter().map(|slope| [slope; 2]).collect();
         Self { times, values, interpolation: Interpolation::Cubic(slopes) }
@@ -176,7 +166,7 @@ impl Curve<f64> {
 }
 
 impl Curve<DVec3> {
-    /// The curve that is [smooth](Curve::<f64>::smooth) in each coordinate.
+    /// The curve whose coordinates are each [smooth](Curve::<f64>::smooth).
     pub fn smooth(times: Vec<f64>, values: Vec<DVec3>) -> Self {
         let axis =
             |axis: usize| slopes(&times, &values.iter().map(|v| v[axis]).collect::<Vec<_>>());
@@ -186,7 +176,7 @@ impl Curve<DVec3> {
     }
 }
 
-/// The slope at each key; see [`Curve::<f64>::smooth`].
+/// The slope at each keyframe; see [`Curve::<f64>::smooth`].
 fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
     let mut slopes = vec![0.0; values.len()];
     for i in 1..values.len().saturating_sub(1) {
@@ -213,18 +203,21 @@ mod tests {
     #[test]
     fn value_stays_before_the_first_key_and_after_the_last() {
         for curve in [curve(Interpolation::Step), curve(Interpolation::Linear)] {
-            assert_eq!([0.0, 1.0, 4.0, 9.0].map(|t| curve.at(t)), [10.0, 10.0, 0.0, 0.0]);
+            assert_eq!([0.0, 1.0, 4.0, 9.0].map(|t| curve.sample(t)), [10.0, 10.0, 0.0, 0.0]);
         }
     }
 
     #[test]
     fn linear_is_a_straight_line_between_keys() {
-        assert_eq!([1.5, 2.0, 3.75].map(|t| curve(Interpolation::Linear).at(t)), [12.5, 15.0, 5.0]);
+        assert_eq!(
+            [1.5, 2.0, 3.75].map(|t| curve(Interpolation::Linear).sample(t)),
+            [12.5, 15.0, 5.0]
+        );
     }
 
     #[test]
     fn step_jumps_at_the_key() {
-        assert_eq!([2.999, 3.0].map(|t| curve(Interpolation::Step).at(t)), [10.0, 20.0]);
+        assert_eq!([2.999, 3.0].map(|t| curve(Interpolation::Step).sample(t)), [10.0, 20.0]);
     }
 
     #[test]
@@ -235,7 +228,7 @@ mod tests {
         let values = times.iter().map(|&t| square(t)).collect();
         let curve = Curve { times, values, interpolation: Interpolation::Cubic(slopes) };
         for t in [0.25, 0.5, 1.0, 2.0, 2.9] {
-            assert!((curve.at(t) - square(t)).abs() < 1e-12, "{t}");
+            assert!((curve.sample(t) - square(t)).abs() < 1e-12, "{t}");
         }
     }
 
@@ -243,7 +236,7 @@ mod tests {
     fn rotations_turn_at_constant_speed() {
         let values = vec![DQuat::IDENTITY, DQuat::from_rotation_z(FRAC_PI_2)];
         let curve = Curve { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear };
-        let third = curve.at(1.0 / 3.0) * DVec3::X;
+        let third = curve.sample(1.0 / 3.0) * DVec3::X;
         let (sin, cos) = (FRAC_PI_2 / 3.0).sin_cos();
         assert!((third - DVec3::new(cos, sin, 0.0)).length() < 1e-12, "{third}");
     }
@@ -253,7 +246,7 @@ mod tests {
         let turned = DQuat::from_rotation_z(0.2);
         let values = vec![DQuat::IDENTITY, -turned];
         let curve = Curve { times: vec![0.0, 1.0], values, interpolation: Interpolation::Linear };
-        assert!(curve.at(0.5).angle_between(DQuat::from_rotation_z(0.1)) < 1e-7);
+        assert!(curve.sample(0.5).angle_between(DQuat::from_rotation_z(0.1)) < 1e-7);
     }
 
     #[test]
@@ -275,7 +268,7 @@ mod tests {
                 .take(values.len()).collect();
             let curve = Curve::<f64>::smooth(times.clone(), values.clone());
             for i in 1..values.len() {
-                let found = curve.at(times[i - 1] + share * (times[i] - times[i - 1]));
+                let found = curve.sample(times[i - 1] + share * (times[i] - times[i - 1]));
                 let (low, high) = (values[i - 1].min(values[i]), values[i - 1].max(values[i]));
                 prop_assert!(found >= low - 1e-9 && found <= high + 1e-9, "{found} of {low}..{high}");
             }

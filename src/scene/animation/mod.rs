@@ -1,10 +1,35 @@
-//! What moves in a scene, and how: plain data, and the scene as it is at one time.
+//! The animation of a scene as plain data, and the scene at one time.
+//!
+//! ```
+//! use envers::scene::animation::{Animated, Animation, Curve, Interpolation, Keyframes, Motion, Node};
+//! use envers::scene::{Material, Scene, Sphere};
+//! use glam::{DAffine3, DVec3};
+//!
+//! let mut scene = Scene::default();
+//! let material = scene.add_material(Material::default());
+//! scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, material));
+//!
+//! // Two seconds at 24 frames a second, in which a node rises by 4.
+//! let mut animation = Animation::new(48, 24.0);
+//! let translation = Curve {
+//!     times: vec![0.0, 2.0],
+//!     values: vec![DVec3::ZERO, DVec3::Y * 4.0],
+//!     interpolation: Interpolation::Linear,
+//! };
+//! let motion = Motion::Keyframes(Keyframes { translation, ..Keyframes::identity() });
+//! let node = animation.add_node(Node { parent: None, base: DAffine3::IDENTITY, motion });
+//! let center = DVec3::ZERO;
+//! animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius: None });
+//! scene.animation = Some(animation);
+//! assert_eq!(scene.at_time(0.5)?.spheres[0].center, DVec3::Y);
+//! # Ok::<(), envers::error::Error>(())
+//! ```
 
 mod check;
 mod curve;
-mod deform;
+mod deformation;
 mod node;
-mod poses;
+mod posed_scene;
 
 use glam::{DAffine3, DVec3};
 
@@ -12,111 +37,114 @@ use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::scene::{Camera, Light, Scene};
 
-pub use curve::{Curve, Interpolation, Value};
-pub use deform::{Deformation, Influences, Joint, Morph, Skin};
+pub use curve::{Curve, Interpolate, Interpolation};
+pub use deformation::{Deformation, Influences, Joint, MorphTarget, Skin};
 pub use node::{Anchor, Keyframes, Motion, Node, NodeId, Orbit, Rotation};
-pub use poses::Poses;
+pub use posed_scene::PosedScene;
 
-/// The most frames that an animation can have: eleven hours at 24 a second.
+/// The greatest number of frames of an animation: eleven hours at 24 a second.
 pub const MAX_FRAMES: u32 = 1_000_000;
-/// The most frames in a second.
+/// The greatest frame rate, in frames per second.
 pub const MAX_FPS: f64 = 1000.0;
 
-/// How a scene changes with time.
+/// An animation: how the objects of a scene change with time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Animation {
-    /// How many frames it has, from 1 to [`MAX_FRAMES`].
+    /// The number of frames, from 1 to [`MAX_FRAMES`].
     pub frames: u32,
-    /// How many of them are in a second, above 0.
+    /// The frame rate in frames per second, above 0.
     pub fps: f64,
-    /// The spaces that move, each after those that it depends on.
+    /// The nodes, each after those that it depends on.
     pub nodes: Vec<Node>,
-    /// What of the scene changes.
-    pub movers: Vec<Animated>,
+    /// The objects of the scene that change.
+    pub objects: Vec<Animated>,
 }
 
-/// Something of the scene that changes.
+/// An animated object of a scene.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Animated {
-    /// A sphere.
+    /// A sphere that moves or grows.
     Sphere {
-        /// Its index.
+        /// Its index in the scene.
         sphere: usize,
-        /// The space that it moves with; none for the world.
+        /// The node that it is attached to; none for the world.
         node: Option<NodeId>,
-        /// Its centre in that space. The space does not scale its radius.
+        /// Its centre in the node's space. The node does not scale its radius.
         center: DVec3,
-        /// Its radius, where that changes.
+        /// Its radius, if that changes.
         radius: Option<Curve<f64>>,
     },
-    /// An instance of a mesh.
+    /// An instance that moves.
     Instance {
-        /// Its index.
+        /// Its index in the scene.
         instance: usize,
-        /// The space that it moves with.
+        /// The node that it is attached to.
         node: NodeId,
-        /// From the mesh's space to that one.
+        /// The transform from the mesh's space to the node's.
         transform: DAffine3,
     },
-    /// The shape of a mesh, wherever it stands.
+    /// A mesh that changes its shape, in all its instances.
     Mesh {
-        /// Its index.
+        /// Its index in the scene.
         mesh: usize,
-        /// What gives it its shape.
+        /// The deformation that gives it its shape.
         deformation: Box<Deformation>,
     },
-    /// A light.
+    /// A light that moves, turns or changes its intensity.
     Light {
-        /// Its index.
+        /// Its index in the scene.
         light: usize,
-        /// The space that it moves with; none for the world.
+        /// The node that it is attached to; none for the world.
         node: Option<NodeId>,
-        /// The light as it stands in that space.
+        /// The light in the node's space.
         rest: Light,
-        /// Where it travels, in that space, where that changes; of any length but zero.
+        /// The direction in which its light travels in the node's space, if that changes; of any
+        /// length but zero.
         direction: Option<Curve<DVec3>>,
-        /// By what its intensity is multiplied, where that changes; 0 or above.
+        /// The factor of its intensity, if that changes; 0 or above.
         intensity: Option<Curve<f64>>,
     },
-    /// A camera.
+    /// A camera that moves, turns or zooms.
     Camera {
-        /// Its index.
+        /// Its index in the scene.
         camera: usize,
-        /// The space that it moves with; none for the world.
+        /// The node that it is attached to; none for the world.
         node: Option<NodeId>,
-        /// The camera as it stands in that space.
+        /// The camera in the node's space.
         rest: Camera,
-        /// Where it looks, unless that is as it stands in that space.
+        /// Its aim, unless it looks as `rest` does.
         aim: Option<Aim>,
-        /// The value of its lens, where that changes.
+        /// The value of its projection (angle, focal length or height), if that changes.
         lens: Option<Curve<f64>>,
     },
 }
 
-/// Where a camera looks, in world space, whatever space it moves with.
+/// The aim of a camera, in world space whatever node it is attached to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Aim {
-    /// What it looks at.
-    pub toward: Toward,
-    /// What is upward in its picture.
+    /// The target that it looks at.
+    pub target: AimTarget,
+    /// The direction that is upward in its picture.
     pub up: DVec3,
 }
 
-/// What a camera looks at.
+/// The target of a camera's aim.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Toward {
-    /// A point, which may move with something.
+#[non_exhaustive]
+pub enum AimTarget {
+    /// A point, which may be attached to a node.
     Anchor(Anchor),
-    /// A point that goes from key to key.
+    /// A point that moves along a curve.
     Points(Curve<DVec3>),
-    /// A direction, of any length but zero, that goes from key to key.
+    /// A direction, of any length but zero, that changes along a curve.
     Directions(Curve<DVec3>),
 }
 
 impl Animation {
-    /// An animation of so many frames in which nothing moves yet.
+    /// An animation of `frames` frames in which nothing moves yet.
     pub fn new(frames: u32, fps: f64) -> Self {
-        Self { frames, fps, nodes: Vec::new(), movers: Vec::new() }
+        Self { frames, fps, nodes: Vec::new(), objects: Vec::new() }
     }
 
     /// The time of a frame, in seconds; frames count from 1, and the first is at time 0.
@@ -124,24 +152,21 @@ impl Animation {
         (f64::from(frame) - 1.0) / self.fps
     }
 
-    /// How long it is, in seconds: to where a frame after the last would be.
-    pub fn seconds(&self) -> f64 {
+    /// The duration in seconds: the time at which a frame after the last would be.
+    pub fn duration(&self) -> f64 {
         f64::from(self.frames) / self.fps
     }
 
-    /// Whether anything moves that rays can meet, rather than lights and cameras alone.
+    /// True if anything moves that rays can hit, rather than lights and cameras alone.
     pub fn moves_geometry(&self) -> bool {
-        self.movers.iter().any(|m| match m {
-            Animated::Sphere { .. } | Animated::Instance { .. } | Animated::Mesh { .. } => true,
-            Animated::Light { .. } | Animated::Camera { .. } => false,
-        })
+        !self.objects.iter().all(|o| matches!(o, Animated::Light { .. } | Animated::Camera { .. }))
     }
 
-    /// Whether it moves each of so many instances.
+    /// For each of `count` instances, true if it moves.
     pub(in crate::scene) fn moved_instances(&self, count: usize) -> Vec<bool> {
         let mut moved = vec![false; count];
-        for mover in &self.movers {
-            if let Animated::Instance { instance, .. } = mover
+        for object in &self.objects {
+            if let Animated::Instance { instance, .. } = object
                 && let Some(moved) = moved.get_mut(*instance)
             {
                 *moved = true;
@@ -150,7 +175,7 @@ impl Animation {
         moved
     }
 
-    /// Adds a node.
+    /// Adds a node and returns its id.
     pub fn add_node(&mut self, node: Node) -> NodeId {
         self.nodes.push(node);
         NodeId(self.nodes.len() as u32 - 1)
@@ -158,22 +183,22 @@ impl Animation {
 }
 
 impl Scene {
-    /// The scene as it is at a time in seconds: one like any other, in which nothing moves.
+    /// The scene at a time in seconds, without animation.
     ///
-    /// A mesh that is squeezed flat at that time is left out.
+    /// Instances that are scaled flat at that time are left out.
     ///
     /// # Errors
-    /// When a camera then looks at where it stands, or along its own up.
+    /// When a camera then looks at its own position, or along its own up direction.
     ///
     /// # Panics
     /// When the animation was not [checked](Scene::check).
-    pub fn at(&self, time: f64) -> Result<Scene> {
-        let mut poses = Poses::new(self);
-        poses.pose(time)?;
-        Ok(poses.into_scene())
+    pub fn at_time(&self, time: f64) -> Result<Scene> {
+        let mut posed = PosedScene::new(self);
+        posed.pose(time)?;
+        Ok(posed.into_scene())
     }
 
-    /// The box around the scene wherever it moves, as seen at some moments of its animation.
+    /// The bounding box of the scene over its whole animation, sampled at some moments.
     ///
     /// # Panics
     /// When the animation was not [checked](Scene::check).
@@ -182,27 +207,27 @@ impl Scene {
             return self.bounds();
         }
         let mut bounds = Bounds::EMPTY;
-        self.over_time(|poses| bounds = bounds.union(poses.bounds()));
+        self.sample_over_time(|posed| bounds = bounds.union(posed.bounds()));
         bounds
     }
 
-    /// Looks at the scene at some moments of its animation, from its start to its end.
-    pub(crate) fn over_time(&self, mut look: impl FnMut(&mut Poses<'_>)) {
-        /// At how many times an animation is looked at, besides its start.
+    /// Calls `visit` with the scene at evenly spaced moments of its animation, from start to end.
+    pub(crate) fn sample_over_time(&self, mut visit: impl FnMut(&mut PosedScene<'_>)) {
+        /// The number of moments, besides the start.
         const MOMENTS: u32 = 24;
         let Some(animation) = &self.animation else { return };
-        let mut poses = Poses::new(self);
+        let mut posed = PosedScene::new(self);
         for i in 0..=MOMENTS {
-            let time = animation.seconds() * f64::from(i) / f64::from(MOMENTS);
-            if poses.pose(time).is_ok() {
-                look(&mut poses);
+            let time = animation.duration() * f64::from(i) / f64::from(MOMENTS);
+            if posed.pose(time).is_ok() {
+                visit(&mut posed);
             }
         }
     }
 }
 
-/// The same error, with what it is about before it.
-fn naming(what: &str, error: &Error) -> Error {
+/// Puts the object that an error is about before its message.
+fn prefixed(what: &str, error: &Error) -> Error {
     let named = Error::input(format!("{what}: {}", error.message()));
     match error.advice() {
         Some(help) => named.help(help),

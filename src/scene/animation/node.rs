@@ -1,4 +1,4 @@
-//! Moving spaces.
+//! The nodes of an animation: coordinate spaces that move.
 
 use std::f64::consts::TAU;
 
@@ -10,109 +10,110 @@ use super::curve::Curve;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NodeId(pub u32);
 
-/// A space that moves within another one, or within the world.
+/// A coordinate space that moves within its parent's, or within the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// The space that it moves in, which stands before it; none for the world.
+    /// The parent, which comes before it; none for the world.
     pub parent: Option<NodeId>,
-    /// Where its motion takes place, in the space of its parent.
-    pub place: DAffine3,
-    /// How it moves.
+    /// The fixed transform, applied after the motion, to the parent's space.
+    pub base: DAffine3,
+    /// The motion.
     pub motion: Motion,
 }
 
-/// How a space moves.
+/// The motion of a node.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Motion {
-    /// From key to key: scaled, then rotated, then translated.
-    Keys(Keyframes),
-    /// About an axis, or along with something else. The space is that of the world as it is at
-    /// time 0, and the node has neither parent nor place.
+    /// A transform by keyframes: scale, then rotation, then translation.
+    Keyframes(Keyframes),
+    /// A rotation about a centre, which may move. The node's space at time 0 is the world's, and the
+    /// node has neither parent nor base transform.
     Orbit(Orbit),
 }
 
-/// Motion from key to key.
+/// The keyframes of a transform: a curve for each of glTF's target paths `translation`, `rotation` and
+/// `scale`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Keyframes {
-    /// Where its origin is.
+    /// The translation.
     pub translation: Curve<DVec3>,
-    /// How it is turned.
+    /// The rotation.
     pub rotation: Rotation,
-    /// By what it is scaled along its own axes.
+    /// The scale along the node's own axes.
     pub scale: Curve<DVec3>,
-    /// After how many seconds it begins again, above 0; none for never.
-    pub repeats: Option<f64>,
+    /// The time in seconds after which it repeats, above 0; none if it does not.
+    pub period: Option<f64>,
 }
 
-/// A rotation that changes.
+/// The curve of a rotation.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Rotation {
-    /// Angles in radians about the fixed x axis, then y, then z, each changing by itself: 0 to 4π
-    /// is two turns.
+    /// Angles in radians about the fixed x axis, then y, then z, interpolated separately: 0 to 4π is
+    /// two turns.
     Angles(Curve<DVec3>),
-    /// Quaternions: from one to the next by the shorter way.
+    /// Quaternions, interpolated along the shorter arc.
     Quaternions(Curve<DQuat>),
 }
 
-/// A point that may move: one of a node's space, or of the world.
+/// A point that is attached to a node, or fixed in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// The space; none for the world.
+    /// The node; none for the world.
     pub node: Option<NodeId>,
-    /// The point, in that space.
+    /// The point, in the node's space.
     pub point: DVec3,
 }
 
-/// Motion about an axis through a centre that may move itself.
+/// A rotation about an axis through a centre that may move.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
     /// The centre.
     pub around: Anchor,
-    /// Where the centre is at time 0, in world space.
+    /// The position of the centre at time 0, in world space.
     pub center: DVec3,
-    /// Where at time 0 the point is that goes round, in world space.
+    /// The position at time 0 of the point that orbits, in world space.
     pub start: DVec3,
-    /// The axis, of length 1; it turns by the right-hand rule, counterclockwise seen against it.
+    /// The axis, of length 1; the rotation follows the right-hand rule, counterclockwise seen against
+    /// the axis.
     pub axis: DVec3,
-    /// Seconds for one turn, not 0; infinite for what only keeps beside its centre.
+    /// The time of one turn in seconds, not 0; infinite for what only moves along with its centre.
     pub period: f64,
-    /// Whether the space turns with it, so that the same side always faces the centre.
-    pub turn: bool,
+    /// True if the node's space turns too, so that the same side always faces the centre.
+    pub turns_with_orbit: bool,
 }
 
 impl Keyframes {
-    /// What moves nowhere; a start for what has some keys only.
-    pub fn still() -> Self {
+    /// The keyframes of the identity transform, to be replaced in part.
+    pub fn identity() -> Self {
         Self {
             translation: Curve::constant(DVec3::ZERO),
             rotation: Rotation::Quaternions(Curve::constant(DQuat::IDENTITY)),
             scale: Curve::constant(DVec3::ONE),
-            repeats: None,
+            period: None,
         }
     }
 
-    fn at(&self, time: f64) -> DAffine3 {
-        let time = match self.repeats {
-            Some(period) => time.rem_euclid(period),
-            None => time,
-        };
+    fn transform(&self, time: f64) -> DAffine3 {
+        let time = self.period.map_or(time, |period| time.rem_euclid(period));
         let rotation = match &self.rotation {
-            Rotation::Angles(curve) => about_fixed_axes(curve.at(time)),
-            Rotation::Quaternions(curve) => DMat3::from_quat(curve.at(time)),
+            Rotation::Angles(curve) => about_fixed_axes(curve.sample(time)),
+            Rotation::Quaternions(curve) => DMat3::from_quat(curve.sample(time)),
         };
-        let scale = DMat3::from_diagonal(self.scale.at(time));
-        DAffine3 { matrix3: rotation * scale, translation: self.translation.at(time) }
+        let scale = DMat3::from_diagonal(self.scale.sample(time));
+        DAffine3 { matrix3: rotation * scale, translation: self.translation.sample(time) }
     }
 }
 
 impl Anchor {
-    /// A point of the world, which stands still.
+    /// A point that is fixed in the world.
     pub fn fixed(point: DVec3) -> Self {
         Self { node: None, point }
     }
 
-    /// Where it is, given where the nodes are.
-    pub(super) fn at(&self, worlds: &[DAffine3]) -> DVec3 {
+    /// The position in world space, given the nodes' transforms to world space.
+    pub(super) fn position(&self, worlds: &[DAffine3]) -> DVec3 {
         match self.node {
             Some(NodeId(node)) => worlds[node as usize].transform_point3(self.point),
             None => self.point,
@@ -121,10 +122,10 @@ impl Anchor {
 }
 
 impl Orbit {
-    fn at(&self, time: f64, center: DVec3) -> DAffine3 {
-        // Whole turns are left out first: the angle is as exact after a million of them.
+    fn transform(&self, time: f64, center: DVec3) -> DAffine3 {
+        // Whole turns are dropped first, so that the angle is as exact after a million of them.
         let turn = DMat3::from_axis_angle(self.axis, TAU * (time / self.period).fract());
-        if self.turn {
+        if self.turns_with_orbit {
             let translation = center - turn * self.center;
             DAffine3 { matrix3: turn, translation }
         } else {
@@ -134,17 +135,17 @@ impl Orbit {
     }
 }
 
-/// Where the nodes are at a time in seconds: for each, the way from its space to the world.
-pub(super) fn worlds(nodes: &[Node], time: f64) -> Vec<DAffine3> {
+/// The transforms of all nodes to world space, at a time in seconds.
+pub(super) fn world_transforms(nodes: &[Node], time: f64) -> Vec<DAffine3> {
     let mut worlds = Vec::with_capacity(nodes.len());
     for node in nodes {
-        let own = match &node.motion {
-            Motion::Keys(keys) => node.place * keys.at(time),
-            Motion::Orbit(orbit) => orbit.at(time, orbit.around.at(&worlds)),
+        let local = match &node.motion {
+            Motion::Keyframes(keys) => node.base * keys.transform(time),
+            Motion::Orbit(orbit) => orbit.transform(time, orbit.around.position(&worlds)),
         };
         let world = match node.parent {
-            Some(NodeId(parent)) => worlds[parent as usize] * own,
-            None => own,
+            Some(NodeId(parent)) => worlds[parent as usize] * local,
+            None => local,
         };
         worlds.push(world);
     }
@@ -169,18 +170,18 @@ mod tests {
             start: DVec3::X * 3.0,
             axis: DVec3::Y,
             period: 4.0,
-            turn,
+            turns_with_orbit: turn,
         }
     }
 
     fn free(motion: Motion) -> Node {
-        Node { parent: None, place: DAffine3::IDENTITY, motion }
+        Node { parent: None, base: DAffine3::IDENTITY, motion }
     }
 
     #[test]
     fn a_quarter_of_the_period_is_a_quarter_turn_by_the_right_hand_rule() {
         for turn in [false, true] {
-            let world = worlds(&[free(Motion::Orbit(orbit(turn)))], 1.0)[0];
+            let world = world_transforms(&[free(Motion::Orbit(orbit(turn)))], 1.0)[0];
             let there = world.transform_point3(DVec3::X * 3.0);
             assert!((there - DVec3::new(1.0, 0.0, -2.0)).length() < 1e-15, "{there}");
         }
@@ -188,7 +189,7 @@ mod tests {
 
     #[test]
     fn what_does_not_turn_keeps_its_directions() {
-        let facing = |turn| orbit(turn).at(1.0, DVec3::X).matrix3 * DVec3::X;
+        let facing = |turn| orbit(turn).transform(1.0, DVec3::X).matrix3 * DVec3::X;
         assert_eq!(facing(false), DVec3::X);
         assert!((facing(true) - DVec3::NEG_Z).length() < 1e-15);
     }
@@ -196,14 +197,14 @@ mod tests {
     #[test]
     fn time_zero_and_whole_periods_leave_everything_where_it_was() {
         for time in [0.0, 4.0, 4e6] {
-            assert_eq!(orbit(true).at(time, DVec3::X), DAffine3::IDENTITY);
+            assert_eq!(orbit(true).transform(time, DVec3::X), DAffine3::IDENTITY);
         }
     }
 
     #[test]
     fn without_a_period_it_keeps_beside_its_centre() {
         let follows = Orbit { period: f64::INFINITY, ..orbit(false) };
-        let moved = follows.at(7.0, DVec3::new(1.0, 5.0, 0.0));
+        let moved = follows.transform(7.0, DVec3::new(1.0, 5.0, 0.0));
         assert_eq!(moved, DAffine3::from_translation(DVec3::Y * 5.0));
     }
 
@@ -215,7 +216,7 @@ mod tests {
             start: DVec3::X * 10.0,
             axis: DVec3::Y,
             period: 8.0,
-            turn: false,
+            turns_with_orbit: false,
         };
         let moon = Orbit {
             around: Anchor { node: Some(NodeId(0)), point: DVec3::X * 10.0 },
@@ -225,27 +226,30 @@ mod tests {
             ..planet.clone()
         };
         let nodes = [free(Motion::Orbit(planet)), free(Motion::Orbit(moon))];
-        let there = worlds(&nodes, 2.0)[1].transform_point3(DVec3::X * 11.0);
+        let there = world_transforms(&nodes, 2.0)[1].transform_point3(DVec3::X * 11.0);
         // The planet after a quarter turn, the moon beside it after half a one.
         assert!((there - DVec3::new(-1.0, 0.0, -10.0)).length() < 1e-14, "{there}");
     }
 
     #[test]
     fn a_child_moves_within_its_parent() {
-        let mut parent = Keyframes::still();
+        let mut parent = Keyframes::identity();
         parent.translation = Curve::constant(DVec3::X);
         parent.scale = Curve::constant(DVec3::splat(2.0));
-        let mut child = Keyframes::still();
+        let mut child = Keyframes::identity();
         child.translation = Curve::constant(DVec3::Y);
         let nodes = [
-            free(Motion::Keys(parent)),
+            free(Motion::Keyframes(parent)),
             Node {
                 parent: Some(NodeId(0)),
-                place: DAffine3::from_translation(DVec3::Z),
-                motion: Motion::Keys(child),
+                base: DAffine3::from_translation(DVec3::Z),
+                motion: Motion::Keyframes(child),
             },
         ];
-        assert_eq!(worlds(&nodes, 0.0)[1].transform_point3(DVec3::ZERO), DVec3::new(1., 2., 2.));
+        assert_eq!(
+            world_transforms(&nodes, 0.0)[1].transform_point3(DVec3::ZERO),
+            DVec3::new(1., 2., 2.)
+        );
     }
 
     #[test]
@@ -255,9 +259,9 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::Y * (2.0 * TAU)],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keyframes { rotation: Rotation::Angles(angles), ..Keyframes::still() };
+        let keys = Keyframes { rotation: Rotation::Angles(angles), ..Keyframes::identity() };
         // After an eighth of two turns, a quarter turn.
-        let turned = keys.at(1.0).matrix3 * DVec3::Z;
+        let turned = keys.transform(1.0).matrix3 * DVec3::Z;
         assert!((turned - DVec3::X).length() < 1e-15, "{turned}");
     }
 
@@ -268,7 +272,7 @@ mod tests {
             values: vec![DVec3::ZERO, DVec3::X],
             interpolation: super::super::Interpolation::Linear,
         };
-        let keys = Keyframes { translation, repeats: Some(2.0), ..Keyframes::still() };
-        assert_eq!(keys.at(5.0).translation, DVec3::X * 0.5);
+        let keys = Keyframes { translation, period: Some(2.0), ..Keyframes::identity() };
+        assert_eq!(keys.transform(5.0).translation, DVec3::X * 0.5);
     }
 }

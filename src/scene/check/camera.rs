@@ -1,17 +1,17 @@
-//! What makes a camera valid.
+//! The validity checks of a camera.
 
-use super::require::{position, require, unit};
+use super::require::{require, require_position, require_unit_length};
 use crate::error::Result;
 use crate::scene::{Camera, Projection};
 
 /// Checks camera `i`.
 pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
     let what = format!("camera {i} (`{}`)", camera.name);
-    position(|| format!("{what}: position"), camera.position)?;
-    unit(|| format!("{what}: forward"), camera.forward)?;
-    unit(|| format!("{what}: right"), camera.right)?;
-    unit(|| format!("{what}: up"), camera.up)?;
-    let (value, in_range) = match camera.lens {
+    require_position(|| format!("{what}: position"), camera.position)?;
+    require_unit_length(|| format!("{what}: forward"), camera.forward)?;
+    require_unit_length(|| format!("{what}: right"), camera.right)?;
+    require_unit_length(|| format!("{what}: up"), camera.up)?;
+    let (value, in_range) = match camera.projection {
         Projection::FovY(a) | Projection::FovX(a) => {
             (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI)
         }

@@ -1,26 +1,26 @@
-//! What makes a film valid.
+//! The validity checks of the film's settings.
 
-use super::require::{color, require};
+use super::require::{require, require_color};
 use crate::error::Result;
-use crate::scene::{Adaptive, FilmSettings};
+use crate::scene::{AdaptiveSampling, FilmSettings};
 
-/// The largest picture, in pixels: 2²⁸, whose film fills 3 GiB.
+/// The greatest number of pixels of a picture: 2²⁸, whose film takes 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
-/// The most samples a pixel can have.
+/// The greatest number of samples per pixel.
 pub const MAX_SPP: u32 = 1 << 16;
-/// The most surfaces that light can be followed through.
+/// The greatest number of reflections and refractions along a light path.
 pub const MAX_DEPTH: u32 = 1 << 16;
 
-/// Checks a film.
+/// Checks the film's settings.
 pub(super) fn check(film: &FilmSettings) -> Result<()> {
     check_size(film.size)?;
-    let uniform = Adaptive { max: film.spp, threshold: Adaptive::THRESHOLD };
-    let Adaptive { max, threshold } = film.adaptive.unwrap_or(uniform);
+    let uniform = AdaptiveSampling { max: film.spp, threshold: AdaptiveSampling::THRESHOLD };
+    let AdaptiveSampling { max, threshold } = film.adaptive.unwrap_or(uniform);
     check_samples(film.spp, max)?;
     require((0.0..=1.0).contains(&threshold), || {
         format!("the threshold must be from 0 to 1, found {threshold}")
     })?;
-    color(|| "the background".to_owned(), film.background)?;
+    require_color(|| "the background".to_owned(), film.background)?;
     require(film.max_depth <= MAX_DEPTH, || {
         format!("max_depth must be at most {MAX_DEPTH}, found {}", film.max_depth)
     })?;
@@ -44,10 +44,10 @@ pub fn check_size(size: [u32; 2]) -> Result<()> {
     .map_err(|e| e.help(format!("each side at least 1, and at most {MAX_PIXELS} pixels in all")))
 }
 
-/// Checks the fewest and the most samples of a pixel.
+/// Checks the least and the greatest number of samples per pixel.
 ///
 /// # Errors
-/// When there are none or more than [`MAX_SPP`], or the most are fewer than the fewest.
+/// When either is 0 or above [`MAX_SPP`], or `max` is below `min`.
 pub fn check_samples(min: u32, max: u32) -> Result<()> {
     for spp in [min, max] {
         require((1..=MAX_SPP).contains(&spp), || {

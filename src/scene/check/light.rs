@@ -1,23 +1,25 @@
-//! What makes a light valid.
+//! The validity checks of a light.
 
-use super::require::{color, position, require, unit};
+use super::require::{require, require_color, require_position, require_unit_length};
 use crate::error::Result;
 use crate::scene::{Light, LightKind};
 
 /// Checks light `i`.
 pub(super) fn check(i: usize, light: &Light) -> Result<()> {
     let what = format!("light {i}");
-    color(|| format!("{what}: intensity"), light.intensity)?;
+    require_color(|| format!("{what}: intensity"), light.intensity)?;
     match light.kind {
         LightKind::Ambient => Ok(()),
-        LightKind::Directional { direction } => unit(|| format!("{what}: direction"), direction),
+        LightKind::Directional { direction } => {
+            require_unit_length(|| format!("{what}: direction"), direction)
+        }
         LightKind::Point { position: p, range, .. } => {
-            position(|| format!("{what}: position"), p)?;
+            require_position(|| format!("{what}: position"), p)?;
             require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))
         }
         LightKind::Spot { position: p, direction, range, inner_angle, outer_angle, .. } => {
-            position(|| format!("{what}: position"), p)?;
-            unit(|| format!("{what}: direction"), direction)?;
+            require_position(|| format!("{what}: position"), p)?;
+            require_unit_length(|| format!("{what}: direction"), direction)?;
             require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))?;
             let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
             let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;

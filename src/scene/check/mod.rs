@@ -1,4 +1,13 @@
-//! What makes a scene valid, whoever built it.
+//! The validity checks of a scene, which all scenes pass before they are rendered.
+//!
+//! ```
+//! use envers::scene::{Scene, check::MAX_DEPTH};
+//!
+//! let mut scene = Scene::default();
+//! scene.film.max_depth = MAX_DEPTH + 1;
+//! let error = scene.check().unwrap_err();
+//! assert_eq!(error.message(), "max_depth must be at most 65536, found 65537");
+//! ```
 
 mod camera;
 mod film;
@@ -10,22 +19,22 @@ mod texture;
 
 pub use film::{MAX_DEPTH, MAX_PIXELS, MAX_SPP, check_samples, check_size};
 
-use require::require;
+pub(in crate::scene) use require::require;
 
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::scene::{Material, Scene};
 
-/// The greatest absolute coordinate in world space; Embree ignores what lies beyond 1.8e18, and
+/// The greatest absolute coordinate in world space: Embree ignores what lies beyond 1.8e18, and
 /// f32 products of coordinates must stay finite.
 pub const MAX_COORDINATE: f64 = 1e15;
 
 impl Scene {
-    /// Checks what the rest of the program takes for granted: numbers are finite and in range,
-    /// indices point at something.
+    /// Checks that all numbers are finite and in range, and all indices valid, on which everything else
+    /// relies.
     ///
     /// # Errors
-    /// The first thing that is not so, with the object's index.
+    /// The first condition that does not hold, with the object's index.
     pub fn check(&self) -> Result<()> {
         film::check(&self.film)?;
         let textures = self.textures.len();
@@ -36,7 +45,7 @@ impl Scene {
         (0..self.meshes.len()).try_for_each(|i| self.check_mesh(i))?;
         let moved = self.animation.as_ref().map(|a| a.moved_instances(self.instances.len()));
         for i in 0..self.instances.len() {
-            // What moves may be flat at one time; it then is not there.
+            // An animated instance may be flat at one time, and is then left out.
             let may_be_flat = moved.as_ref().is_some_and(|moved| moved[i]);
             self.check_instance(i, may_be_flat)?;
         }
@@ -46,7 +55,7 @@ impl Scene {
         self.animation.iter().try_for_each(|animation| animation.check(self))
     }
 
-    /// Checks the textures; a picture need not have been read where no material in use shows it.
+    /// Checks the textures; an image that no material in use shows need not have been read.
     fn check_textures(&self) -> Result<()> {
         let mut shown = vec![false; self.textures.len()];
         let maps = self.materials_in_use().flat_map(Material::textures);
@@ -55,14 +64,14 @@ impl Scene {
         textures.try_for_each(|(i, (texture, shown))| texture::check(i, texture, shown))
     }
 
-    /// Checks what is cheap to check.
+    /// Checks lights and cameras, which are cheap to check.
     pub(in crate::scene) fn check_lights_and_cameras(&self) -> Result<()> {
         self.lights.iter().enumerate().try_for_each(|(i, light)| light::check(i, light))?;
         self.cameras.iter().enumerate().try_for_each(|(i, camera)| camera::check(i, camera))
     }
 }
 
-/// Checks that a scene within these bounds is not too large.
+/// Checks that no coordinate within these bounds is beyond [`MAX_COORDINATE`].
 pub(in crate::scene) fn check_extent(bounds: &Bounds) -> Result<()> {
     let extent = bounds.max_abs();
     require(extent <= MAX_COORDINATE, || {

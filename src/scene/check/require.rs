@@ -1,38 +1,38 @@
-//! The conditions that several checks share, and how they are reported.
+//! The conditions that several checks share, with their messages.
 
 use glam::{DVec3, Vec3};
 
 use super::MAX_COORDINATE;
 use crate::error::{Error, Result};
 
-/// What does not hold is an error of input.
-pub(super) fn require(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
+/// Requires a condition: where it does not hold, an input error with this message.
+pub(in crate::scene) fn require(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
     if holds { Ok(()) } else { Err(Error::input(message())) }
 }
 
-/// `p` is finite and within [`MAX_COORDINATE`].
-pub(super) fn position(what: impl FnOnce() -> String, p: DVec3) -> Result<()> {
+/// Requires that `p` is finite and within [`MAX_COORDINATE`].
+pub(super) fn require_position(what: impl FnOnce() -> String, p: DVec3) -> Result<()> {
     require(p.is_finite() && p.abs().max_element() <= MAX_COORDINATE, || {
         format!("{}: must be finite and within 1e15 of the origin, found {p}", what())
     })
 }
 
-/// `v` has length 1, to within rounding.
-pub(super) fn unit(what: impl FnOnce() -> String, v: DVec3) -> Result<()> {
+/// Requires that `v` has length 1, to within rounding.
+pub(super) fn require_unit_length(what: impl FnOnce() -> String, v: DVec3) -> Result<()> {
     require((v.length() - 1.0).abs() < 1e-6, || {
         format!("{}: must have length 1, found {v}", what())
     })
 }
 
-/// `c` is finite and nowhere negative.
-pub(super) fn color(what: impl FnOnce() -> String, c: Vec3) -> Result<()> {
+/// Requires that the components of `c` are finite and not negative.
+pub(super) fn require_color(what: impl FnOnce() -> String, c: Vec3) -> Result<()> {
     require(c.is_finite() && c.min_element() >= 0.0, || {
         format!("{}: must be finite and not negative, found {c}", what())
     })
 }
 
-/// `index` is one of `count`.
-pub(super) fn index(
+/// Requires that `index` is less than `count`.
+pub(super) fn require_index(
     what: impl FnOnce() -> String,
     kind: &str,
     index: u32,

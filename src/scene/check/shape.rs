@@ -1,7 +1,9 @@
-//! What makes spheres, planes, meshes and their instances valid.
+//! The validity checks of spheres, planes, meshes and instances.
 
 use super::MAX_COORDINATE;
-use super::require::{color, index, position, require, unit};
+use super::require::{
+    require, require_color, require_index, require_position, require_unit_length,
+};
 use crate::error::Result;
 use crate::scene::{MaterialId, Scene};
 
@@ -9,7 +11,7 @@ impl Scene {
     /// Checks sphere `i`.
     pub(in crate::scene) fn check_sphere(&self, i: usize) -> Result<()> {
         let sphere = &self.spheres[i];
-        position(|| format!("sphere {i}: center"), sphere.center)?;
+        require_position(|| format!("sphere {i}: center"), sphere.center)?;
         require(sphere.radius > 0.0 && sphere.radius <= MAX_COORDINATE, || {
             let found = sphere.radius;
             format!("sphere {i}: radius must be above 0 (and at most 1e15), found {found}")
@@ -21,22 +23,25 @@ impl Scene {
     pub(super) fn check_plane(&self, i: usize) -> Result<()> {
         let plane = &self.planes[i];
         let what = || format!("plane {i}");
-        position(|| format!("plane {i}: point"), plane.point)?;
-        unit(|| format!("plane {i}: normal"), plane.normal)?;
+        require_position(|| format!("plane {i}: point"), plane.point)?;
+        require_unit_length(|| format!("plane {i}: normal"), plane.normal)?;
         self.check_unmasked(what, plane.material)?;
         require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
             format!("plane {i}: texture_size must be above 0, found {}", plane.texture_size)
         })?;
         let Some(checker) = plane.checker else { return Ok(()) };
-        checker.colors.iter().try_for_each(|&c| color(|| format!("plane {i}: checker"), c))?;
+        checker
+            .colors
+            .iter()
+            .try_for_each(|&c| require_color(|| format!("plane {i}: checker"), c))?;
         require(checker.size > 0.0 && checker.size.is_finite(), || {
             format!("plane {i}: the checker's size must be above 0, found {}", checker.size)
         })
     }
 
-    /// Checks that the material of what is no mesh is there and has no mask.
+    /// Checks that the material of a sphere or plane exists and has no mask.
     fn check_unmasked(&self, what: impl Fn() -> String, material: MaterialId) -> Result<()> {
-        index(&what, "material", material.0, self.materials.len())?;
+        require_index(&what, "material", material.0, self.materials.len())?;
         require(!self.materials[material.0 as usize].is_masked(), || {
             format!("{}: only meshes can have a mask", what())
         })
@@ -71,8 +76,8 @@ impl Scene {
     pub(in crate::scene) fn check_instance(&self, i: usize, may_be_flat: bool) -> Result<()> {
         let instance = &self.instances[i];
         let what = || format!("instance {i}");
-        index(what, "mesh", instance.mesh.0, self.meshes.len())?;
-        index(what, "material", instance.material.0, self.materials.len())?;
+        require_index(what, "mesh", instance.mesh.0, self.meshes.len())?;
+        require_index(what, "material", instance.material.0, self.materials.len())?;
         let is_sound = instance.transform.is_finite() && (may_be_flat || !instance.is_flat());
         require(is_sound, || {
             format!("{}: its transform cannot be inverted (a scale of 0?)", what())

@@ -1,4 +1,4 @@
-//! What makes a texture valid.
+//! The validity checks of a texture.
 
 use super::require::require;
 use crate::error::Result;

@@ -178,7 +178,7 @@ fn amounts() -> Vec<Case> {
             let positions = m.floats("VEC3", &[0.5; 9]);
             m.primitive()["attributes"]["POSITION"] = positions.into();
         }),
-        changed("100000 textures without a picture", Warning("picture"), |m| {
+        changed("100000 textures without an image", Warning("image"), |m| {
             let uvs = m.floats("VEC2", &[0.0; 6]);
             let texture = |i: usize| json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}});
             m.json["materials"] = (0..100_000).map(texture).collect();

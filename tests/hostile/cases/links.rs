@@ -69,7 +69,12 @@ pub fn cases() -> Vec<Case> {
             zero,
         ),
         picture("picture that links to itself", "link", Warning("images[0]"), itself),
-        picture("picture of a tebibyte of nothing", "link", Warning("`--limit bytes="), sparse),
+        picture(
+            "picture of a tebibyte of nothing",
+            "link",
+            Warning("raise the limit `bytes` to "),
+            sparse,
+        ),
         picture("picture that is the file itself", "hostile.gltf", Warning("images[0]"), |_| {}),
         case(
             "20000 pictures of one large bomb",

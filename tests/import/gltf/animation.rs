@@ -1,8 +1,7 @@
 //! A file's own animation: rigid nodes, and what is said where its data is damaged.
 
 use super::*;
-use envers::Loaded;
-use envers::scene::LightKind;
+use envers::{LightKind, Loaded};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -40,7 +39,7 @@ fn channel(
 
 /// Returns the place, at a time, of a point of the first instance's mesh.
 fn at(scene: &Scene, time: f64, point: [f32; 3]) -> DVec3 {
-    scene.at(time).unwrap().instances[0].to_world(point)
+    scene.at_time(time).unwrap().instances[0].to_world(point)
 }
 
 fn near(a: DVec3, b: [f64; 3]) -> bool {
@@ -104,7 +103,7 @@ fn a_light_and_a_camera_move_with_their_node() {
         json!([{"type": "perspective", "perspective": {"yfov": 0.8, "znear": 0.1}}]);
     model.json["nodes"][0]["camera"] = 0.into();
     model.json["nodes"][0]["extensions"] = json!({"KHR_lights_punctual": {"light": 0}});
-    let scene = model.load().unwrap().scene.at(0.5).unwrap();
+    let scene = model.load().unwrap().scene.at_time(0.5).unwrap();
     assert!(near(scene.cameras[0].position, [0., 2., 0.]));
     let LightKind::Point { position, .. } = scene.lights[0].kind else { panic!("a point light") };
     assert!(near(position, [0., 2., 0.]));
@@ -138,7 +137,7 @@ fn what_is_flat_at_one_time_is_not_there_then() {
     let mut model = animated("scale", "VEC3", &[0., 1.], &scale, "LINEAR");
     model.json["nodes"][0]["scale"] = json!([0, 0, 0]);
     let scene = model.load().unwrap().scene;
-    let there = |time| scene.at(time).unwrap().instances.len();
+    let there = |time| scene.at_time(time).unwrap().instances.len();
     assert_eq!([0.0, 0.5].map(there), [0, 1]);
 }
 

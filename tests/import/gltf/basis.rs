@@ -91,7 +91,7 @@ fn picture_that_is_cut_short_is_a_placeholder() {
 fn picture_of_many_layers_is_a_placeholder() {
     let mut layers = ktx([8, 4], COLOR);
     layers[32] = 7;
-    assert_placeholder(&layers, "more or less than one flat picture");
+    assert_placeholder(&layers, "more or less than one flat image");
 }
 
 #[test]
@@ -106,5 +106,5 @@ fn picture_that_is_not_packed_by_basis_is_a_placeholder() {
     let mut plain = ktx([8, 4], COLOR);
     // Eight bits of red, green, blue and alpha.
     plain[12] = 37;
-    assert_placeholder(&plain, "no picture that Basis Universal has packed");
+    assert_placeholder(&plain, "no image that Basis Universal has compressed");
 }

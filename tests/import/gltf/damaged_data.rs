@@ -187,7 +187,7 @@ fn texture_and_material_references_that_lead_nowhere() {
     model.json["images"] = json!([{"bufferView": 8}]);
     model.json["textures"][0] = json!({"source": 0, "sampler": 2});
     assert_eq!(json_place(model.load()).0, "textures[0].sampler");
-    // A picture that cannot be had is a warning, whatever the reason.
+    // An image that cannot be loaded is a warning, whatever the reason.
     model.json["textures"][0] = json!({"source": 0});
     assert_warns(&model.load().unwrap(), "a magenta checker");
 }

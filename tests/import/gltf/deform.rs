@@ -16,7 +16,7 @@ fn morphing() -> Model {
 
 /// The first corner of the only mesh, at a time.
 fn corner(scene: &Scene, time: f64) -> [f32; 3] {
-    scene.at(time).unwrap().meshes[0].positions[0]
+    scene.at_time(time).unwrap().meshes[0].positions[0]
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn a_mesh_that_keeps_its_shape_stays_the_same_one() {
     let mut model = morphing();
     animate_weights(&mut model, &[0., 0., 1., 0.], "STEP");
     let scene = model.load().unwrap().scene;
-    let mut poses = envers::scene::animation::Poses::new(&scene);
+    let mut poses = envers::scene::animation::PosedScene::new(&scene);
     let first = poses.pose(0.25).unwrap().meshes[0].clone();
     let second = poses.pose(0.5).unwrap().meshes[0].clone();
     assert!(std::sync::Arc::ptr_eq(&first, &second));
@@ -197,7 +197,7 @@ fn a_skin_moves_with_its_joints() {
     let mut model = skinned([[0.; 3]; 3]);
     animate_joint(&mut model);
     let scene = model.load().unwrap().scene;
-    let moved = standing(&scene.at(0.5).unwrap());
+    let moved = standing(&scene.at_time(0.5).unwrap());
     assert_eq!(moved, [[0., 0., 0.], [1., 0., 4.], [0., 1., 0.]]);
 }
 
@@ -220,9 +220,9 @@ fn a_skin_moves_where_a_scene_places_it() {
         translate = [0, 0, 3]
     "#;
     let scene = folder.load("s.toml", scene).unwrap().scene;
-    let movers = scene.animation.as_ref().unwrap().movers.iter();
+    let movers = scene.animation.as_ref().unwrap().objects.iter();
     assert_eq!(movers.filter(|m| matches!(m, Animated::Mesh { .. })).count(), 1);
-    let posed = scene.at(0.5).unwrap();
+    let posed = scene.at_time(0.5).unwrap();
     assert_eq!(standing(&posed)[1], [12., 0., 8.]);
     let second = &posed.instances[1];
     let corner = posed.meshes[second.mesh.0 as usize].positions[1];

@@ -1,8 +1,7 @@
 //! KHR_draco_mesh_compression.
 
 use draco_core::{DataType, GeometryAttributeType as Kind};
-use envers::Loaded;
-use envers::{DropReason, Limit, Limits, LoadOptions};
+use envers::{DropReason, Limit, Limits, LoadOptions, Loaded};
 
 use super::*;
 use envers_testing::packed::{DRACO, bytes, draco, packed};
@@ -109,7 +108,7 @@ fn damaged() -> Model {
 fn damaged_data_are_an_error_at_their_place() {
     let (place, text) = json_place(damaged().load());
     assert_eq!(place, format!("meshes[0].primitives[0].extensions.{DRACO}"));
-    assert!(text.contains("cannot be unpacked"), "{text}");
+    assert!(text.contains("cannot be decompressed"), "{text}");
 }
 
 #[test]
@@ -121,7 +120,7 @@ fn where_data_are_damaged_those_that_are_not_packed_are_read() {
     model.primitive().as_object_mut().unwrap().remove("indices");
     let loaded = model.load().unwrap();
     let scene = &loaded.scene;
-    assert_warns(&loaded, "what is not packed is read instead");
+    assert_warns(&loaded, "what is not compressed is read instead");
     assert_eq!(scene.triangle_count(), 1);
 }
 
@@ -137,7 +136,7 @@ fn an_attribute_that_is_not_there_is_an_error_that_names_it() {
 fn more_triangles_than_the_limit_are_an_error_that_names_it() {
     let folder = Folder::new();
     let path = folder.write("model.glb", square().glb());
-    let limits = Limits::default().with(Limit::Triangles, 1);
+    let limits = Limits::default().with_limit(Limit::Triangles, 1);
     let options = LoadOptions::default().limits(limits);
     let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("larger than the limits allow"), "{error}");
@@ -150,7 +149,7 @@ fn each_attribute_that_is_unpacked_counts_towards_the_elements() {
     named.extend((0..200).map(|i| (format!("_{i}"), 0.into())));
     let folder = Folder::new();
     let path = folder.write("model.glb", model.glb());
-    let limits = Limits::default().with(Limit::Elements, 100);
+    let limits = Limits::default().with_limit(Limit::Elements, 100);
     let options = LoadOptions::default().limits(limits);
     let error = options.load(&path).unwrap_err().to_string();
     assert!(error.contains("elements"), "{error}");

@@ -1,9 +1,8 @@
 //! Lights, cameras, and what stands still.
 
-use envers::Loaded;
+use envers::{LightKind, Loaded, Projection};
 use std::f32::consts::PI;
 
-use envers::scene::{LightKind, Projection};
 use glam::DVec3;
 
 use super::*;
@@ -78,7 +77,7 @@ fn perspective_camera_looks_along_its_nodes_minus_z() {
         json!({"type": "perspective", "name": "eye", "perspective": {"yfov": 0.5, "znear": 1}}),
     );
     let camera = &scene.cameras[0];
-    assert_eq!((camera.name.as_str(), camera.lens), ("eye", Projection::FovY(0.5)));
+    assert_eq!((camera.name.as_str(), camera.projection), ("eye", Projection::FovY(0.5)));
     assert_eq!((camera.position, camera.forward), (DVec3::Z * 9.0, DVec3::NEG_Z));
     assert_eq!((camera.right, camera.up), (DVec3::X, DVec3::Y));
 }
@@ -87,7 +86,7 @@ fn perspective_camera_looks_along_its_nodes_minus_z() {
 fn orthographic_camera_sees_twice_its_ymag() {
     let lens = json!({"xmag": 1, "ymag": 1.5, "znear": 0.1, "zfar": 10});
     let scene = with_camera(json!({"type": "orthographic", "orthographic": lens}));
-    assert_eq!(scene.cameras[0].lens, Projection::OrthoHeight(3.0));
+    assert_eq!(scene.cameras[0].projection, Projection::OrthoHeight(3.0));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::*;
 use envers::Loaded;
-use envers::scene::{ShadingParams, Transfer};
-use envers::surface::{self, TextureContext};
+use envers::internals::{ShadingParams, TextureContext, surface};
+use envers::scene::Transfer;
 
 #[test]
 fn primitive_without_material_is_a_neutral_grey() {

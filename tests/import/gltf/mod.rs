@@ -18,7 +18,7 @@ mod textures;
 mod validation;
 mod variants;
 
-use envers::scene::{Material, Scene};
+use envers::{Material, Scene};
 use envers_testing::{Folder, Model, data_uri, png};
 use glam::Vec3;
 use serde_json::json;

@@ -1,9 +1,7 @@
 //! The tree of nodes.
 
-use envers::Loaded;
+use envers::{Limit, Limits, LoadOptions, Loaded};
 use glam::DVec3;
-
-use envers::{Limit, Limits, LoadOptions};
 
 use super::*;
 
@@ -65,7 +63,7 @@ fn chain_of_a_hundred_thousand_nodes() {
     model.json["nodes"] = nodes.into();
     let folder = Folder::new();
     model.load_in(&folder).unwrap_err();
-    let limits = Limits::default().with(Limit::Depth, 100_000);
+    let limits = Limits::default().with_limit(Limit::Depth, 100_000);
     let options = LoadOptions::default().limits(limits);
     assert_eq!(options.load(&folder.path("model.gltf")).unwrap().scene.triangle_count(), 1);
 }

@@ -1,10 +1,8 @@
 //! Metals that mirror, transmission, volumes, alpha.
 
 use super::*;
-use envers::Loaded;
-use envers::geometry::PrimitiveId;
-use envers::scene::ShadingParams;
-use envers::surface::TextureContext;
+use envers::internals::{ShadingParams, TextureContext};
+use envers::{Loaded, PrimitiveId};
 use serde_json::Value;
 
 /// Returns the material of a file that loads without a warning.
@@ -229,7 +227,7 @@ fn transmission_and_volume_can_be_required() {
 
 /// Returns the shading parameters of the material.
 fn finish(scene: &Scene) -> ShadingParams {
-    envers::surface::shading_params(scene, material(scene), &TextureContext::default())
+    envers::internals::shading_params(scene, material(scene), &TextureContext::default())
 }
 
 #[test]

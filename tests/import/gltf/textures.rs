@@ -1,6 +1,7 @@
 //! Pictures, samplers and texture coordinates.
 
-use envers::scene::{Filter, Texels, Texture, TextureId, Wrap};
+use envers::scene::{Filter, Texels, Wrap};
+use envers::{Texture, TextureId};
 
 use super::*;
 

@@ -82,7 +82,7 @@ fn view_that_ends_beyond_its_buffer() {
     model.last_view()["byteLength"] = 800.into();
     assert_warns(
         &model.load().unwrap(),
-        "stretches of bytes do not fit in what holds them, at bufferViews[1]",
+        "ranges of bytes do not fit in what holds them, at bufferViews[1]",
     );
 }
 

@@ -1,6 +1,6 @@
 //! The mistakes in scene files, and the place at which the message points: the mark `¦`.
 
-use envers::error::{Error, ErrorKind};
+use envers::{Error, ErrorKind};
 
 use super::{CAMERA, File, refused, refused_seen};
 
@@ -82,7 +82,7 @@ fn a_key_in_the_wrong_table_is_sent_home() {
 #[test]
 fn an_alpha_mode_without_a_picture_is_refused() {
     let error = refused_seen("[[material]]\nname = \"m\"\nalpha_mode = ¦\"blend\"\n");
-    let message = "`alpha_mode` is about the alpha of a picture, and there is none";
+    let message = "`alpha_mode` is about the alpha of an image, and there is none";
     assert_says(&error, message, "add a `diffuse_map`");
 }
 

@@ -1,9 +1,9 @@
 //! The schema, the documentation and the parser say the same.
 
 use envers::Loaded;
+use envers::internals::schema;
 use std::collections::BTreeMap;
 
-use envers::load::schema;
 use serde_json::Value;
 
 use super::{docs_folder, scene};

@@ -1,8 +1,9 @@
 //! The meaning of scene files.
 
-use envers::scene::{
-    Adaptive, AlphaMode, Camera, Falloff, FilmSettings, Filter, Light, LightKind, Material,
-    Projection, SamplePosition, Shadow, Sphere, Tone, Transfer,
+use envers::scene::{Filter, SamplePosition, Transfer};
+use envers::{
+    AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Light, LightKind, Material,
+    Projection, Shadow, Sphere, Tone,
 };
 use glam::{DVec3, Vec3};
 
@@ -44,9 +45,9 @@ fn every_key_of_the_film_is_read() {
 #[test]
 fn adaptive_samples_are_read_with_their_threshold() {
     let film = seen("film.adaptive = [4, 36]\nfilm.threshold = 0.25\n").film;
-    assert_eq!((film.spp, film.adaptive), (4, Some(Adaptive { max: 36, threshold: 0.25 })));
+    assert_eq!((film.spp, film.adaptive), (4, Some(AdaptiveSampling { max: 36, threshold: 0.25 })));
     let film = seen("film.adaptive = [1, 25]\n").film;
-    assert_eq!(film.adaptive.map(|a| a.threshold), Some(Adaptive::THRESHOLD));
+    assert_eq!(film.adaptive.map(|a| a.threshold), Some(AdaptiveSampling::THRESHOLD));
 }
 
 #[test]
@@ -95,12 +96,12 @@ fn the_tutorials_camera_is_read() {
 
 #[test]
 fn a_camera_sees_45_degrees_from_bottom_to_top_by_default() {
-    assert_eq!(seen("").cameras[0].lens, Projection::FovY(45f64.to_radians()));
+    assert_eq!(seen("").cameras[0].projection, Projection::FovY(45f64.to_radians()));
 }
 
 #[test]
 fn each_lens_is_read() {
-    let lens = |key: &str| seen(&format!("camera.{key}")).cameras[0].lens;
+    let lens = |key: &str| seen(&format!("camera.{key}")).cameras[0].projection;
     assert_eq!(lens("fov_y = 30"), Projection::FovY(30f64.to_radians()));
     assert_eq!(lens("fov_x = 30"), Projection::FovX(30f64.to_radians()));
     assert_eq!(lens("focal_px = 30"), Projection::FocalPx { focal: 30.0, width: 1280 });
@@ -157,7 +158,7 @@ fn a_picture_that_nothing_shows_is_named_and_not_read() {
     let mut scene = file.load().unwrap().scene;
     let image = scene.textures[0].image.clone();
     assert!(!image.is_read() && image.name.ends_with("dot.png"), "{image:?}");
-    let ball = envers::scene::Sphere::new(glam::DVec3::ZERO, 1.0, envers::scene::MaterialId(0));
+    let ball = envers::Sphere::new(glam::DVec3::ZERO, 1.0, envers::MaterialId(0));
     scene.spheres.push(ball);
     let error = scene.check().unwrap_err();
     assert!(error.message().contains("the picture was not read"), "{error}");
@@ -195,7 +196,7 @@ fn a_normal_map_is_linear_and_other_maps_are_srgb() {
     let scene =
         with_dot("normal_map = \"dot.png\"\nspecular_map = \"dot.png\"\n").load().unwrap().scene;
     let material = &scene.materials[0];
-    let transfer = |id: envers::scene::TextureId| scene.textures[id.0 as usize].transfer;
+    let transfer = |id: envers::TextureId| scene.textures[id.0 as usize].transfer;
     assert_eq!(transfer(material.normal_map.unwrap().texture), Transfer::None);
     assert_eq!(transfer(material.specular_map.unwrap()), Transfer::Srgb);
     // One file, decoded once.

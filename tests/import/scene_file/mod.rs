@@ -7,12 +7,8 @@ mod models;
 mod motion;
 mod random;
 
-use envers::Loaded;
+use envers::{Error, Loaded, Place, Scene, load};
 use std::path::{Path, PathBuf};
-
-use envers::error::{Error, Place};
-use envers::load;
-use envers::scene::Scene;
 
 /// A camera in two lines, for scenes that are about something else.
 const CAMERA: &str = "camera.position = [0, 0, 5]\ncamera.look_at = [0, 0, 0]\n";

@@ -1,7 +1,6 @@
 //! Models in scene files.
 
-use envers::Loaded;
-use envers::scene::{LightKind, Scene};
+use envers::{LightKind, Loaded, Scene};
 use glam::DVec3;
 
 use super::{CAMERA, File};

@@ -1,8 +1,7 @@
 //! `[animation]`: what it makes of a scene, and what it refuses.
 
 use super::{CAMERA, File, refused, scene, seen};
-use envers::error::Error;
-use envers::scene::{LightKind, Projection, Scene};
+use envers::{Error, LightKind, Projection, Scene};
 use glam::{DVec3, Vec3};
 
 /// Two seconds in four frames a second.
@@ -19,7 +18,7 @@ fn track(object: &str, keys: &str) -> String {
 
 /// A scene with the ball, as it is at a time.
 fn moved(text: &str, time: f64) -> Scene {
-    seen(&format!("{FRAMES}{BALL}{text}")).at(time).unwrap()
+    seen(&format!("{FRAMES}{BALL}{text}")).at_time(time).unwrap()
 }
 
 fn near(a: DVec3, b: [f64; 3]) -> bool {
@@ -38,7 +37,7 @@ fn help(error: &Error) -> &str {
 #[test]
 fn frames_are_at_their_times_from_zero_on() {
     let animation = seen(FRAMES).animation.unwrap();
-    assert_eq!((animation.frames, animation.fps, animation.seconds()), (8, 4.0, 2.0));
+    assert_eq!((animation.frames, animation.fps, animation.duration()), (8, 4.0, 2.0));
     assert_eq!([1, 2, 8].map(|frame| animation.time(frame)), [0.0, 0.25, 1.75]);
 }
 
@@ -94,7 +93,7 @@ fn a_camera_keeps_looking_at_a_point_as_it_goes_round() {
         "[camera]\nname = \"eye\"\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n{FRAMES}\
         [[animation.orbit]]\nobject = \"eye\"\naround = [0, 0, 0]\nperiod = 4\n"
     );
-    let camera = &scene(&text).at(1.0).unwrap().cameras[0];
+    let camera = &scene(&text).at_time(1.0).unwrap().cameras[0];
     assert!(near(camera.position, [5., 0., 0.]) && near(camera.forward, [-1., 0., 0.]));
 }
 
@@ -102,7 +101,7 @@ fn a_camera_keeps_looking_at_a_point_as_it_goes_round() {
 fn a_camera_keeps_looking_at_an_object_that_moves() {
     let text =
         format!("camera.position = [0, 0, 5]\ncamera.look_at = \"ball\"\n{FRAMES}{BALL}{ORBIT}");
-    let camera = &scene(&text).at(1.0).unwrap().cameras[0];
+    let camera = &scene(&text).at_time(1.0).unwrap().cameras[0];
     assert!(near(camera.forward, [0., 0., -1.]));
     let toward = DVec3::new(2.0, 0.0, -5.0).normalize();
     assert!(near(scene(&text).cameras[0].forward, toward.to_array()));
@@ -114,7 +113,7 @@ fn a_camera_with_a_direction_keeps_it_unless_it_turns() {
         "[camera]\nname = \"eye\"\nposition = [0, 0, 5]\ndirection = [0, 0, -1]\n{FRAMES}\
         [[animation.orbit]]\nobject = \"eye\"\naround = [0, 0, 0]\nperiod = 4\n"
     );
-    let forward = |text: &str| scene(text).at(1.0).unwrap().cameras[0].forward;
+    let forward = |text: &str| scene(text).at_time(1.0).unwrap().cameras[0].forward;
     assert!(near(forward(&text), [0., 0., -1.]));
     assert!(near(forward(&format!("{text}turn = true\n")), [-1., 0., 0.]));
 }
@@ -158,9 +157,9 @@ fn a_track_changes_where_a_directional_light_travels() {
 fn tracks_change_a_cameras_view_and_lens() {
     let camera = "[camera]\nname = \"eye\"\nposition = [0, 0, 5]\nlook_at = [0, 0, 0]\n";
     let keys = "times = [0, 1]\nlook_at = [[0, 0, 0], [10, 0, 5]]\nfov_x = [20, 60]";
-    let posed = scene(&format!("{camera}{FRAMES}{}", track("eye", keys))).at(1.0).unwrap();
+    let posed = scene(&format!("{camera}{FRAMES}{}", track("eye", keys))).at_time(1.0).unwrap();
     assert!(near(posed.cameras[0].forward, [1., 0., 0.]));
-    assert_eq!(posed.cameras[0].lens, Projection::FovX(60f64.to_radians()));
+    assert_eq!(posed.cameras[0].projection, Projection::FovX(60f64.to_radians()));
 }
 
 /// A file with a model in it, one triangle from the origin along x and y.
@@ -174,7 +173,7 @@ fn with_model(text: &str) -> Scene {
 fn tracks_turn_and_scale_a_model_about_its_own_origin() {
     let model = "[[model]]\nname = \"m\"\nfile = \"m.obj\"\ntranslate = [5, 0, 0]\n";
     let keys = "times = [0, 2]\nrotate = [[0, 0, 0], [0, 0, 720]]\nscale = [2, 2]";
-    let scene = with_model(&format!("{model}{}", track("m", keys))).at(0.25).unwrap();
+    let scene = with_model(&format!("{model}{}", track("m", keys))).at_time(0.25).unwrap();
     // An eighth of two turns.
     assert!(near(scene.instances[0].to_world([1., 0., 0.]), [5., 2., 0.]));
 }
@@ -183,7 +182,8 @@ fn tracks_turn_and_scale_a_model_about_its_own_origin() {
 fn a_model_that_turns_with_its_orbit_faces_the_centre() {
     let model = "[[model]]\nname = \"m\"\nfile = \"m.obj\"\ntranslate = [5, 0, 0]\n";
     let orbit = "[[animation.orbit]]\nobject = \"m\"\naround = [0, 0, 0]\nperiod = 4\n";
-    let tip = |text: &str| with_model(text).at(1.0).unwrap().instances[0].to_world([1., 0., 0.]);
+    let tip =
+        |text: &str| with_model(text).at_time(1.0).unwrap().instances[0].to_world([1., 0., 0.]);
     assert!(near(tip(&format!("{model}{orbit}")), [1., 0., -5.]));
     assert!(near(tip(&format!("{model}{orbit}turn = true\n")), [0., 0., -6.]));
 }
@@ -193,7 +193,7 @@ fn a_camera_that_comes_to_where_it_looks_is_named_with_the_time() {
     let camera = "[camera]\nname = \"eye\"\nposition = [0, 0, 5]\nlook_at = \"ball\"\n";
     let keys = "times = [0, 1]\nposition = [[0, 0, 5], [2, 0, 0]]\n";
     let scene = scene(&format!("{camera}{FRAMES}{BALL}{}", track("eye", keys)));
-    let error = scene.at(1.0).unwrap_err();
+    let error = scene.at_time(1.0).unwrap_err();
     let expected = "at 1.000 s, camera `eye`: the camera looks at the point where it stands";
     assert_eq!(error.message(), expected);
 }

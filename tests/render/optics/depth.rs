@@ -1,8 +1,7 @@
 //! The depth to which secondary rays are traced, and its cost.
 
-use envers::integrator::{RayCounts, Tiling};
-use envers::scene::{Material, Plane, Scene};
-use envers::{RenderOptions, Renderer};
+use envers::internals::{RayCounts, Tiling};
+use envers::{Material, Plane, RenderOptions, Renderer, Scene};
 use glam::{DVec3, Vec3};
 
 use super::one_pixel::*;
@@ -65,7 +64,9 @@ fn mirrors_alone_refract_nothing() {
 
 #[test]
 fn ten_thousand_lights_add_up() {
-    use envers::scene::{Light, LightKind, Shadow};
+    use envers::Light;
+    use envers::LightKind;
+    use envers::Shadow;
     let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
     sphere(&mut scene, DVec3::ZERO, 1.0, Material { diffuse: Vec3::ONE, ..black() });
     let light = Light {
@@ -87,14 +88,14 @@ fn the_picture_does_not_depend_on_tiles_where_waves_are_cut() {
     scene.film.size = [24, 16];
     scene.film.max_depth = 12;
     scene.film.background = Vec3::new(0.1, 0.5, 0.9);
-    scene.cameras[0].lens = envers::scene::Projection::FovY(0.4);
+    scene.cameras[0].projection = envers::Projection::FovY(0.4);
     for (i, radius) in [2.0, 1.6, 1.2, 0.8].into_iter().enumerate() {
         let ior = if i % 2 == 0 { 1.5 } else { 1.1 };
         sphere(&mut scene, DVec3::ZERO, radius, glass(ior));
     }
     let picture = |rows, columns| {
         let tiling = Tiling { rows, columns, ..Tiling::default() };
-        let precision = envers::intersect::Precision::Certified;
+        let precision = envers::Precision::Certified;
         let options = RenderOptions { tiling, precision, ..RenderOptions::default() };
         let rendering = Renderer::new(&scene).options(options.clone()).render().unwrap();
         (rendering.film.pixels, rendering.statistics.counts)

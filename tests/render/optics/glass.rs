@@ -1,6 +1,6 @@
 //! Glass: refraction, Fresnel's shares, absorption.
 
-use envers::scene::{Instance, Material, Mesh, Plane};
+use envers::{Instance, Material, Mesh, Plane};
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::one_pixel::*;

@@ -1,11 +1,9 @@
 //! Surfaces without any effect on light leave no trace.
 
-use envers::intersect::{Backend, Precision};
-use envers::scene::{
-    Camera, Checker, Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Projection, Scene,
-    Shadow, Sphere,
+use envers::{
+    Backend, Camera, Checker, Falloff, Instance, Light, LightKind, Material, Mesh, Plane,
+    Precision, Projection, RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
-use envers::{RenderOptions, Renderer};
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::one_pixel::*;

@@ -1,6 +1,6 @@
 //! Mirrors.
 
-use envers::scene::{Material, Plane};
+use envers::{Material, Plane};
 use glam::{DVec3, Vec3};
 
 use super::one_pixel::*;
@@ -24,7 +24,9 @@ fn a_coloured_mirror_tints_what_it_shows() {
 
 #[test]
 fn what_a_mirror_leaves_is_diffuse() {
-    use envers::scene::{Light, LightKind, Shadow};
+    use envers::Light;
+    use envers::LightKind;
+    use envers::Shadow;
     let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
     scene.film.background = Vec3::splat(0.5);
     let half = Material { diffuse: Vec3::ONE, ..mirror(0.25) };

@@ -1,7 +1,6 @@
 //! Bodies within and across others.
 
-use envers::Renderer;
-use envers::scene::{Material, Plane};
+use envers::{Material, Plane, Renderer};
 use glam::{DVec3, Vec3};
 
 use super::one_pixel::*;
@@ -14,7 +13,7 @@ fn through(a: f64, b: f64) -> f64 {
 }
 
 /// Water below y = 0, with a white bed 5 deep, seen from straight above.
-fn pond() -> envers::scene::Scene {
+fn pond() -> envers::Scene {
     let mut scene = seen_from(DVec3::Y * 5.0, DVec3::ZERO);
     // No way to and fro adds to the one straight down.
     scene.film.max_depth = 3;
@@ -25,7 +24,7 @@ fn pond() -> envers::scene::Scene {
     scene
 }
 
-fn straight_down(scene: &envers::scene::Scene) -> f64 {
+fn straight_down(scene: &envers::Scene) -> f64 {
     f64::from(radiance(scene)[0])
 }
 
@@ -103,7 +102,8 @@ fn an_eye_in_a_medium_without_end_sees_nothing_through_it() {
 
 #[test]
 fn parallel_rays_that_begin_on_both_sides_of_a_surface_each_begin_in_their_own_medium() {
-    use envers::scene::{Camera, Projection};
+    use envers::Camera;
+    use envers::Projection;
     let mut scene = seen_from(DVec3::ZERO, DVec3::NEG_Z);
     scene.cameras[0] =
         Camera::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, Projection::OrthoHeight(2.0)).unwrap();

@@ -1,9 +1,10 @@
 //! Scenes of one pixel, and what every backend makes of them.
 
-use envers::integrator::Counts;
-use envers::intersect::{Backend, Precision};
-use envers::scene::{Camera, Material, MaterialId, Projection, Scene, Sphere};
-use envers::{RenderOptions, Renderer};
+use envers::internals::Counts;
+use envers::{
+    Backend, Camera, Material, MaterialId, Precision, Projection, RenderOptions, Renderer, Scene,
+    Sphere,
+};
 use glam::{DVec3, Vec3};
 
 /// A scene that is seen through one pixel, whose one ray goes from `eye` to `target`.

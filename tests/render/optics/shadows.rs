@@ -1,6 +1,6 @@
 //! Shadows of glass.
 
-use envers::scene::{Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Scene, Shadow};
+use envers::{Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Scene, Shadow};
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::one_pixel::*;

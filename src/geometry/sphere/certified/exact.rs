@@ -1,4 +1,4 @@
-//! Ray and sphere in integers.
+//! The roots of a ray and a sphere in integer arithmetic: the last stage, which decides all cases.
 //!
 //! On the scales of the lengths and of the direction the roots are (B ∓ √Δ)/A with integers
 //! A = |d|², B = −f·d, C = |f|² − r² and Δ = B² − AC.
@@ -24,9 +24,9 @@ pub(super) fn first_root(
         return None;
     }
     let lengths = origin.to_array().into_iter().chain(center.to_array()).chain([radius]);
-    let (place, way) = (Scale::of(lengths), Scale::of(direction.to_array()));
-    let f = minus::<BigInt>(&place.vector(origin), &place.vector(center));
-    let (d, r) = (way.vector::<BigInt>(direction), place.integer::<BigInt>(radius));
+    let (lengths, directions) = (Scale::common(lengths), Scale::common(direction.to_array()));
+    let f = minus::<BigInt>(&lengths.vector(origin), &lengths.vector(center));
+    let (d, r) = (directions.vector::<BigInt>(direction), lengths.integer::<BigInt>(radius));
 
     let a = dot(&d, &d);
     let b = -dot(&f, &d);
@@ -41,10 +41,11 @@ pub(super) fn first_root(
         (Less, _) | (Equal, Greater) => true,
         _ => return None,
     };
-    Some(rounded(&a, b, discriminant, far, i64::from(place.exponent) - i64::from(way.exponent)))
+    let exponent = i64::from(lengths.exponent) - i64::from(directions.exponent);
+    Some(rounded(&a, b, discriminant, far, exponent))
 }
 
-/// The positive number (b ± √discriminant)/a, + for the far root, times 2^`exponent`.
+/// Rounds the positive number (b ± √discriminant)/a, + for the far root, times 2^`exponent`.
 fn rounded(a: &BigInt, b: BigInt, discriminant: BigInt, far: bool, exponent: i64) -> Rounded {
     // With S = 2ᵏ√Δ and s = ⌊S⌋: ⌊(X + S)/a⌋ = ⌊(X + s)/a⌋ for integers X and a > 0, and
     // ⌊(X − S)/a⌋ = ⌊(X − ⌈S⌉)/a⌋. So the floor is exact however much the difference cancels; k

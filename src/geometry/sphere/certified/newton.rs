@@ -1,4 +1,4 @@
-//! One Newton step with a double-double residual: correctly rounded roots, without branches.
+//! The Newton step with a double-double residual, which rounds roots correctly without branches.
 //!
 //! Let g(t) = |f + t·d|² − r² and G = g(t₀), 2P = g'(t₀) = 2(f + t₀d)·d for a guess t₀. The roots
 //! are t₀ + δ with |d|²δ² + 2Pδ + G = 0. Where x = |d|²|G|/P² is at most 1/4 there are two of them,
@@ -23,45 +23,53 @@ use crate::geometry::double_double::{DoubleDouble, U, difference, in_range};
 use crate::geometry::sphere::certified::QuadraticBound;
 use crate::geometry::sphere::inverse_length_squared;
 
-/// A root as [`round`] found it.
+/// The root that [`round`] finds, and whether it is proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded {
+pub struct RoundedRoot {
     /// The distance, in units of |direction|.
     pub t: f64,
-    /// Whether `t` is proven: the ray meets the sphere there, first, and the exact distance rounds
-    /// to `t`. Otherwise `t` means nothing.
-    pub certain: bool,
+    /// True if `t` is proven: it is the first root of the ray, and the exact root rounds to `t`.
+    /// Otherwise `t` means nothing.
+    pub is_certain: bool,
 }
 
-/// The first root above 0, or with `inward` the far root, correctly rounded where `certain`.
+/// The first root above 0, or with `inward` the far root; correctly rounded where `is_certain`.
 ///
-/// Free of branches, for loops over the lanes of a packet. Where it is not certain,
-/// [`first_root`](super::first_root) knows; where it is, both say the same.
+/// It has no branches, for loops over the lanes of a packet. Where it is certain it agrees with
+/// [`first_root`](super::first_root), which decides the other cases too.
 #[inline(always)]
-pub fn round(center: DVec3, radius: f64, origin: DVec3, direction: DVec3, inward: bool) -> Rounded {
+pub fn round(
+    center: DVec3,
+    radius: f64,
+    origin: DVec3,
+    direction: DVec3,
+    inward: bool,
+) -> RoundedRoot {
     let inverse = inverse_length_squared(direction);
-    let line = QuadraticBound::new(center, radius, origin, direction, inverse);
-    step(&line, line.guess(inward), inward)
+    let quadratic = QuadraticBound::new(center, radius, origin, direction, inverse);
+    newton_step(&quadratic, quadratic.initial_guess(inward), inward)
 }
 
-/// Up to three steps, for what is nearly a tangent.
-pub(super) fn refined(line: &QuadraticBound, inward: bool) -> Rounded {
-    let mut rounded = step(line, line.guess(inward), inward);
+/// Takes up to three Newton steps, which lines that are nearly tangents need.
+pub(super) fn round_with_retries(quadratic: &QuadraticBound, inward: bool) -> RoundedRoot {
+    let mut rounded = newton_step(quadratic, quadratic.initial_guess(inward), inward);
     for _ in 0..2 {
-        if rounded.certain || !rounded.t.is_finite() {
+        if rounded.is_certain || !rounded.t.is_finite() {
             break;
         }
-        rounded = step(line, rounded.t, inward);
+        rounded = newton_step(quadratic, rounded.t, inward);
     }
     rounded
 }
 
-/// One Newton step from `guess`.
+/// Takes one Newton step from `guess` and proves where it ends.
 #[inline(always)]
-fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
-    let (d, r) = (line.direction, line.radius);
-    let f = difference(line.origin, line.center);
-    // One by one: compilers do not vectorise a caller's loop around a loop or a `map`.
+fn newton_step(quadratic: &QuadraticBound, guess: f64, inward: bool) -> RoundedRoot {
+    let (d, r) = (quadratic.direction, quadratic.radius);
+
+    // G = |p|² − r² in double-double numbers. Component by component, since compilers do not
+    // vectorise a caller's loop around a loop or a `map`.
+    let f = difference(quadratic.origin, quadratic.center);
     let p = [point(f[0], guess, d.x), point(f[1], guess, d.y), point(f[2], guess, d.z)];
     let (x, y, z) = (square(p[0]), square(p[1]), square(p[2]));
     let r2 = DoubleDouble::product(r, r);
@@ -71,6 +79,7 @@ fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
     let low = ((x.lo + y.lo) + (z.lo - r2.lo)) + ((xy.lo + xyz.lo) + all.lo);
     let g = all.hi + low;
 
+    // P, and the sizes that the error bounds need.
     let slope = p[0].hi * d.x + p[1].hi * d.y + p[2].hi * d.z;
     let p1 = p[0].hi.abs() + p[1].hi.abs() + p[2].hi.abs();
     let d1 = d.x.abs() + d.y.abs() + d.z.abs();
@@ -79,6 +88,7 @@ fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
     let size = f1 + r_abs + guess.abs() * d1;
     let rho = r_abs + p1 + U * size;
 
+    // The bounds of the errors of G, of P and of the step (see the head of this file).
     let inverse = 1.0 / slope.abs();
     let g_error = 256.0 * U * U * rho * size + 2.0 * U * g.abs();
     let g_most = g.abs() + g_error;
@@ -87,15 +97,16 @@ fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
     let relative = slope_error * inverse + x + 4.0 * U;
     let error = (g_error + g_most * relative) * inverse;
 
+    // The step itself.
     let delta = -0.5 * g * inverse.copysign(slope);
     let t = DoubleDouble::sum(guess, delta);
 
-    // Whether this is the first root above 0: the near one, or the far one seen from inside.
-    let f2 = line.offset.dot(line.offset);
+    // The root counts if it is the first above 0: the near one, or the far one seen from inside.
+    let f2 = quadratic.offset.dot(quadratic.offset);
     let inside = r * r - f2 > 8.0 * U * (f2 + r * r);
     let near = slope < 0.0;
     let first = if near { !inward } else { inward | inside };
-    let certain = first
+    let is_certain = first
         & (t.hi > 0.0)
         & (slope_error * inverse <= 0.25)
         & (x <= 0.125)
@@ -103,10 +114,10 @@ fn step(line: &QuadraticBound, guess: f64, inward: bool) -> Rounded {
         & in_range(r_abs)
         & in_range(d1)
         & in_range(size);
-    Rounded { t: t.hi, certain }
+    RoundedRoot { t: t.hi, is_certain }
 }
 
-/// f + t·d, off by less than 4u²(|f| + |t·d|).
+/// The coordinate f + t·d, off by less than 4u²(|f| + |t·d|).
 #[inline(always)]
 fn point(f: DoubleDouble, t: f64, d: f64) -> DoubleDouble {
     let along = DoubleDouble::product(t, d);
@@ -114,7 +125,7 @@ fn point(f: DoubleDouble, t: f64, d: f64) -> DoubleDouble {
     DoubleDouble::sum(sum.hi, sum.lo + (f.lo + along.lo))
 }
 
-/// p², off by less than 7u²p².
+/// The square p², off by less than 7u²p².
 #[inline(always)]
 fn square(p: DoubleDouble) -> DoubleDouble {
     let square = DoubleDouble::product(p.hi, p.hi);

@@ -26,7 +26,7 @@ impl Case {
         first_root(center, radius, origin, direction, tmax, inward)
     }
 
-    /// By bisection with the sign of the exact quadratic.
+    /// The first root by bisection with the sign of the exact quadratic.
     fn exact(&self) -> Option<f64> {
         let f = zip(&vector(self.origin), &vector(self.center), |o, c| o - c);
         let d = vector(self.direction);
@@ -66,14 +66,14 @@ impl Case {
         estimate(self.center, self.radius, self.origin, self.direction, inverse)
     }
 
-    /// Every stage against the exact answer.
+    /// Checks every stage against the exact answer.
     fn check(&self) {
         let exact = self.exact();
         assert_eq!(self.certified(), exact, "{self:?}");
         let unbounded = Self { tmax: f64::INFINITY, ..*self };
         let exact = unbounded.exact();
         let rounded = round(self.center, self.radius, self.origin, self.direction, self.inward);
-        if rounded.certain {
+        if rounded.is_certain {
             assert_eq!(Some(rounded.t), exact, "{self:?}");
         }
         if self.inward {
@@ -202,16 +202,16 @@ fn direction_of_a_square_beyond_f64_leaves_the_decision_open() {
     let direction = DVec3::Z * 1e160;
     let inverse = inverse_length_squared(direction);
     let line = QuadraticBound::new(DVec3::new(5.0, 0.0, 9.0), 1.0, DVec3::ZERO, direction, inverse);
-    assert!(line.may_cross() && !line.crosses());
+    assert!(line.may_cross() && !line.certainly_crosses());
 }
 
 #[test]
 fn round_is_certain_of_what_is_well_inside() {
     let case = Case::new(DVec3::new(0.3, 0.1, 9.0), 1.0, DVec3::ZERO, DVec3::Z);
     let Case { center, radius, origin, direction, .. } = case;
-    assert!(round(center, radius, origin, direction, false).certain);
-    assert!(round(center, radius, center, direction, false).certain);
-    assert!(round(center, radius, origin, direction, true).certain);
+    assert!(round(center, radius, origin, direction, false).is_certain);
+    assert!(round(center, radius, center, direction, false).is_certain);
+    assert!(round(center, radius, origin, direction, true).is_certain);
 }
 
 fn unit() -> impl Strategy<Value = DVec3> {
@@ -221,7 +221,7 @@ fn unit() -> impl Strategy<Value = DVec3> {
         .prop_map(DVec3::normalize)
 }
 
-/// How near the line comes to the edge of the sphere: 2ᵏ r off it, on either side, or at random.
+/// The distance of the line from the centre in radii: 1 ± a few 2⁻ᵏ, or any number.
 fn impact() -> impl Strategy<Value = f64> {
     prop_oneof![0.0..1.1f64, (20..60i32, -4.0..4.0f64).prop_map(|(k, x)| 1.0 + x * power(-k)),]
 }

@@ -1,4 +1,4 @@
-//! Where a line crosses the plane of a triangle, in double-double numbers with bounds.
+//! The crossing of a line and the plane of a triangle in double-double numbers, with bounds.
 //!
 //! With the sides e₁ = v₁ − v₀, e₂ = v₂ − v₀ and a = v₀ − o, all exact, n = e₁ × e₂ and q = a × d:
 //! t = n·a / n·d, u = q·e₂ / n·d and v = −q·e₁ / n·d (Möller and Trumbore, *Fast, Minimum Storage
@@ -13,27 +13,28 @@
 use glam::DVec3;
 
 use crate::geometry::double_double::{DoubleDouble, OMEGA, U, cross, difference, dot, in_range};
+use crate::geometry::triangle::certified::{greater, largest};
 
-/// A crossing as [`round`] found it.
+/// The crossing that [`round`] finds, and whether it is proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rounded {
+pub struct RoundedHit {
     /// The distance, in units of |direction|; of either sign.
     pub t: f64,
-    /// Weight of the second vertex.
+    /// The barycentric weight of the second vertex.
     pub u: f64,
-    /// Weight of the third vertex.
+    /// The barycentric weight of the third vertex.
     pub v: f64,
-    /// Whether the exact distance rounds to `t`, and the weights are what
-    /// [`crossing`](super::crossing) gives.
-    pub certain: bool,
+    /// True if the exact distance rounds to `t`, and the weights are those of
+    /// [`crossing`](super::crossing).
+    pub is_certain: bool,
 }
 
-/// Where a line that crosses the triangle does so: t correctly rounded where `certain`.
+/// The crossing of a line that crosses the triangle; t correctly rounded where `is_certain`.
 ///
-/// Free of branches, for loops over the lanes of a packet. It does not ask whether the line
+/// It has no branches, for loops over the lanes of a packet, and does not test whether the line
 /// crosses: where it does not, t is that of the plane and the weights are clamped.
 #[inline(always)]
-pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
+pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> RoundedHit {
     let first = difference(triangle[1], triangle[0]);
     let second = difference(triangle[2], triangle[0]);
     let a = difference(triangle[0], origin);
@@ -41,41 +42,39 @@ pub fn round(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> Rounded {
     let normal = cross(first, second);
     let moment = cross(a, d);
 
-    let size = largest(a);
-    let (width, height) = (largest(first), largest(second));
-    let way = greater(direction.x.abs(), greater(direction.y.abs(), direction.z.abs()));
+    // The largest components of the vectors, for the bounds above.
+    let (size, direction_size) = (largest_hi(a), largest(direction));
+    let (width, height) = (largest_hi(first), largest_hi(second));
     let bound = 32.0 * OMEGA * width * height;
 
+    // t, and the weights where the bounds are tight enough.
     let divisor = dot(normal, d);
-    let divisor_error = bound * way;
+    let divisor_error = bound * direction_size;
     let (t, error) = dot(normal, a).quotient(bound * size, divisor, divisor_error);
     let inverse = 1.0 / divisor.hi;
-    let weight_error = greater(32.0 * OMEGA * size * greater(width, height) * way, divisor_error);
-    let certain = (weight_error <= U * divisor.hi.abs())
+    let weight_error =
+        greater(32.0 * OMEGA * size * greater(width, height) * direction_size, divisor_error);
+    let is_certain = (weight_error <= U * divisor.hi.abs())
         & t.rounds_to_hi(error)
         & in_range(size)
-        & in_range(way)
+        & in_range(direction_size)
         & in_range(width)
         & in_range(height);
-    Rounded {
+    RoundedHit {
         t: t.hi,
         u: clamp(dot(moment, second).hi * inverse),
         v: clamp(-dot(moment, first).hi * inverse),
-        certain,
+        is_certain,
     }
 }
 
+/// The largest absolute component of a vector of double-doubles.
 #[inline(always)]
-fn largest(v: [DoubleDouble; 3]) -> f64 {
-    greater(v[0].hi.abs(), greater(v[1].hi.abs(), v[2].hi.abs()))
+fn largest_hi(v: [DoubleDouble; 3]) -> f64 {
+    largest(DVec3::new(v[0].hi, v[1].hi, v[2].hi))
 }
 
-#[inline(always)]
-fn greater(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
-
-/// To \[0, 1\], with one zero.
+/// Clamps a weight to \[0, 1\]; −0 becomes 0.
 #[inline(always)]
 fn clamp(x: f64) -> f64 {
     let above = if x > 0.0 { x } else { 0.0 };

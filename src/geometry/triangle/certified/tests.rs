@@ -27,7 +27,7 @@ impl Case {
         crossing(self.triangle, self.origin, self.direction, self.tmax)
     }
 
-    /// Whether a line crosses that is moved by 2⁻⁸⁰⁰⁰, 2⁻¹⁶⁰⁰⁰, 2⁻²⁴⁰⁰⁰: less than any sum of
+    /// True if the line crosses when moved by (2⁻⁸⁰⁰⁰, 2⁻¹⁶⁰⁰⁰, 2⁻²⁴⁰⁰⁰): by less than any sum of
     /// products of floats can tell, and in the order that the tie rule wants.
     fn moved_line_crosses(&self) -> bool {
         let step = |k: i64| Dyadic::power_of_two(-8000 * k);
@@ -38,7 +38,7 @@ impl Case {
         edges[0] != Equal && edges[0] == edges[1] && edges[1] == edges[2]
     }
 
-    /// t, u and v by bisection of exact quotients.
+    /// The crossing by bisection of exact quotients.
     fn exact(&self) -> Option<TriangleHit> {
         let [a, b, c] = self.triangle.map(vector);
         let (first, second) = (minus(&b, &a), minus(&c, &a));
@@ -64,7 +64,7 @@ impl Case {
         })
     }
 
-    /// Every stage against the exact answer.
+    /// Checks every stage against the exact answer.
     fn check(&self) {
         let exact = self.exact();
         let found = self.certified();
@@ -73,8 +73,8 @@ impl Case {
             let off = (found.u - exact.u).abs().max((found.v - exact.v).abs());
             assert!(off <= 4.0 * f64::EPSILON, "{off} {found:?} {exact:?} {self:?}");
             let rounded = round(self.triangle, self.origin, self.direction);
-            if rounded.certain {
-                let Rounded { t, u, v, .. } = rounded;
+            if rounded.is_certain {
+                let RoundedHit { t, u, v, .. } = rounded;
                 assert_eq!(TriangleHit { t, u, v }, found, "{self:?}");
             }
         }
@@ -91,7 +91,7 @@ impl Case {
     }
 }
 
-/// How the quotient n/d compares with x, for n and d of one sign.
+/// Compares the quotient n/d with x, for n and d of one sign.
 fn beside(n: &Dyadic, d: &Dyadic, x: &Dyadic) -> Ordering {
     let order = n.cmp(&(d.clone() * x.clone()));
     if d.sign() == Less { order.reverse() } else { order }
@@ -142,7 +142,7 @@ fn estimate_decides_what_is_not_nearly_an_edge() {
 
 #[test]
 fn round_is_certain_of_what_is_not_edge_on() {
-    assert!(round(UNIT, DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 0.2, -0.3)).certain);
+    assert!(round(UNIT, DVec3::new(0.3, 0.1, 0.7), DVec3::new(0.1, 0.2, -0.3)).is_certain);
 }
 
 #[test]

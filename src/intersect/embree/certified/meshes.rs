@@ -1,144 +1,110 @@
-//! The meshes of precision `certified`: user geometry, in world space or in spaces of their own.
-
-use std::sync::Arc;
+//! The meshes of precision `certified`: user geometry, in world space or in object space.
 
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
-use crate::intersect::embree::certified::callbacks;
-use crate::intersect::embree::certified::instances::{self, Instances};
-use crate::intersect::embree::certified::triangles::Triangles;
+use crate::intersect::embree::certified::instances::{Blas, InstanceTable};
+use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::handles::{DeviceHandle, InnerScene};
-use crate::intersect::embree::ffi::packet_width::PacketWidth;
-use crate::intersect::embree::ffi::user_geometry;
-use crate::intersect::embree::ffi::user_geometry::UserPrimitives;
-use crate::intersect::embree::{attach, is_outsized, uses};
-use crate::scene::{Instance, Mesh, Scene};
-use embree4_sys::{RTCBuildQuality, RTCSceneFlags};
+use crate::intersect::embree::ffi::{CommittedScene, PrimitiveTable, update_geometry};
+use crate::intersect::embree::scene_builder::{SceneBuilder, is_outsized};
+use crate::intersect::object_space::world_bounds;
+use crate::scene::{Mesh, Scene};
 
-/// What Embree keeps the addresses of.
+/// The user data of the meshes' geometries, whose addresses Embree keeps.
 #[derive(Default)]
 pub struct Meshes {
     #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
-    tables: Vec<Box<Triangles>>,
-    own: Vec<Arc<Blas>>,
-    /// Which geometry they are, and what its callbacks read.
-    placements: Option<(u32, Box<Instances>)>,
+    triangles: Vec<Box<TriangleTable>>,
+    /// The geometry of the instances, and their table.
+    instances: Option<(u32, Box<InstanceTable>)>,
 }
 
-/// A mesh in a space of its own.
-pub struct Blas {
-    pub scene: InnerScene,
-    /// Where its f32 copies live.
-    pub frame: F32Space,
-    /// Read by the callbacks; dropped after the scene that calls them.
-    _table: Box<Triangles>,
-}
-
-impl Blas {
-    fn new(
-        scene: &Scene,
-        mesh: u32,
-        bounds: Bounds,
-        device: &DeviceHandle,
-        quality: RTCBuildQuality,
-        width: PacketWidth,
-    ) -> Result<Self> {
-        let frame = F32Space::around(bounds);
-        let table = Triangles::own(scene, mesh, frame);
-        let callbacks = callbacks::triangles(width);
-        let geometry = user_geometry::geometry(device, quality, &*table, callbacks)?;
-        let scene = InnerScene::new(device, quality, RTCSceneFlags::NONE, &geometry)?;
-        Ok(Self { scene, frame, _table: table })
-    }
-}
-
-/// A mesh whose triangles are smaller than this share of the scene gets a space of its own: the
-/// scene's padding would make its boxes overlap.
+/// The share of the scene below which the triangles of a mesh are small: the scene's padding would
+/// make their boxes overlap.
 const SMALL: f64 = 1e-4;
 
 impl Meshes {
-    /// Attaches every instance: a mesh that stands once, and is not small, in world space, and so
-    /// one that is outsized in its own; the others as placements. Where `all_instanced`, as for
-    /// frames that share their meshes in `kept`, all are placements but the outsized ones. `local` are
-    /// the boxes of the meshes.
+    /// Attaches every instance: the mesh of a single instance in world space, unless it is small; and
+    /// the others in object space. Where the builder says that all are instanced, all are in object space.
+    /// Outsized meshes are always in world space.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
     pub fn attach(
-        &mut self,
-        scene: &Scene,
-        local: &[Bounds],
-        top: &embree4_rs::Scene,
-        device: &DeviceHandle,
-        (frame, width, quality): (F32Space, PacketWidth, RTCBuildQuality),
-        (all_instanced, mut kept): (bool, Option<&mut BlasCache<Blas>>),
-    ) -> Result<()> {
-        let uses = uses(scene);
-        let world: Vec<Bounds> = (scene.instances.iter())
-            .map(|instance| placed(&local[instance.mesh.0 as usize], instance))
+        builder: &SceneBuilder<'_>,
+        mut cache: Option<&mut BlasCache<Blas>>,
+    ) -> Result<Self> {
+        let SceneBuilder { scene, mesh_bounds, space, .. } = *builder;
+        // Decide which meshes have a BLAS.
+        let instance_counts = builder.instance_counts();
+        let bounds: Vec<Bounds> = scene
+            .instances
+            .iter()
+            .map(|i| world_bounds(i, &mesh_bounds[i.mesh.0 as usize]))
             .collect();
-        let mut has_own = vec![false; scene.meshes.len()];
-        for (instance, bounds) in scene.instances.iter().zip(&world) {
-            let at = instance.mesh.0 as usize;
-            let mesh = &scene.meshes[at];
-            let once = !all_instanced && uses[at] == 1 && !is_small(mesh, bounds, &frame);
-            has_own[at] = !(mesh.triangles.is_empty() || once || is_outsized(&local[at]));
+        let mut has_blas = vec![false; scene.meshes.len()];
+        for (instance, bounds) in scene.instances.iter().zip(&bounds) {
+            let index = instance.mesh.0 as usize;
+            let mesh = &scene.meshes[index];
+            let in_world_space = !builder.all_instanced
+                && instance_counts[index] == 1
+                && !is_small(mesh, bounds, &space);
+            has_blas[index] =
+                !(mesh.triangles.is_empty() || in_world_space || is_outsized(&mesh_bounds[index]));
         }
-        let make = |at: usize| Blas::new(scene, at as u32, local[at], device, quality, width);
-        let own = BlasCache::all(kept.as_deref_mut(), scene, &has_own, make)?;
-        let mut placements = Box::new(Instances::new(frame));
-        for ((index, instance), bounds) in (0..).zip(&scene.instances).zip(world) {
-            let at = instance.mesh.0 as usize;
-            if let Some(own) = &own[at] {
-                placements.add(scene, index, bounds, &own.scene, own.frame);
-            } else if !scene.meshes[at].triangles.is_empty() {
-                let table = Triangles::placed(scene, index, frame);
-                let callbacks = callbacks::triangles(width);
-                attach(top, &user_geometry::geometry(device, quality, &*table, callbacks)?)?;
-                self.tables.push(table);
-                kept.iter_mut().for_each(|kept| kept.count_one());
+        // Build those, and attach the meshes that have none.
+        let build = |mesh| Blas::new(builder, mesh);
+        let blas = BlasCache::get_or_build(cache.as_deref_mut(), scene, &has_blas, build)?;
+        let mut meshes = Self::default();
+        let mut instances = Box::new(InstanceTable::new(space));
+        for ((index, instance), bounds) in (0..).zip(&scene.instances).zip(bounds) {
+            let mesh = instance.mesh.0 as usize;
+            if let Some(blas) = &blas[mesh] {
+                instances.push(index, instance, bounds, blas.clone());
+            } else if !scene.meshes[mesh].triangles.is_empty() {
+                let table = TriangleTable::in_world_space(scene, index, space);
+                builder.attach_user_geometry::<CertifiedTriangle>(&table)?;
+                meshes.triangles.push(table);
+                cache.iter_mut().for_each(|cache| cache.count_uncached());
             }
         }
-        self.own = own.into_iter().flatten().collect();
-        if !placements.is_empty() {
-            let callbacks = instances::callbacks(width);
-            let geometry = user_geometry::geometry(device, quality, &*placements, callbacks)?;
-            self.placements = Some((attach(top, &geometry)?, placements));
+        // Attach the instances as one geometry.
+        if !instances.is_empty() {
+            let id = builder.attach_user_geometry::<InstanceTable>(&instances)?;
+            meshes.instances = Some((id, instances));
         }
-        Ok(())
+        Ok(meshes)
     }
 
-    /// How many instances are placements.
-    pub fn instanced(&self) -> u64 {
-        self.placements.as_ref().map_or(0, |(_, placements)| placements.len() as u64)
+    /// The number of instances in object space.
+    pub fn instance_count(&self) -> u64 {
+        self.instances.as_ref().map_or(0, |(_, instances)| instances.len() as u64)
     }
 
-    /// Places again the instances that `moved`, of which none is outsized.
-    pub fn follow(
+    /// Moves the instances with the indices `moved`, of which none is outsized.
+    pub fn update(
         &mut self,
+        top: &mut CommittedScene,
         scene: &Scene,
-        top: &embree4_rs::Scene,
-        boxes: &[Bounds],
+        mesh_bounds: &[Bounds],
         moved: &[u32],
     ) {
-        let Some((id, placements)) = &mut self.placements else { return };
+        let Some((id, instances)) = &mut self.instances else { return };
         for &index in moved {
             let instance = &scene.instances[index as usize];
-            let bounds = placed(&boxes[instance.mesh.0 as usize], instance);
-            placements.replace(instance, index, bounds);
+            instances.update(
+                index,
+                instance,
+                world_bounds(instance, &mesh_bounds[instance.mesh.0 as usize]),
+            );
         }
-        user_geometry::moved(top, *id, &**placements);
+        update_geometry(top, *id, &**instances);
     }
 }
 
-/// The box in the world of an instance of a mesh with this box.
-fn placed(mesh: &Bounds, instance: &Instance) -> Bounds {
-    let bounds = mesh.transformed(&instance.transform);
-    // A baked vertex may round to just outside the transformed box.
-    bounds.padded(16.0 * f64::EPSILON * bounds.max_abs())
-}
-
-/// Whether a mesh that takes up `bounds` in the world has small triangles for the scene.
-fn is_small(mesh: &Mesh, bounds: &Bounds, frame: &F32Space) -> bool {
+/// True if a mesh whose box in world space is `bounds` has small triangles for the scene.
+fn is_small(mesh: &Mesh, bounds: &Bounds, space: &F32Space) -> bool {
     let across = (mesh.triangles.len() as f64).sqrt();
-    bounds.diagonal() < SMALL * frame.extent * across && bounds.diagonal() < 0.25 * frame.extent
+    bounds.diagonal() < SMALL * space.extent * across && bounds.diagonal() < 0.25 * space.extent
 }

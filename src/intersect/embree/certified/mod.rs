@@ -1,8 +1,12 @@
 //! Precision `certified`: every primitive is user geometry, tested with a proven bound or exactly.
 
-pub mod callbacks;
-pub mod instances;
-pub mod meshes;
+mod instances;
+mod meshes;
+mod primitives;
 mod resolve;
 mod rounding;
-mod triangles;
+
+pub use instances::Blas;
+pub use meshes::Meshes;
+pub use primitives::CertifiedSphere;
+pub use rounding::round_hits;

@@ -1,126 +1,154 @@
-//! Precision `certified`, in a packet: which candidates count, by their bounds, and exactly where
-//! these overlap.
+//! The resolution of hits in precision `certified`: which candidates count, by their bounds, and
+//! exactly where these overlap.
 
-use crate::geometry::{Estimate, Hit, PrimitiveId};
-use crate::intersect::Precision;
-use crate::intersect::embree::certified::callbacks::Shape;
-use crate::intersect::embree::ffi::records::QueryContext;
-use crate::intersect::primitive::Primitives;
+use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
+use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
+use crate::intersect::embree::packet::QueryContext;
 
 impl<const W: usize> QueryContext<'_, W> {
-    /// The exact answer for one ray and one primitive.
-    pub fn test(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
-        let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
-        primitives.test(id, &self.rays.get(lane)?)
+    /// Keeps the primitive for those active rays that it is the closest hit of.
+    #[inline(always)]
+    pub fn keep_closest(
+        &mut self,
+        primitive: &CertifiedPrimitive<impl Shape>,
+        active: &[i32; W],
+        tfar: &mut [f32; W],
+    ) {
+        let Some(estimates) = self.estimates(primitive, active) else { return };
+        for i in 0..W {
+            let e = estimates[i];
+            // The next hit of a continuation ray is not always the first root.
+            if self.departures.any_continuation && active[i] != 0 {
+                self.resolve_exactly(i, primitive.id);
+                tfar[i] = self.closest_tfar(i).min(tfar[i]);
+                continue;
+            }
+            if active[i] == 0 || e.is_outside(self.hits.upper(i)) {
+                continue;
+            }
+            if self.departures.any && self.is_departure(i, primitive.id) {
+                continue;
+            }
+            // Keep what is certainly ahead and closer; decide exactly about the rest.
+            let closer = e.upper() < self.hits.t[i] - self.hits.error[i];
+            let certain = e.lower() > 0.0 && closer;
+            if !certain
+                || primitive.is_masked
+                || (self.departures.any && primitive.shape.may_start_on(self, i))
+            {
+                self.resolve_exactly(i, primitive.id);
+            } else {
+                self.hits.set(i, e, primitive.id);
+            }
+            tfar[i] = self.closest_tfar(i).min(tfar[i]);
+        }
     }
 
-    /// What f64 says of each valid ray and the primitive; `None` when all certainly miss.
+    /// Sets `tfar` of each active ray that the primitive occludes to minus infinity.
     #[inline(always)]
-    fn estimates(&self, shape: &impl Shape, valid: &[i32; W]) -> Option<[Estimate; W]> {
+    pub fn mark_occluded(
+        &mut self,
+        primitive: &CertifiedPrimitive<impl Shape>,
+        active: &[i32; W],
+        tfar: &mut [f32; W],
+    ) {
+        let Some(estimates) = self.estimates(primitive, active) else { return };
+        for i in 0..W {
+            let e = estimates[i];
+            if active[i] == 0 || e.is_outside(self.rays.tmax[i]) {
+                continue;
+            }
+            if self.departures.any && self.is_departure(i, primitive.id) {
+                continue;
+            }
+            let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
+            let certain = within
+                && !self.departures.any_continuation
+                && !primitive.is_masked
+                && !(self.departures.any && primitive.shape.may_start_on(self, i));
+            if certain || self.exact_hit(i, primitive.id).is_some() {
+                tfar[i] = f32::NEG_INFINITY;
+            }
+        }
+    }
+
+    /// True if the ray in `lane` left this very primitive, and so does not hit it again, except a sphere
+    /// that it went into.
+    #[inline(always)]
+    fn is_departure(&self, lane: usize, id: PrimitiveId) -> bool {
+        if id.geometry == Geometry::Spheres {
+            return self.departures.outward[lane] == id.primitive;
+        }
+        self.packet.departure(lane).is_some_and(|departure| departure.id == id)
+    }
+
+    /// The estimates for the rays of a packet; `None` if all active ones certainly miss.
+    #[inline(always)]
+    fn estimates(
+        &self,
+        primitive: &CertifiedPrimitive<impl Shape>,
+        active: &[i32; W],
+    ) -> Option<[Estimate; W]> {
         let mut any = false;
         for i in 0..W {
-            let (origin, direction) = self.exact.line(i);
-            let inverse = self.exact.inverse_length_squared[i];
-            any |= (valid[i] != 0) & shape.may_cross(origin, direction, inverse);
+            let (origin, direction) = self.rays.origin_and_direction(i);
+            let inverse = self.rays.inverse_length_squared[i];
+            any |= (active[i] != 0) & primitive.shape.may_cross(origin, direction, inverse);
         }
         if !any {
             return None;
         }
         let mut estimates = [Estimate::MISS; W];
         for i in 0..W {
-            let (origin, direction) = self.exact.line(i);
-            let inverse = self.exact.inverse_length_squared[i];
-            estimates[i] = shape.estimate(origin, direction, inverse);
+            let (origin, direction) = self.rays.origin_and_direction(i);
+            let inverse = self.rays.inverse_length_squared[i];
+            estimates[i] = primitive.shape.estimate(origin, direction, inverse);
         }
         Some(estimates)
     }
 
-    /// Keeps the primitive for those rays that it is the nearest of.
-    #[inline(always)]
-    pub fn offer(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
-        let Some(estimates) = self.estimates(shape, valid) else { return };
-        for i in 0..W {
-            let e = estimates[i];
-            // What is ahead of a ray that went through surfaces is not the first root.
-            if self.goes_on && valid[i] != 0 {
-                self.settle(i, shape.id());
-                tfar[i] = self.exact.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
-                continue;
-            }
-            if valid[i] == 0 || e.is_outside(self.nearest.upper(i)) {
-                continue;
-            }
-            if self.leaves && shape.is_left(self, i) {
-                continue;
-            }
-            let nearer = e.upper() < self.nearest.t[i] - self.nearest.error[i];
-            let clear = e.lower() > 0.0 && nearer;
-            if !clear || shape.is_masked() || (self.leaves && shape.may_be_left(self, i)) {
-                self.settle(i, shape.id());
-            } else {
-                self.nearest.set(i, e, shape.id());
-            }
-            tfar[i] = self.exact.clip.narrow(i, self.nearest.upper(i)).min(tfar[i]);
-        }
+    /// The exact hit of the ray in `lane` on a primitive.
+    pub fn exact_hit(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
+        self.query.primitives().test(id, &self.packet.get(lane)?)
     }
 
-    /// Decides exactly whether `id` is the nearest of one ray.
+    /// Decides exactly whether `id` is the closest hit of the ray in `lane`.
     #[cold]
     #[inline(never)]
-    pub fn settle(&mut self, lane: usize, id: PrimitiveId) {
-        let Some(hit) = self.test(lane, id) else { return };
-        let best = self.nearest.id(self.scene, lane);
+    pub fn resolve_exactly(&mut self, lane: usize, id: PrimitiveId) {
+        let Some(hit) = self.exact_hit(lane, id) else { return };
+        // Make the distance of the hit so far exact, too.
+        let best = self.hits.id(self.scene, lane);
         if let Some(best) = best
-            && self.nearest.error[lane] != 0.0
-            && let Some(exact) = self.test(lane, best)
+            && self.hits.error[lane] != 0.0
+            && let Some(exact) = self.exact_hit(lane, best)
         {
-            self.nearest.t[lane] = exact.t;
-            self.nearest.error[lane] = 0.0;
+            self.hits.t[lane] = exact.t;
+            self.hits.error[lane] = 0.0;
         }
-        let t = self.nearest.t[lane];
+        let t = self.hits.t[lane];
         // Without a hit so far `t` is the ray's end, which the exact test knows.
         if best.is_none_or(|best| hit.is_before(&Hit { t, u: 0.0, v: 0.0, id: best })) {
-            self.nearest.set(lane, Estimate { t: hit.t, error: 0.0 }, id);
+            self.hits.set(lane, Estimate { t: hit.t, error: 0.0 }, id);
         }
     }
 
-    /// Decides exactly about every triangle of an instance, for one ray.
-    pub fn settle_all(&mut self, lane: usize, instance: u32) {
-        let mesh = self.scene.instances[instance as usize].mesh.0;
-        for triangle in 0..self.scene.meshes[mesh as usize].triangles.len() as u32 {
-            self.settle(lane, PrimitiveId::triangle(mesh, triangle, instance));
+    /// Decides exactly about every triangle of an instance, for the ray in `lane`.
+    pub fn resolve_instance(&mut self, lane: usize, instance: u32) {
+        for id in self.instance_triangles(instance) {
+            self.resolve_exactly(lane, id);
         }
     }
 
-    /// Whether one ray meets any triangle of an instance.
-    pub fn meets_any(&self, lane: usize, instance: u32) -> bool {
-        let mesh = self.scene.instances[instance as usize].mesh.0;
-        let count = self.scene.meshes[mesh as usize].triangles.len() as u32;
-        (0..count).any(|t| self.test(lane, PrimitiveId::triangle(mesh, t, instance)).is_some())
+    /// True if the ray in `lane` hits any triangle of an instance.
+    pub fn hits_instance(&self, lane: usize, instance: u32) -> bool {
+        self.instance_triangles(instance).any(|id| self.exact_hit(lane, id).is_some())
     }
 
-    /// Marks the rays that the primitive keeps from their end.
-    #[inline(always)]
-    pub fn block(&mut self, shape: &impl Shape, valid: &[i32; W], tfar: &mut [f32; W]) {
-        let Some(estimates) = self.estimates(shape, valid) else { return };
-        for i in 0..W {
-            let e = estimates[i];
-            if valid[i] == 0 || e.is_outside(self.exact.tmax[i]) {
-                continue;
-            }
-            if self.leaves && shape.is_left(self, i) {
-                continue;
-            }
-            let within = e.lower() > 0.0 && e.upper() < self.exact.tmax[i];
-            let clear = within && !self.goes_on && !shape.is_masked();
-            let blocked = if clear && !(self.leaves && shape.may_be_left(self, i)) {
-                true
-            } else {
-                self.test(i, shape.id()).is_some()
-            };
-            if blocked {
-                tfar[i] = f32::NEG_INFINITY;
-            }
-        }
+    fn instance_triangles(&self, instance: u32) -> impl Iterator<Item = PrimitiveId> + use<W> {
+        let scene = self.scene;
+        let mesh = scene.instances[instance as usize].mesh.0;
+        let count = scene.meshes[mesh as usize].triangles.len() as u32;
+        (0..count).map(move |triangle| PrimitiveId::triangle(mesh, triangle, instance))
     }
 }

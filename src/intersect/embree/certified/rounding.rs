@@ -1,9 +1,10 @@
-//! Precision `certified`, at the end of a packet: the hits that were kept, their distances rounded.
+//! The last step of precision `certified`: the hits that were kept, with their distances rounded.
 
 use glam::DVec3;
 
-use crate::geometry::{Geometry, Hit, Hit16, PrimitiveId, sphere, triangle};
-use crate::intersect::embree::ffi::records::QueryContext;
+use crate::geometry::{Geometry, Hit, Hit16, PrimitiveId, PrimitiveId16, sphere, triangle};
+use crate::intersect::embree::packet::QueryContext;
+use crate::scene::Triangles;
 
 /// Distances and weights side by side, and which of them are proven.
 struct Rounded<const W: usize> {
@@ -13,96 +14,88 @@ struct Rounded<const W: usize> {
     certain: [bool; W],
 }
 
-impl<const W: usize> QueryContext<'_, W> {
-    /// Writes the hits that were found, from lane `at` on.
-    ///
-    /// Spheres and triangles are rounded all at once, in double-double numbers; where these leave
-    /// a distance open, exactly.
-    #[inline(always)]
-    pub fn finish(&self, found: &mut Hit16, at: usize) {
-        let mut ids = [None; W];
-        let (mut spheres, mut triangles) = (false, false);
-        for i in 0..self.rays.count {
-            ids[i] = self.nearest.id(self.scene, i);
-            let is_sphere = ids[i].is_some_and(|id| id.geometry == Geometry::Spheres);
-            spheres |= is_sphere;
-            triangles |= ids[i].is_some() & !is_sphere;
+/// Writes the hits of a packet.
+///
+/// Spheres and triangles are rounded all at once, in double-double numbers; where these leave
+/// a distance open, exactly.
+#[inline(always)]
+pub fn round_hits<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hit16) {
+    let QueryContext { scene, packet, .. } = context;
+    let mut ids = [None; W];
+    for i in 0..packet.count {
+        ids[i] = context.hits.id(scene, i);
+    }
+    let mut rounded = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: [false; W] };
+    if ids.iter().flatten().any(|id| id.geometry == Geometry::Spheres) {
+        round_spheres(context, &ids, &mut rounded);
+    }
+    round_triangles(context, &ids, &mut rounded);
+    for i in 0..packet.count {
+        let hit = ids[i].and_then(|id| {
+            if rounded.certain[i] {
+                Some(Hit { t: rounded.t[i], u: rounded.u[i], v: rounded.v[i], id })
+            } else {
+                context.exact_hit(i, id)
+            }
+        });
+        hits.set(packet.first_lane() + i, hit);
+    }
+}
+
+/// Rounds the distances of the spheres among the hits.
+#[inline(always)]
+fn round_spheres<const W: usize>(
+    context: &QueryContext<'_, W>,
+    ids: &[Option<PrimitiveId>; W],
+    to: &mut Rounded<W>,
+) {
+    let mut center = [[0.0; W]; 3];
+    let mut radius = [0.0; W];
+    let mut is_first_root = [false; W];
+    for i in 0..W {
+        let Some(id) = ids[i].filter(|id| id.geometry == Geometry::Spheres) else { continue };
+        let s = &context.scene.spheres[id.primitive as usize];
+        for axis in 0..3 {
+            center[axis][i] = s.center[axis];
         }
-        let mut rounded = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: [false; W] };
-        if spheres {
-            self.round_spheres(&ids, &mut rounded);
-        }
-        if triangles {
-            self.round_triangles(&ids, &mut rounded);
-        }
-        for i in 0..self.rays.count {
-            let hit = ids[i].and_then(|id| {
-                if rounded.certain[i] {
-                    Some(Hit { t: rounded.t[i], u: rounded.u[i], v: rounded.v[i], id })
-                } else {
-                    self.test(i, id)
-                }
-            });
-            found.set(at + i, hit);
+        radius[i] = s.radius;
+        // A ray that goes into a sphere that it starts on hits its far root. Those were resolved
+        // exactly; they are few.
+        let is_exact = context.departures.any && context.hits.error[i] == 0.0;
+        is_first_root[i] = !is_exact;
+    }
+    for i in 0..W {
+        let (origin, direction) = context.rays.origin_and_direction(i);
+        let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
+        let r = sphere::certified::round(center, radius[i], origin, direction, false);
+        to.t[i] = r.t;
+        to.certain[i] = r.is_certain & is_first_root[i];
+    }
+}
+
+/// Rounds the distances and weights of the triangles among the hits.
+#[inline(always)]
+fn round_triangles<const W: usize>(
+    context: &QueryContext<'_, W>,
+    ids: &[Option<PrimitiveId>; W],
+    to: &mut Rounded<W>,
+) {
+    let mut geometry = [PrimitiveId16::NONE; W];
+    for i in 0..W {
+        if let Some(PrimitiveId { geometry: Geometry::Mesh(mesh), .. }) = ids[i] {
+            geometry[i] = PrimitiveId16::MESHES + mesh;
         }
     }
-
-    #[inline(always)]
-    fn round_spheres(&self, ids: &[Option<PrimitiveId>; W], to: &mut Rounded<W>) {
-        let mut center = [[0.0; W]; 3];
-        let mut radius = [0.0; W];
-        let mut here = [false; W];
-        for i in 0..W {
-            let Some(id) = ids[i].filter(|id| id.geometry == Geometry::Spheres) else { continue };
-            let s = &self.scene.spheres[id.primitive as usize];
-            for axis in 0..3 {
-                center[axis][i] = s.center[axis];
-            }
-            radius[i] = s.radius;
-            // A ray that goes into a sphere that it starts on meets its far root. Those were settled
-            // exactly; they are few.
-            let settled = self.leaves && self.nearest.error[i] == 0.0;
-            here[i] = !settled;
-        }
-        for i in 0..W {
-            let (origin, direction) = self.exact.line(i);
-            let center = DVec3::new(center[0][i], center[1][i], center[2][i]);
-            let r = sphere::certified::round(center, radius[i], origin, direction, false);
-            to.t[i] = r.t;
-            to.certain[i] = r.certain & here[i];
-        }
-    }
-
-    #[inline(always)]
-    fn round_triangles(&self, ids: &[Option<PrimitiveId>; W], to: &mut Rounded<W>) {
-        let mut corners = [[[0.0; W]; 3]; 3];
-        let mut here = [false; W];
-        for i in 0..W {
-            let Some(id) = ids[i].filter(|id| id.geometry != Geometry::Spheres) else { continue };
-            for (to, corner) in corners.iter_mut().zip(self.scene.triangle_vertices(id)) {
-                for axis in 0..3 {
-                    to[axis][i] = corner[axis];
-                }
-            }
-            here[i] = true;
-        }
-        let mut found = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: here };
-        for i in 0..W {
-            let (origin, direction) = self.exact.line(i);
-            let corner =
-                |c: usize| DVec3::new(corners[c][0][i], corners[c][1][i], corners[c][2][i]);
-            let r =
-                triangle::certified::round([corner(0), corner(1), corner(2)], origin, direction);
-            found.t[i] = r.t;
-            found.u[i] = r.u;
-            found.v[i] = r.v;
-            found.certain[i] &= r.certain;
-        }
-        for i in (0..W).filter(|&i| here[i]) {
-            to.t[i] = found.t[i];
-            to.u[i] = found.u[i];
-            to.v[i] = found.v[i];
-            to.certain[i] = found.certain[i];
-        }
+    let QueryContext { scene, hits, .. } = context;
+    let triangles = Triangles::from_ids(scene, &geometry, &hits.primitive, &hits.instance);
+    let Some(triangles) = triangles else { return };
+    for i in 0..W {
+        let (origin, direction) = context.rays.origin_and_direction(i);
+        let r = triangle::certified::round(triangles.vertices(i), origin, direction);
+        let is_triangle = geometry[i] != PrimitiveId16::NONE;
+        to.t[i] = if is_triangle { r.t } else { to.t[i] };
+        to.u[i] = if is_triangle { r.u } else { 0.0 };
+        to.v[i] = if is_triangle { r.v } else { 0.0 };
+        to.certain[i] = if is_triangle { r.is_certain } else { to.certain[i] };
     }
 }

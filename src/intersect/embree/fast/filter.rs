@@ -1,216 +1,120 @@
-//! The filter that secondary rays carry: it drops the surface that a ray left, triangles that f64
-//! says are not in its way, what a mask cuts out, and, for shadow rays, what blocks no light.
+//! The filter for the triangles that Embree finds: it drops the surface that a ray left, triangles
+//! that the ray misses in f64, what an alpha mask cuts out, and, for shadow rays, what blocks no light.
 //!
-//! Primary rays carry none, unless something has a mask.
-#![allow(unsafe_code)]
-
-use embree4_sys as sys;
+//! Primary rays need no filter, unless something has a mask.
 
 use crate::geometry::{PrimitiveId, triangle};
-use crate::intersect::Precision;
-use crate::intersect::embree::ffi::records::{INVALID, QueryContext};
-use crate::intersect::embree::ffi::user_geometry::{ID, TFAR, in_order};
-use crate::intersect::primitive::Primitives;
+use crate::intersect::embree::ffi::{Candidate, INVALID};
+use crate::intersect::embree::packet::QueryContext;
 
-/// The fields of a hit: the normal, of any length, in the space of the triangle's own mesh.
-const NG: usize = 0;
-const PRIM: usize = 5;
-const GEOM: usize = 6;
-const INST: usize = 7;
-/// The fields of a ray.
-const DIR: usize = 4;
-
-/// What Embree calls for each hit that it finds.
-pub type Filter = unsafe extern "C" fn(*const sys::RTCFilterFunctionNArguments);
-
-/// The filter for packets of `W`; `SHADOW` for occlusion calls.
-pub fn filter<const W: usize, const SHADOW: bool>() -> Filter {
-    match W {
-        #[cfg(target_arch = "x86_64")]
-        8 => compiled!(W, SHADOW, target_feature(enable = "avx2,fma")),
-        #[cfg(target_arch = "x86_64")]
-        16 => {
-            compiled!(W, SHADOW, target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,fma"))
-        }
-        _ => compiled!(W, SHADOW, inline(never)),
-    }
-}
-
-/// The filter, compiled for the processor features that a width comes with.
-macro_rules! compiled {
-    ($w:ident, $shadow:ident, $attribute:meta) => {{
-        // SAFETY: as of `look_at_all`; those with target features are only chosen for widths that
-        // `Width::native` chose, which asks the processor.
-        #[$attribute]
-        unsafe extern "C" fn filter<const W: usize, const SHADOW: bool>(
-            args: *const sys::RTCFilterFunctionNArguments,
-        ) {
-            unsafe { look_at_all::<W, SHADOW>(args) }
-        }
-        filter::<$w, $shadow>
-    }};
-}
-use compiled;
-
+/// Clears the active mask of a packet where its candidates do not count.
 #[inline(always)]
-unsafe fn look_at_all<const W: usize, const SHADOW: bool>(
-    args: *const sys::RTCFilterFunctionNArguments,
+pub fn filter_packet<const OCCLUSION: bool, const W: usize>(
+    context: &QueryContext<'_, W>,
+    active: &mut [i32; W],
+    candidate: impl Fn(usize) -> Candidate,
 ) {
-    // SAFETY: Embree passes pointers to `N` rays and hits and the context of the call, which
-    // `query` made for packets of this width.
-    unsafe {
-        let args = &*args;
-        let n = args.N as usize;
-        let context = &*args.context.cast::<QueryContext<'_, W>>();
-        let (ray, hit) = (args.ray.cast::<u32>(), args.hit.cast::<u32>());
-        let sure = match n == W && in_order(&*ray.add(ID * W).cast::<[u32; W]>()) {
-            true => sure_of_all(context, ray, hit),
-            false => [false; W],
-        };
-        let all_count = (!SHADOW | context.all_block) & context.masked.is_empty();
-        if n == W && all_count && sure_are_valid(&sure, args.valid) {
-            return;
-        }
-        for slot in 0..n {
-            let valid = args.valid.add(slot);
-            if *valid == 0 {
-                continue;
-            }
-            let field = |base: *const u32, field: usize| *base.add(field * n + slot);
-            let lane = field(ray, ID) as usize;
-            let ids = [PRIM, GEOM, INST].map(|f| field(hit, f));
-            let vector = |base, at| [0, 1, 2].map(|axis| f32::from_bits(field(base, at + axis)));
-            let is_sure = if n == W {
-                sure[slot]
-            } else {
-                let t = f32::from_bits(field(ray, TFAR));
-                let rise = Rise::new(vector(hit, NG), vector(ray, DIR));
-                is_sure(context, lane, t, &rise, ids[2])
-            };
-            if !stands_in_the_way::<W, SHADOW>(context, lane, is_sure, ids) {
-                *valid = 0;
-            }
-        }
-    }
-}
-
-/// Which candidates certainly count, of a packet that came as it was sent.
-#[inline(always)]
-unsafe fn sure_of_all<const W: usize>(
-    context: &QueryContext<'_, W>,
-    ray: *const u32,
-    hit: *const u32,
-) -> [bool; W] {
-    // SAFETY: by the caller's word there are `W` rays and hits, each field side by side.
-    unsafe {
-        let all = |base: *const u32, field: usize| &*base.add(field * W).cast::<[f32; W]>();
-        let (normal, direction) =
-            ([0, 1, 2].map(|axis| all(hit, NG + axis)), [0, 1, 2].map(|axis| all(ray, DIR + axis)));
-        let (t, inst) = (all(ray, TFAR), &*hit.add(INST * W).cast::<[u32; W]>());
-        let mut sure = [false; W];
-        for i in 0..W {
-            let rise = Rise::new(normal.map(|x| x[i]), direction.map(|x| x[i]));
-            sure[i] = is_sure(context, i, t[i], &rise, inst[i]);
-        }
-        sure
-    }
-}
-
-/// Whether all candidates that there are certainly count.
-#[inline(always)]
-unsafe fn sure_are_valid<const W: usize>(sure: &[bool; W], valid: *const i32) -> bool {
-    // SAFETY: by the caller's word there are `W` of them.
-    let valid = unsafe { &*valid.cast::<[i32; W]>() };
-    let mut open = 0;
+    let mut certain = [false; W];
     for i in 0..W {
-        open |= if sure[i] { 0 } else { valid[i] };
+        certain[i] = is_certain(context, i, &candidate(i));
     }
-    open == 0
-}
-
-/// How far a ray rises over a triangle for each unit of t: the quotient of two numbers, squared.
-struct Rise {
-    way: f32,
-    normal: f32,
-}
-
-impl Rise {
-    #[inline(always)]
-    fn new(normal: [f32; 3], direction: [f32; 3]) -> Self {
-        let (normal, direction) = (glam::Vec3::from(normal), glam::Vec3::from(direction));
-        let way = normal.dot(direction);
-        Self { way: way * way, normal: normal.length_squared() }
+    // Nearly always all candidates certainly count.
+    let mut uncertain = 0;
+    for i in 0..W {
+        uncertain |= if certain[i] { 0 } else { active[i] };
+    }
+    if uncertain == 0 && certain_hits_count::<OCCLUSION, W>(context) {
+        return;
+    }
+    for i in 0..W {
+        if active[i] != 0 && !counts::<OCCLUSION, W>(context, i, certain[i], &candidate(i)) {
+            active[i] = 0;
+        }
     }
 }
 
-/// Whether the candidate that Embree's f32 arithmetic found at `t` certainly counts for the ray in
-/// `lane`.
-///
-/// The f32 ray is off by at most the frame's margin, and twice that is [`Frame::doubt`] / 512: where
-/// its ends stand higher over the triangle than that, so do those of the exact ray, on the same
-/// sides. A ray that grazes a triangle in whose plane it starts or ends may seem to cross it
-/// anywhere; the triangle that it left is one of those.
-///
-/// [`Frame::doubt`]: crate::intersect::embree::f32_space::F32Space::doubt
+/// True if every triangle that a ray certainly crosses counts: none is masked, and for occlusion all
+/// block light.
 #[inline(always)]
-fn is_sure<const W: usize>(
+fn certain_hits_count<const OCCLUSION: bool, const W: usize>(
+    context: &QueryContext<'_, W>,
+) -> bool {
+    (!OCCLUSION | context.query.all_block_light) & context.query.masked.is_empty()
+}
+
+/// True if the ray in `lane` certainly crosses the plane of the candidate within its segment.
+///
+/// The f32 ray is off by at most the margin of the f32 space, and twice that is
+/// [`F32Space::t_uncertainty`] / 512: where its ends stand higher over the triangle than that, so do
+/// those of the exact ray, on the same sides. A ray that grazes a triangle in whose plane it starts or
+/// ends may seem to cross it anywhere; the triangle that it left is one of those.
+///
+/// [`F32Space::t_uncertainty`]: crate::intersect::embree::f32_space::F32Space::t_uncertainty
+#[inline(always)]
+pub fn is_certain<const W: usize>(
     context: &QueryContext<'_, W>,
     lane: usize,
-    t: f32,
-    rise: &Rise,
-    inst: u32,
+    candidate: &Candidate,
 ) -> bool {
-    let height = context.doubt / 512.0;
-    let clear = |way: f32| {
-        (way > context.doubt) & ((way * way) * rise.way > (height * height) * rise.normal)
+    let Candidate { t, direction, normal, .. } = *candidate;
+    let height = context.t_uncertainty / 512.0;
+    // By how much the ray rises over the triangle for each unit of t, times |normal|.
+    let slope = normal.dot(direction);
+    let is_clear = |t: f32| {
+        (t > context.t_uncertainty)
+            & ((t * t) * (slope * slope) > (height * height) * normal.length_squared())
     };
-    // In an instance normal and direction stand in two spaces.
-    (inst == INVALID) & !context.goes_on & clear(t) & clear(context.end[lane] - t)
+    // In an instance normal and direction are in two spaces.
+    (candidate.instance == INVALID)
+        & !context.departures.any_continuation
+        & is_clear(t)
+        & is_clear(context.f32_tmax[lane] - t)
 }
 
-/// Whether a candidate counts for the ray in `lane`.
+/// True if a candidate counts for the ray in `lane`.
 #[inline(always)]
-fn stands_in_the_way<const W: usize, const SHADOW: bool>(
+pub fn counts<const OCCLUSION: bool, const W: usize>(
     context: &QueryContext<'_, W>,
     lane: usize,
-    sure: bool,
-    [prim, geom, inst]: [u32; 3],
+    certain: bool,
+    candidate: &Candidate,
 ) -> bool {
-    if sure && (!SHADOW || context.all_block) && context.masked.is_empty() {
+    if certain && certain_hits_count::<OCCLUSION, W>(context) {
         return true;
     }
-    let attached = if inst == INVALID { geom } else { inst };
-    let Some(&instance) = context.instance_of.get(attached as usize) else { return true };
-    let placed = &context.scene.instances[instance as usize];
-    let id = PrimitiveId::triangle(placed.mesh.0, prim, instance);
-    if SHADOW && !context.scene.blocks_light(id) {
+    // Look up the triangle.
+    let QueryContext { query, scene, .. } = context;
+    let in_world = candidate.instance == INVALID;
+    let geometry = if in_world { candidate.geometry } else { candidate.instance };
+    let Some(&index) = query.instance_of.get(geometry as usize) else { return true };
+    let mesh = scene.instances[index as usize].mesh.0;
+    let id = PrimitiveId::triangle(mesh, candidate.primitive, index);
+    // Test it: by its material, by the ray in f64, and by its mask.
+    if OCCLUSION && !scene.blocks_light(id) {
         return false;
     }
-    if !sure && !stands_exactly(context, lane, id) {
+    if !certain && !is_hit(context, lane, id) {
         return false;
     }
-    !(context.is_masked(instance) && is_cut_out(context, lane, id))
+    !(query.is_masked(index) && is_cut_out(context, lane, id))
 }
 
-/// Whether a mask cuts a hole where the ray in `lane` meets a triangle, by the weights in f64 that
+/// True if a mask cuts a hole where the ray in `lane` hits a triangle, by the weights in f64 that
 /// `refine` gives.
 #[inline(never)]
 fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
-    let (origin, direction) = context.exact.line(lane);
+    let scene = context.scene;
+    let (origin, direction) = context.rays.origin_and_direction(lane);
     let (u, v) =
-        triangle::Edges::new(context.scene.triangle_vertices(id), origin, direction).weights();
-    context.scene.is_cut_out(id, u, v)
+        triangle::EdgeFunctions::new(scene.triangle_vertices(id), origin, direction).weights();
+    scene.is_cut_out(id, u, v)
 }
 
-/// Whether a triangle stands in the way of the ray in `lane` by the formulas in f64.
+/// True if the ray in `lane` hits a triangle by the formulas in f64.
 #[cold]
 #[inline(never)]
-fn stands_exactly<const W: usize>(
-    context: &QueryContext<'_, W>,
-    lane: usize,
-    id: PrimitiveId,
-) -> bool {
-    let primitives = Primitives { scene: context.scene, precision: Precision::Fast };
-    let ray = context.rays.get(lane);
+fn is_hit<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
+    let primitives = context.query.primitives();
+    let ray = context.packet.get(lane);
     ray.is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
 }

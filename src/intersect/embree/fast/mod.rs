@@ -1,6 +1,10 @@
 //! Precision `fast`: Embree's own triangles, intersected again in f64, and spheres in f64.
 
 pub mod filter;
-pub mod meshes;
-pub mod refine;
-pub mod spheres;
+mod meshes;
+mod refine;
+mod spheres;
+
+pub use meshes::{Blas, Meshes};
+pub use refine::refine;
+pub use spheres::{FastSpheres, SphereEntry, SphereTable};

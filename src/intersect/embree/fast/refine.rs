@@ -1,13 +1,12 @@
-//! The f64 hits of the triangles that Embree found.
+//! The refinement: the f64 hits of the triangles that Embree found in f32.
 
 use crate::geometry::{Hit16, PrimitiveId16, triangle};
-use crate::intersect::embree::ffi::records::{INVALID, RayHitRecord};
-use crate::intersect::embree::packet::packet_rays::PacketRays;
-use crate::scene::{Scene, Triangles};
+use crate::intersect::embree::ffi::{INVALID, RayHitRecord};
+use crate::intersect::embree::packet::QueryContext;
+use crate::scene::Triangles;
 
-/// Intersects the triangles of the first `count` lanes again in f64, and writes the hits from lane
-/// `at` of `found` on; where no lane has one, nothing is written.
-/// Says whether all of them lie within their rays' segments.
+/// Intersects the triangles in `record` again in f64, and writes the hits; if there is none, nothing is
+/// written. Returns true if all of them lie within their rays' segments.
 ///
 /// Where f64 says that the ray just misses the triangle that Embree's f32 arithmetic hit, the hit
 /// is kept, with t from the triangle's plane and the weights clamped: dropping it would leave a
@@ -15,69 +14,75 @@ use crate::scene::{Scene, Triangles};
 /// along it, or meets it outside the segment) Embree's own t is taken.
 #[inline(always)]
 pub fn refine<const W: usize>(
-    scene: &Scene,
-    instance_of: &[u32],
-    exact: &PacketRays<W>,
+    context: &QueryContext<'_, W>,
     record: &RayHitRecord<W>,
-    count: usize,
-    found: &mut Hit16,
-    at: usize,
+    hits: &mut Hit16,
 ) -> bool {
+    let QueryContext { query, scene, packet, rays, .. } = context;
     if record.geom == [INVALID; W] {
         return true;
     }
+    // Look up the meshes and instances of the triangles.
     let (mut geometry, mut instances) = ([PrimitiveId16::NONE; W], [0; W]);
     let primitives = &record.prim;
-    for i in 0..count {
+    for i in 0..packet.count {
         if record.geom[i] == INVALID {
             continue;
         }
-        let attached = if record.inst[i] == INVALID { record.geom[i] } else { record.inst[i] };
-        instances[i] = instance_of[attached as usize];
-        geometry[i] = PrimitiveId16::MESHES + scene.instances[instances[i] as usize].mesh.0;
+        let in_world = record.inst[i] == INVALID;
+        let attached = if in_world { record.geom[i] } else { record.inst[i] };
+        instances[i] = query.instance_of[attached as usize];
+        let mesh = scene.instances[instances[i] as usize].mesh.0;
+        geometry[i] = PrimitiveId16::MESHES + mesh;
     }
-    let Some(faces) = Triangles::of(scene, &geometry, primitives, &instances) else { return true };
+    let triangles = Triangles::from_ids(scene, &geometry, primitives, &instances);
+    let Some(triangles) = triangles else { return true };
+    // Intersect them in f64.
     let mut ts = [0.0; W];
     let mut us = [0.0; W];
     let mut vs = [0.0; W];
     let mut flat = [false; W];
     for i in 0..W {
-        let (origin, direction) = exact.line(i);
-        let edges = triangle::Edges::new(faces.corners(i), origin, direction);
+        let (origin, direction) = rays.origin_and_direction(i);
+        let edges = triangle::EdgeFunctions::new(triangles.vertices(i), origin, direction);
         (us[i], vs[i]) = edges.weights();
         ts[i] = edges.t;
-        flat[i] = edges.flat;
+        flat[i] = edges.is_flat;
     }
     for i in (0..W).filter(|&i| flat[i] && geometry[i] != PrimitiveId16::NONE) {
-        let (origin, direction) = exact.line(i);
-        ts[i] = triangle::certified::round(faces.corners(i), origin, direction).t;
+        let (origin, direction) = rays.origin_and_direction(i);
+        ts[i] = triangle::certified::round(triangles.vertices(i), origin, direction).t;
     }
-    let mut odd = [false; W];
-    let (mut any_odd, mut all_within) = (false, true);
+    // Take Embree's own numbers where f64 gives none.
+    let mut failed = [false; W];
+    let (mut any_failed, mut all_within) = (false, true);
     for i in 0..W {
-        let within = (ts[i] > 0.0) & (ts[i] < exact.tmax[i]);
-        odd[i] = !(within & us[i].is_finite() & vs[i].is_finite());
-        any_odd |= odd[i];
+        let within = (ts[i] > 0.0) & (ts[i] < rays.tmax[i]);
+        failed[i] = !(within & us[i].is_finite() & vs[i].is_finite());
+        any_failed |= failed[i];
     }
-    if any_odd {
-        for i in (0..W).filter(|&i| odd[i] && geometry[i] != PrimitiveId16::NONE) {
-            if !(ts[i] > 0.0 && ts[i] < exact.tmax[i]) {
+    if any_failed {
+        for i in (0..W).filter(|&i| failed[i] && geometry[i] != PrimitiveId16::NONE) {
+            if !(ts[i] > 0.0 && ts[i] < rays.tmax[i]) {
                 all_within = false;
-                let last = exact.tmax[i].next_down();
-                ts[i] = exact.clip.widen(i, record.tfar[i]).clamp(f64::MIN_POSITIVE, last);
+                let last = rays.tmax[i].next_down();
+                let t = rays.interval.to_f64_t(i, record.tfar[i]);
+                ts[i] = t.clamp(f64::MIN_POSITIVE, last);
             }
             if !(us[i].is_finite() && vs[i].is_finite()) {
                 (us[i], vs[i]) = (f64::from(record.u[i]), f64::from(record.v[i]));
             }
         }
     }
+    // Write the hits.
+    let first = packet.first_lane();
     for i in 0..W {
-        found.t[at + i] = if geometry[i] != PrimitiveId16::NONE { ts[i] } else { f64::INFINITY };
-        found.u[at + i] = us[i];
-        found.v[at + i] = vs[i];
+        hits.t[first + i] = if geometry[i] != PrimitiveId16::NONE { ts[i] } else { f64::INFINITY };
+        hits.u[first + i] = us[i];
+        hits.v[first + i] = vs[i];
     }
-    found.id.geometry[at..at + W].copy_from_slice(&geometry);
-    found.id.primitive[at..at + W].copy_from_slice(primitives);
-    found.id.instance[at..at + W].copy_from_slice(&instances);
+    hits.id.geometry[first..first + W].copy_from_slice(&geometry);
+    hits.id.primitive[first..first + W].copy_from_slice(primitives);
+    hits.id.instance[first..first + W].copy_from_slice(&instances);
     all_within
 }

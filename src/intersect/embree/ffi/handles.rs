@@ -1,69 +1,111 @@
-//! Owners of the Embree objects that embree4-rs does not own, and the way to its own handles.
+//! The owners of Embree's devices, scenes and instances that embree4-rs does not own, and access to
+//! the handles that it keeps private.
 #![allow(unsafe_code)]
+
+use std::ffi::c_void;
+use std::fmt::Display;
+use std::sync::atomic::{AtomicIsize, Ordering};
 
 use embree4_rs::geometry::Geometry;
 use embree4_sys as sys;
 
 use crate::error::{Error, Result};
+use crate::intersect::embree::ffi::packet_width::PacketWidth;
 
-/// What Embree writes where there is no geometry or no instance.
-pub const INVALID: u32 = u32::MAX;
+/// The bytes that all devices of the process hold now, and the most that they ever held.
+static HELD_BYTES: AtomicIsize = AtomicIsize::new(0);
+static PEAK_BYTES: AtomicIsize = AtomicIsize::new(0);
 
-/// The handle of a scene of embree4-rs, which keeps it private.
-///
-/// This goes when the crate offers its handles itself.
-pub fn scene_handle(scene: &embree4_rs::Scene) -> sys::RTCScene {
-    use std::mem::{offset_of, size_of};
-    const WORD: usize = size_of::<usize>();
-    const DEVICE: usize = offset_of!(embree4_rs::Scene, device);
-    // The struct is the device (one word: its handle) and the scene's handle, in either order.
-    const _: () = assert!(size_of::<embree4_rs::Scene>() == 2 * WORD);
-    const _: () = assert!(size_of::<embree4_rs::Device>() == WORD);
-    const _: () = assert!(DEVICE == 0 || DEVICE == WORD);
-    let words = std::ptr::from_ref(scene).cast::<sys::RTCScene>();
-    // SAFETY: by the assertions the struct is two words, both pointers, and the one that is not
-    // the device is the scene's handle; the crate's version is pinned.
-    unsafe { words.add(if DEVICE == 0 { 1 } else { 0 }).read() }
+/// The most bytes that Embree held at any time in this process: trees, the vertices of meshes, and
+/// what it needs while it builds.
+pub fn peak_memory() -> u64 {
+    u64::try_from(PEAK_BYTES.load(Ordering::Relaxed)).unwrap_or(0)
 }
 
-/// Commits a scene again, of which geometries were changed and committed since.
-pub fn commit_again(scene: &embree4_rs::Scene) -> Result<()> {
-    // SAFETY: the handle is live.
-    unsafe { sys::rtcCommitScene(scene_handle(scene)) };
-    DeviceHandle::of(scene).check("placing what moved")
+/// The memory monitor, called from any thread, several at once, with the bytes that are allocated
+/// (above 0) or freed.
+unsafe extern "C" fn count_bytes(_: *mut c_void, bytes: isize, _: bool) -> bool {
+    let held = HELD_BYTES.fetch_add(bytes, Ordering::Relaxed).wrapping_add(bytes);
+    PEAK_BYTES.fetch_max(held, Ordering::Relaxed);
+    true
 }
 
-/// A reference of our own to a scene's device.
-pub struct DeviceHandle(pub sys::RTCDevice);
+/// Converts an error of embree4-rs into one of ours.
+pub fn failed(error: impl Display) -> Error {
+    Error::failed(format!("Embree does not start: {error}"))
+}
+
+/// A reference to a device, and the packet width of everything that is built on it.
+pub struct DeviceHandle {
+    handle: sys::RTCDevice,
+    pub width: PacketWidth,
+}
 
 impl DeviceHandle {
-    pub fn of(scene: &embree4_rs::Scene) -> Self {
-        // SAFETY: the handle is a live scene's; the call adds a reference, which `drop` releases.
-        Self(unsafe { sys::rtcGetSceneDevice(scene_handle(scene)) })
+    /// Starts a device of `threads` threads (0: all there are), for packets of `width`, or else of
+    /// the widest that are native.
+    ///
+    /// # Errors
+    /// When the library does not start.
+    ///
+    /// # Panics
+    /// When the processor does not support the width.
+    pub fn new(threads: usize, width: Option<PacketWidth>) -> Result<Self> {
+        let config = format!("threads={threads}\0");
+        let device = embree4_rs::Device::try_new(Some(&config)).map_err(failed)?;
+        const _: () = assert!(size_of::<embree4_rs::Device>() == size_of::<sys::RTCDevice>());
+        // SAFETY: the crate's struct is its handle and nothing else, by the assertion here and in
+        // `scene_handle`; the crate's version is pinned. Its reference is the one that `drop` releases.
+        let handle = unsafe { std::mem::transmute::<embree4_rs::Device, sys::RTCDevice>(device) };
+        let mut device = Self { handle, width: PacketWidth::One };
+        device.width = width.unwrap_or_else(|| PacketWidth::native(|p| device.property(p)));
+        assert!(device.width.is_supported(), "packets of a width that the processor lacks");
+        Ok(device)
     }
 
     /// The same device, as embree4-rs owns one.
-    pub fn device(&self) -> embree4_rs::Device {
-        const _: () = assert!(size_of::<embree4_rs::Device>() == size_of::<sys::RTCDevice>());
-        // SAFETY: the crate's struct is its handle and nothing else, by the assertion here and in
-        // `scene_handle`; the crate's version is pinned. The reference that the first call adds is
-        // the one that the struct releases when it is dropped.
+    pub fn to_device(&self) -> embree4_rs::Device {
+        // SAFETY: as in `new`. The reference that `clone` adds is the one that the struct releases
+        // when it is dropped.
         unsafe {
-            sys::rtcRetainDevice(self.0);
-            std::mem::transmute::<sys::RTCDevice, embree4_rs::Device>(self.0)
+            let handle = std::mem::ManuallyDrop::new(self.clone()).handle;
+            std::mem::transmute::<sys::RTCDevice, embree4_rs::Device>(handle)
         }
+    }
+
+    /// Counts the memory that the device takes from now on.
+    pub fn monitor_memory(&self) {
+        // SAFETY: the device is live, and the callback uses no pointer.
+        unsafe {
+            sys::rtcSetDeviceMemoryMonitorFunction(
+                self.handle,
+                Some(count_bytes),
+                std::ptr::null_mut(),
+            );
+        }
+    }
+
+    /// The version of the library, such as `4.4.0`.
+    pub fn version(&self) -> String {
+        let [major, minor, patch] = [
+            sys::RTCDeviceProperty::VERSION_MAJOR,
+            sys::RTCDeviceProperty::VERSION_MINOR,
+            sys::RTCDeviceProperty::VERSION_PATCH,
+        ]
+        .map(|property| self.property(property));
+        format!("{major}.{minor}.{patch}")
     }
 
     /// A property such as the version or a supported packet width.
     pub fn property(&self, property: sys::RTCDeviceProperty) -> isize {
         // SAFETY: the device is live.
-        unsafe { sys::rtcGetDeviceProperty(self.0, property) }
+        unsafe { sys::rtcGetDeviceProperty(self.handle, property) }
     }
 
-    /// The first error since the last call, as one of ours.
+    /// Returns the first error since the last call, as one of ours.
     pub fn check(&self, doing: &str) -> Result<()> {
         // SAFETY: the device is live.
-        match unsafe { sys::rtcGetDeviceError(self.0) } {
+        match unsafe { sys::rtcGetDeviceError(self.handle) } {
             sys::RTCError::NONE => Ok(()),
             sys::RTCError::OUT_OF_MEMORY => {
                 Err(Error::failed(format!("Embree ran out of memory while {doing}")))
@@ -73,92 +115,179 @@ impl DeviceHandle {
     }
 }
 
+impl Clone for DeviceHandle {
+    fn clone(&self) -> Self {
+        // SAFETY: the device is live; the call adds a reference, which `drop` releases.
+        unsafe { sys::rtcRetainDevice(self.handle) };
+        Self { ..*self }
+    }
+}
+
 impl Drop for DeviceHandle {
     fn drop(&mut self) {
-        // SAFETY: this is the reference that `of` took.
-        unsafe { sys::rtcReleaseDevice(self.0) }
+        // SAFETY: this is the reference that `new` or `clone` took.
+        unsafe { sys::rtcReleaseDevice(self.handle) }
     }
 }
 
 // SAFETY: Embree lets any thread use and release a device, and trace and release a committed scene,
-// which is what an `InnerScene` is from `new` on.
+// which is changed through `&mut` only, when nobody traces it.
 unsafe impl Send for DeviceHandle {}
 unsafe impl Sync for DeviceHandle {}
-unsafe impl Send for InnerScene {}
-unsafe impl Sync for InnerScene {}
+unsafe impl Send for CommittedScene {}
+unsafe impl Sync for CommittedScene {}
 // SAFETY: Embree lets any thread attach and release a geometry.
-unsafe impl Send for InstanceGeometry {}
+unsafe impl Sync for OpenScene {}
+unsafe impl Send for OwnedGeometry {}
 
-/// Moves the instance that a scene knows by `id`; the scene is to be committed again then.
-pub fn move_instance(scene: &embree4_rs::Scene, id: u32, columns: &[[f32; 3]; 4]) {
-    // SAFETY: the scene is live, and `id` one of its instances, which copies the twelve floats.
-    unsafe {
-        let handle = sys::rtcGetGeometry(scene_handle(scene), id);
-        let format = sys::RTCFormat::FLOAT3X4_COLUMN_MAJOR;
-        sys::rtcSetGeometryTransform(handle, 0, format, columns.as_ptr().cast());
-        sys::rtcCommitGeometry(handle);
+/// A scene that geometries are attached to, before it is committed.
+pub struct OpenScene(embree4_rs::Scene);
+
+impl OpenScene {
+    /// Begins a scene.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn new(
+        device: &DeviceHandle,
+        build_quality: sys::RTCBuildQuality,
+        flags: sys::RTCSceneFlags,
+    ) -> Result<Self> {
+        let options = embree4_rs::SceneOptions { build_quality, flags };
+        embree4_rs::Scene::try_new(device.to_device(), options).map(Self).map_err(failed)
+    }
+
+    /// Attaches a geometry, and returns its id.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn attach(&self, geometry: &dyn Geometry) -> Result<u32> {
+        self.0.attach_geometry(geometry).map_err(failed)
+    }
+
+    /// Commits the scene, which `device` is the device of.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn commit(self, device: &DeviceHandle) -> Result<CommittedScene> {
+        let failed = |e| Error::failed(format!("Embree cannot build the scene: {e}"));
+        Ok(CommittedScene { scene: self.0.commit().map_err(failed)?, device: device.clone() })
     }
 }
 
-/// A scene to be instanced, on a device that already has one.
-pub struct InnerScene(pub sys::RTCScene);
+/// A committed scene: that of a BLAS or of a TLAS.
+pub struct CommittedScene {
+    scene: embree4_rs::CommittedScene,
+    pub device: DeviceHandle,
+}
 
-impl InnerScene {
+impl CommittedScene {
+    /// Builds a scene of one geometry.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
     pub fn new(
         device: &DeviceHandle,
         quality: sys::RTCBuildQuality,
         flags: sys::RTCSceneFlags,
         geometry: &dyn Geometry,
     ) -> Result<Self> {
-        // SAFETY: the device is live, and so is the geometry, which the scene then references.
-        let scene = unsafe {
-            let handle = sys::rtcNewScene(device.0);
-            sys::rtcSetSceneBuildQuality(handle, quality);
-            sys::rtcSetSceneFlags(handle, flags);
-            sys::rtcAttachGeometry(handle, *geometry.handle());
-            sys::rtcCommitScene(handle);
-            Self(handle)
-        };
-        device.check("building an instanced mesh")?;
-        Ok(scene)
+        let scene = OpenScene::new(device, quality, flags)?;
+        scene.attach(geometry)?;
+        scene.commit(device)
+    }
+
+    /// Commits the scene again, after geometries of it were changed and committed.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn recommit(&mut self) -> Result<()> {
+        // SAFETY: the handle is live.
+        unsafe { sys::rtcCommitScene(self.handle()) };
+        self.device.check("placing what moved")
+    }
+
+    /// Sets the transform of the instance with this geometry id; [`CommittedScene::recommit`] is to follow.
+    pub fn set_instance_transform(&mut self, id: u32, columns: &[[f32; 3]; 4]) {
+        // SAFETY: `id` is one of the scene's instances, as the caller says.
+        unsafe { set_transform(self.geometry(id), columns) }
+    }
+
+    /// The handle of the geometry with this id.
+    pub(super) fn geometry(&self, id: u32) -> sys::RTCGeometry {
+        // SAFETY: the handle is live.
+        unsafe { sys::rtcGetGeometry(self.handle(), id) }
+    }
+
+    /// The handle of the scene, which embree4-rs keeps private.
+    ///
+    /// This goes when the crate offers its handles itself.
+    #[inline(always)]
+    pub(super) fn handle(&self) -> sys::RTCScene {
+        use std::mem::{offset_of, size_of};
+        const WORD: usize = size_of::<usize>();
+        const DEVICE: usize = offset_of!(embree4_rs::Scene, device);
+        // The struct is the device (one word: its handle) and the scene's handle, in either order.
+        const _: () = assert!(size_of::<embree4_rs::Scene>() == 2 * WORD);
+        const _: () = assert!(size_of::<embree4_rs::Device>() == WORD);
+        const _: () = assert!(DEVICE == 0 || DEVICE == WORD);
+        let words = std::ptr::from_ref(&self.scene.scene).cast::<sys::RTCScene>();
+        // SAFETY: by the assertions the struct is two words, both pointers, and the one that is not
+        // the device is the scene's handle; the crate's version is pinned.
+        unsafe { words.add(if DEVICE == 0 { 1 } else { 0 }).read() }
     }
 }
 
-impl Drop for InnerScene {
-    fn drop(&mut self) {
-        // SAFETY: this is the reference that `rtcNewScene` gave.
-        unsafe { sys::rtcReleaseScene(self.0) }
+/// A geometry of Embree's own kinds, to be attached to a scene.
+pub struct OwnedGeometry(pub(super) sys::RTCGeometry);
+
+impl OwnedGeometry {
+    pub(super) fn new(device: &DeviceHandle, kind: sys::RTCGeometryType) -> Self {
+        // SAFETY: the device is live.
+        Self(unsafe { sys::rtcNewGeometry(device.handle, kind) })
     }
-}
 
-/// An instance of a scene, to be attached to another one.
-pub struct InstanceGeometry(sys::RTCGeometry);
-
-impl InstanceGeometry {
-    /// `columns`: the matrix from the inner scene's space to the outer's, column by column.
-    pub fn new(device: &DeviceHandle, scene: &InnerScene, columns: &[[f32; 3]; 4]) -> Result<Self> {
-        // SAFETY: device and scene are live; the instance takes a reference to the scene and
-        // copies the twelve floats.
-        let instance = unsafe {
-            let handle = sys::rtcNewGeometry(device.0, sys::RTCGeometryType::INSTANCE);
-            sys::rtcSetGeometryInstancedScene(handle, scene.0);
-            let format = sys::RTCFormat::FLOAT3X4_COLUMN_MAJOR;
-            sys::rtcSetGeometryTransform(handle, 0, format, columns.as_ptr().cast());
-            sys::rtcCommitGeometry(handle);
-            Self(handle)
-        };
+    /// Makes an instance of a scene, with the matrix from its space to the outer scene's, column by
+    /// column.
+    ///
+    /// # Errors
+    /// When Embree runs out of memory.
+    pub fn instance(
+        device: &DeviceHandle,
+        scene: &CommittedScene,
+        columns: &[[f32; 3]; 4],
+    ) -> Result<Self> {
+        let instance = Self::new(device, sys::RTCGeometryType::INSTANCE);
+        // SAFETY: both are live; the instance takes a reference to the scene.
+        unsafe {
+            sys::rtcSetGeometryInstancedScene(instance.0, scene.handle());
+            set_transform(instance.0, columns);
+        }
         device.check("placing an instance")?;
         Ok(instance)
     }
 }
 
-impl Geometry for InstanceGeometry {
+/// Sets the transform of an instance.
+///
+/// # Safety
+/// The handle must be a live instance's, which copies the twelve floats.
+unsafe fn set_transform(instance: sys::RTCGeometry, columns: &[[f32; 3]; 4]) {
+    let format = sys::RTCFormat::FLOAT3X4_COLUMN_MAJOR;
+    // SAFETY: the caller's duty.
+    unsafe {
+        sys::rtcSetGeometryTransform(instance, 0, format, columns.as_ptr().cast());
+        sys::rtcCommitGeometry(instance);
+    }
+}
+
+impl Geometry for OwnedGeometry {
     fn handle(&self) -> &sys::RTCGeometry {
         &self.0
     }
 }
 
-impl Drop for InstanceGeometry {
+impl Drop for OwnedGeometry {
     fn drop(&mut self) {
         // SAFETY: this is the reference that `rtcNewGeometry` gave.
         unsafe { sys::rtcReleaseGeometry(self.0) }

@@ -1,92 +1,71 @@
-//! A mesh as Embree's own triangles, with no copy on the way.
+//! A mesh as Embree's own triangles: it reads the mesh's indices, and vertices are written straight
+//! into its memory.
 #![allow(unsafe_code)]
 
 use std::mem::MaybeUninit;
 
-use embree4_rs::geometry::Geometry;
 use embree4_sys as sys;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::intersect::embree::ffi::handles::DeviceHandle;
+use crate::intersect::embree::ffi::handles::{DeviceHandle, OwnedGeometry};
 use crate::scene::{GRAIN, Mesh};
 
-/// A triangle geometry of Embree: its indices are the mesh's own, its vertices were written straight
-/// into Embree's memory.
-pub struct MeshGeometry(sys::RTCGeometry);
-
-// SAFETY: Embree lets any thread attach and release a geometry.
-unsafe impl Send for MeshGeometry {}
-
-impl MeshGeometry {
-    /// The geometry of `mesh`, which must outlive every scene that it is attached to, with each
-    /// vertex where `place` puts it.
-    ///
-    /// # Errors
-    /// When Embree runs out of memory.
-    pub fn new(
-        device: &DeviceHandle,
-        mesh: &Mesh,
-        quality: sys::RTCBuildQuality,
-        place: impl Fn([f32; 3]) -> [f32; 3] + Sync,
-    ) -> Result<Self> {
-        let failed = |e: Error| {
-            Error::failed(format!("Embree cannot take mesh `{}`: {}", mesh.name, e.message()))
-        };
-        let (vertices, indices) = (&mesh.positions, &mesh.triangles);
-        const STRIDE: usize = size_of::<[f32; 3]>();
-        // SAFETY: the device is live. The index buffer is as long as said, aligned to four bytes,
-        // and by the caller's word stays where it is until the scene is gone. Embree pads the
-        // vertex buffer, which is its own.
-        let (geometry, buffer) = unsafe {
-            let handle = sys::rtcNewGeometry(device.0, sys::RTCGeometryType::TRIANGLE);
-            let geometry = Self(handle);
-            device.check("making a geometry").map_err(failed)?;
-            // In a scene of low quality each geometry has a tree of its own, by its own quality.
-            sys::rtcSetGeometryBuildQuality(handle, quality);
-            sys::rtcSetSharedGeometryBuffer(
-                handle,
-                sys::RTCBufferType::INDEX,
-                0,
-                sys::RTCFormat::UINT3,
-                indices.as_ptr().cast(),
-                0,
-                size_of::<[u32; 3]>(),
-                indices.len(),
-            );
-            let buffer = sys::rtcSetNewGeometryBuffer(
-                handle,
-                sys::RTCBufferType::VERTEX,
-                0,
-                sys::RTCFormat::FLOAT3,
-                STRIDE,
-                vertices.len(),
-            );
-            device.check("making the buffers of a geometry").map_err(failed)?;
-            (geometry, buffer.cast::<MaybeUninit<[f32; 3]>>())
-        };
-        // SAFETY: Embree gave room for so many vertices, which nobody else reads or writes before
-        // the geometry is committed; there was no error, so that the pointer is not null.
-        let placed = unsafe { std::slice::from_raw_parts_mut(buffer, vertices.len()) };
-        placed.par_iter_mut().zip(vertices).with_min_len(GRAIN).for_each(|(to, &from)| {
-            to.write(place(from));
-        });
-        // SAFETY: the geometry is live, and all its buffers are filled.
-        unsafe { sys::rtcCommitGeometry(geometry.0) };
-        device.check("making a geometry").map_err(failed)?;
-        Ok(geometry)
-    }
-}
-
-impl Geometry for MeshGeometry {
-    fn handle(&self) -> &sys::RTCGeometry {
-        &self.0
-    }
-}
-
-impl Drop for MeshGeometry {
-    fn drop(&mut self) {
-        // SAFETY: this is the reference that `rtcNewGeometry` gave.
-        unsafe { sys::rtcReleaseGeometry(self.0) }
-    }
+/// Makes the geometry of `mesh`, which must outlive every scene that it is attached to, with each
+/// vertex as `to_f32_space` returns it.
+///
+/// # Errors
+/// When Embree runs out of memory.
+pub fn new_mesh_geometry(
+    device: &DeviceHandle,
+    mesh: &Mesh,
+    quality: sys::RTCBuildQuality,
+    to_f32_space: impl Fn([f32; 3]) -> [f32; 3] + Sync,
+) -> Result<OwnedGeometry> {
+    let failed = |e: Error| {
+        Error::failed(format!("Embree cannot take mesh `{}`: {}", mesh.name, e.message()))
+    };
+    let (vertices, indices) = (&mesh.positions, &mesh.triangles);
+    const STRIDE: usize = size_of::<[f32; 3]>();
+    let geometry = OwnedGeometry::new(device, sys::RTCGeometryType::TRIANGLE);
+    device.check("making a geometry").map_err(failed)?;
+    // Share the indices, and let Embree allocate the vertices.
+    // SAFETY: the geometry is live. The index buffer is as long as said, aligned to four bytes,
+    // and by the caller's word stays where it is until the scene is gone. Embree pads the
+    // vertex buffer, which is its own.
+    let buffer = unsafe {
+        // In a scene of low quality each geometry has a tree of its own, by its own quality.
+        sys::rtcSetGeometryBuildQuality(geometry.0, quality);
+        sys::rtcSetSharedGeometryBuffer(
+            geometry.0,
+            sys::RTCBufferType::INDEX,
+            0,
+            sys::RTCFormat::UINT3,
+            indices.as_ptr().cast(),
+            0,
+            size_of::<[u32; 3]>(),
+            indices.len(),
+        );
+        sys::rtcSetNewGeometryBuffer(
+            geometry.0,
+            sys::RTCBufferType::VERTEX,
+            0,
+            sys::RTCFormat::FLOAT3,
+            STRIDE,
+            vertices.len(),
+        )
+    };
+    device.check("making the buffers of a geometry").map_err(failed)?;
+    // Write the vertices.
+    let buffer = buffer.cast::<MaybeUninit<[f32; 3]>>();
+    // SAFETY: Embree gave room for as many vertices, which nobody else reads or writes before
+    // the geometry is committed; there was no error, so that the pointer is not null.
+    let written = unsafe { std::slice::from_raw_parts_mut(buffer, vertices.len()) };
+    written.par_iter_mut().zip(vertices).with_min_len(GRAIN).for_each(|(to, &from)| {
+        to.write(to_f32_space(from));
+    });
+    // SAFETY: the geometry is live, and all its buffers are filled.
+    unsafe { sys::rtcCommitGeometry(geometry.0) };
+    device.check("making a geometry").map_err(failed)?;
+    Ok(geometry)
 }

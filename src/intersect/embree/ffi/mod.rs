@@ -1,9 +1,19 @@
-//! The boundary with the Embree library: handles, records, callbacks and the check of their layout.
+//! The boundary with the Embree library, and all the unsafe code of this crate: handles, records,
+//! entry points, callbacks and the check of their layout.
 
-pub mod abi_check;
-pub mod handles;
-pub mod memory;
-pub mod mesh_geometry;
-pub mod packet_width;
-pub mod records;
-pub mod user_geometry;
+mod abi_check;
+mod callbacks;
+mod handles;
+mod mesh_geometry;
+mod packet_width;
+pub mod queries;
+mod records;
+mod user_geometry;
+
+pub use abi_check::check as check_abi;
+pub use callbacks::{CallbackPacket, Filter, UserPrimitive, UserPrimitives};
+pub use handles::{CommittedScene, DeviceHandle, OpenScene, OwnedGeometry, peak_memory};
+pub use mesh_geometry::new_mesh_geometry;
+pub use packet_width::{Kernel, PacketWidth};
+pub use records::{Candidate, INVALID, LaneMask, RayHitRecord};
+pub use user_geometry::{PrimitiveTable, new_geometry, update_geometry};

@@ -1,97 +1,304 @@
-//! A packet's share of a batch.
+//! The rays of a packet in f64, and the f32 copies that Embree traverses with.
 
-use crate::geometry::{Departure, LANES, PrimitiveId16, Ray, Ray16, RayBatch};
-use crate::intersect::embree::ffi::handles::INVALID;
+use glam::DVec3;
 
-/// Neighbouring rays of a batch that are traced together: as many as a packet is wide, or fewer
-/// at the batch's end. They never stand in two sixteens.
-#[derive(Clone, Copy)]
-pub struct Packet<'a> {
-    rays: &'a RayBatch,
-    /// The first ray's place in the batch.
-    pub first: usize,
-    /// How many there are.
-    pub count: usize,
+use crate::geometry::sphere;
+use crate::intersect::brute_force::is_extreme;
+use crate::intersect::embree::f32_space::{
+    BOX_PADDING, F32Space, MAX_MOVED_DISTANCE, MAX_ORIGIN_DISTANCE,
+};
+use crate::intersect::embree::ffi::RayHitRecord;
+use crate::intersect::embree::packet::Packet;
+
+/// Components of an f32 direction below this share of the largest are set to 0: over any
+/// distance in the scene they move the ray by far less than the rounding above, and their
+/// reciprocals would overflow products.
+const NEGLIGIBLE: f64 = 1.0 / (1u64 << 50) as f64;
+
+/// A packet of rays in f64, side by side.
+#[repr(C, align(64))]
+pub struct PacketRays<const W: usize> {
+    pub origin: [[f64; W]; 3],
+    pub direction: [[f64; W]; 3],
+    pub tmax: [f64; W],
+    /// 1 / |direction|².
+    pub inverse_length_squared: [f64; W],
+    /// The intervals of the rays that their f32 copies cover.
+    pub interval: RayInterval<W>,
 }
 
-impl<'a> Packet<'a> {
-    /// The packets of a batch, each of `W` rays.
-    pub fn all<const W: usize>(rays: &'a RayBatch) -> impl Iterator<Item = Self> {
-        const { assert!(LANES.is_multiple_of(W)) };
-        (0..rays.len()).step_by(W).map(move |first| Self {
-            rays,
-            first,
-            count: W.min(rays.len() - first),
-        })
-    }
+/// The intervals of the rays of a packet that their f32 copies cover.
+#[derive(Clone, Copy)]
+#[repr(C, align(64))]
+pub struct RayInterval<const W: usize> {
+    /// The t at which the f32 ray starts.
+    pub start: [f64; W],
+    /// The length of a unit of t along the f32 ray: a power of two.
+    pub scale: [f64; W],
+}
 
-    /// The sixteen that they stand in, and the lane of the first.
+impl<const W: usize> RayInterval<W> {
+    /// Converts a t of the f32 ray `i` into one of the f64 ray.
     #[inline(always)]
-    pub fn lines(&self) -> (&'a Ray16, usize) {
-        (&self.rays.blocks()[self.first / LANES], self.first % LANES)
+    pub fn to_f64_t(&self, i: usize, t: f32) -> f64 {
+        self.start[i] + f64::from(t) / self.scale[i]
     }
 
-    /// The ray in a lane, if there is one.
-    #[inline]
-    pub fn get(&self, lane: usize) -> Option<Ray> {
-        (lane < self.count).then(|| self.rays.ray(self.first + lane))
-    }
-
-    /// The ray in a lane.
-    ///
-    /// # Panics
-    /// When there is none.
-    #[inline]
-    pub fn ray(&self, lane: usize) -> Ray {
-        self.rays.ray(self.first + lane)
-    }
-
-    /// What the ray in a lane left.
+    /// Converts a t of ray `i` into one of its f32 copy, with more slack than the f32 arithmetic on
+    /// both sides of a comparison with it can use up; never below 0.
     #[inline(always)]
-    pub fn from(&self, lane: usize) -> Option<Departure> {
-        self.rays.departure(self.first + lane)
+    pub fn to_f32_t(&self, i: usize, t: f64) -> f32 {
+        let t = (t - self.start[i]) * self.scale[i];
+        round_up(t.max(0.0) * (1.0 + 1.0 / (1 << 20) as f64))
     }
+}
 
-    /// The sphere that each ray left toward its outside, and toward its inside; [`INVALID`] where
-    /// there is none.
-    #[inline(always)]
-    pub fn spheres_left<const W: usize>(&self) -> ([u32; W], [u32; W]) {
-        let (mut outward, mut inward) = ([INVALID; W], [INVALID; W]);
-        let Some(left) = self.rays.departures().get(self.first / LANES) else {
-            return (outward, inward);
-        };
-        let at = self.first % LANES;
-        for i in 0..W {
-            let is_sphere = left.id.geometry[at + i] == PrimitiveId16::SPHERES;
-            let primitive = if is_sphere { left.id.primitive[at + i] } else { INVALID };
-            outward[i] = if left.is_back[at + i] { INVALID } else { primitive };
-            inward[i] = if left.is_back[at + i] { primitive } else { INVALID };
+/// The lanes of a packet that are traced, and those that are tested by brute force.
+pub struct TracedLanes<const W: usize> {
+    /// The rays that enter the scene's box.
+    pub traced: [bool; W],
+    /// The rays that no f32 ray can stand for: they start too far away, or their direction is too
+    /// short or too long for f64. They are not traced.
+    pub brute_force: [bool; W],
+    /// True if there is any of the latter.
+    pub any_brute_force: bool,
+}
+
+impl<const W: usize> PacketRays<W> {
+    pub fn new() -> Self {
+        Self {
+            origin: [[0.0; W]; 3],
+            direction: [[0.0; W]; 3],
+            tmax: [0.0; W],
+            inverse_length_squared: [0.0; W],
+            interval: RayInterval { start: [0.0; W], scale: [1.0; W] },
         }
-        (outward, inward)
     }
 
-    /// Whether each ray left plane `index`, and so does not meet it.
+    /// The origin and direction in lane `i`.
     #[inline(always)]
-    pub fn left_plane<const W: usize>(&self, index: u32) -> [bool; W] {
-        let mut gone = [false; W];
-        let Some(left) = self.rays.departures().get(self.first / LANES) else { return gone };
-        let at = self.first % LANES;
-        for i in 0..W {
-            gone[i] = (left.id.geometry[at + i] == PrimitiveId16::PLANES)
-                & (left.id.primitive[at + i] == index);
+    pub fn origin_and_direction(&self, i: usize) -> (DVec3, DVec3) {
+        let vector = |v: &[[f64; W]; 3]| DVec3::new(v[0][i], v[1][i], v[2][i]);
+        (vector(&self.origin), vector(&self.direction))
+    }
+
+    /// Sets the origin and direction in lane `i`.
+    #[inline(always)]
+    pub fn set_lane(&mut self, i: usize, (origin, direction): (DVec3, DVec3)) {
+        for axis in 0..3 {
+            self.origin[axis][i] = origin[axis];
+            self.direction[axis][i] = direction[axis];
         }
-        gone
     }
 
-    /// Whether none left a surface, nor went through one.
+    /// Loads the rays of a packet; the lanes left over repeat the first one.
     #[inline(always)]
-    pub fn is_fresh(&self) -> bool {
-        self.rays.have_no_departures()
+    pub fn load(&mut self, packet: &Packet<'_>) {
+        let (rays, first) = (packet.ray16(), packet.first_lane());
+        for axis in 0..3 {
+            self.origin[axis].copy_from_slice(&rays.origin[axis][first..first + W]);
+            self.direction[axis].copy_from_slice(&rays.direction[axis][first..first + W]);
+        }
+        self.tmax.copy_from_slice(&rays.tmax[first..first + W]);
+        for i in packet.count..W {
+            self.set_lane(i, self.origin_and_direction(0));
+            self.tmax[i] = self.tmax[0];
+        }
+        for i in 0..W {
+            let direction = self.origin_and_direction(i).1;
+            self.inverse_length_squared[i] = sphere::inverse_length_squared(direction);
+        }
     }
 
-    /// Whether none went straight through a surface.
+    /// The largest absolute coordinate of the origins.
     #[inline(always)]
-    pub fn is_unbroken(&self) -> bool {
-        self.rays.have_no_continuations()
+    pub fn max_origin_coordinate(&self) -> f64 {
+        // Positive floats are ordered as their bits, which compilers fold side by side.
+        let mut largest = [0u64; W];
+        for axis in 0..3 {
+            for i in 0..W {
+                largest[i] = largest[i].max(self.origin[axis][i].abs().to_bits());
+            }
+        }
+        f64::from_bits(largest.into_iter().fold(0, u64::max))
+    }
+
+    /// Sets the origins, directions and ends of the f32 rays in `record`.
+    #[inline(always)]
+    pub fn set_up_f32_rays(
+        &mut self,
+        space: &F32Space,
+        record: &mut RayHitRecord<W>,
+    ) -> TracedLanes<W> {
+        let RayHitRecord { org, dir, tfar, .. } = record;
+        let mut lanes =
+            TracedLanes { traced: [true; W], brute_force: [false; W], any_brute_force: false };
+        for i in 0..W {
+            lanes.traced[i] = self.tmax[i] > 0.0;
+        }
+        // See whether any ray starts too far away for the padding of the boxes.
+        let mut any_far = false;
+        for i in 0..W {
+            let (o, d) = self.origin_and_direction(i);
+            let distance = (o - space.center).abs().max_element();
+            let far = (distance > MAX_ORIGIN_DISTANCE * space.extent) | is_extreme(o, d);
+            any_far |= far & (self.tmax[i] > 0.0);
+        }
+        // If so, let all rays start where they enter the box.
+        self.interval.start = [0.0; W];
+        if any_far {
+            for i in 0..W {
+                let (o, d) = self.origin_and_direction(i);
+                let distance = (o - space.center).abs().max_element();
+                let (start, enters) = self.enter_bounds(i, space);
+                // A ray that passes the box certainly does so, however far away it starts.
+                let lost = (distance > MAX_MOVED_DISTANCE * space.extent) & enters;
+                lanes.brute_force[i] = (lost | is_extreme(o, d)) & lanes.traced[i];
+                lanes.any_brute_force |= lanes.brute_force[i];
+                self.interval.start[i] = start;
+                lanes.traced[i] &= enters & !lanes.brute_force[i];
+            }
+        }
+        // Recentre, scale and round.
+        for i in 0..W {
+            let (o, d) = self.origin_and_direction(i);
+            // 2^e with 2^e <= |d| < 2^(e+1), by the bits, clamped so that the inverse is normal.
+            let largest = d.abs().max_element();
+            let exponent = (largest.to_bits() >> 52).clamp(1, 2045);
+            let scale = f64::from_bits(exponent << 52);
+            let inverse_scale = f64::from_bits((2046 - exponent) << 52);
+            self.interval.scale[i] = scale;
+            let start = o - space.center;
+            for axis in 0..3 {
+                let component = d[axis] * inverse_scale;
+                dir[axis][i] = if component.abs() < NEGLIGIBLE { 0.0 } else { component as f32 };
+                org[axis][i] = start[axis] as f32;
+            }
+            tfar[i] = round_up(self.tmax[i] * scale);
+        }
+        // Move the origins to the box.
+        if any_far {
+            for i in 0..W {
+                let (o, d) = self.origin_and_direction(i);
+                let start = o - space.center + d * self.interval.start[i];
+                for axis in 0..3 {
+                    org[axis][i] = start[axis] as f32;
+                }
+                let length = self.tmax[i] - self.interval.start[i];
+                tfar[i] = round_up(length * self.interval.scale[i]);
+            }
+        }
+        lanes
+    }
+
+    /// The t at which ray `i` enters the scene's box, and whether it does before it ends.
+    fn enter_bounds(&self, i: usize, space: &F32Space) -> (f64, bool) {
+        let (o, d) = self.origin_and_direction(i);
+        let rounding = 64.0 * f64::EPSILON * (o - space.center).abs().max_element();
+        let bounds = space.bounds.padded(BOX_PADDING * space.extent + rounding);
+        let (a, b) = ((bounds.lower - o) / d, (bounds.upper - o) / d);
+        // `min` and `max` pass over the NaN of 0/0.
+        let (near, far) = (a.min(b), a.max(b));
+        let start = near.max_element().max(0.0);
+        let end = far.min_element().min(self.tmax[i]);
+        if start <= end { (start, true) } else { (0.0, false) }
+    }
+}
+
+/// Returns the f32 above `x`.
+#[inline(always)]
+fn round_up(x: f64) -> f32 {
+    let rounded = x as f32;
+    // Positive finite floats are ordered as their bits; infinity stays.
+    if rounded.is_finite() && rounded >= 0.0 {
+        f32::from_bits(rounded.to_bits() + 1)
+    } else {
+        rounded
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{Bounds, Ray, RayBatch};
+    use proptest::prelude::*;
+
+    fn single(space: &F32Space, ray: Ray) -> (PacketRays<1>, [f32; 3], [f32; 3], f32, bool) {
+        let mut exact = PacketRays::<1>::new();
+        let mut rays = RayBatch::default();
+        rays.push(&ray);
+        exact.load(&Packet::split::<1>(&rays).next().unwrap());
+        let mut record = RayHitRecord::<1>::new();
+        let traced = exact.set_up_f32_rays(space, &mut record).traced[0];
+        let RayHitRecord { org, dir, tfar, .. } = record;
+        (exact, org.map(|a| a[0]), dir.map(|a| a[0]), tfar[0], traced)
+    }
+
+    fn unit_space(offset: DVec3) -> F32Space {
+        F32Space::from_bounds(Bounds { lower: offset - 0.5, upper: offset + 0.5 })
+    }
+
+    #[test]
+    fn far_ray_is_moved_to_the_box() {
+        let space = unit_space(DVec3::splat(1e7));
+        let ray = Ray::new(DVec3::ZERO, DVec3::ONE);
+        let (_, org, _, _, traced) = single(&space, ray);
+        assert!(traced && org.iter().all(|x| x.abs() <= 0.51), "{org:?}");
+    }
+
+    #[test]
+    fn far_ray_beside_the_box_is_not_traced() {
+        let space = unit_space(DVec3::ZERO);
+        assert!(!single(&space, Ray::new(DVec3::X * 99.0, DVec3::Y)).4);
+    }
+
+    #[test]
+    fn direction_of_any_length_becomes_about_one() {
+        let space = unit_space(DVec3::ZERO);
+        for length in [1e-300, 1e-9, 1.0, 777.0, 1e250] {
+            let ray = Ray::new(DVec3::Z, DVec3::new(0.3, 0.2, -1.0) * length);
+            let (_, _, dir, _, _) = single(&space, ray);
+            let largest = dir.iter().fold(0.0f32, |m, c| m.max(c.abs()));
+            assert!((1.0..=2.0).contains(&largest), "{length}: {dir:?}");
+        }
+    }
+
+    #[test]
+    fn end_of_a_segment_rounds_up() {
+        let space = unit_space(DVec3::ZERO);
+        let ray = Ray::segment(DVec3::ZERO, DVec3::X * 0.1);
+        let (exact, _, _, tfar, _) = single(&space, ray);
+        assert!((1.0..1.000001).contains(&exact.interval.to_f64_t(0, tfar)));
+    }
+
+    #[test]
+    fn slight_components_become_zero() {
+        let space = unit_space(DVec3::ZERO);
+        let (_, _, dir, _, _) = single(&space, Ray::new(DVec3::Z, DVec3::new(1e-20, 0.0, -1.0)));
+        assert_eq!(dir, [0.0, 0.0, -1.0]);
+    }
+
+    proptest! {
+        #[test]
+        fn f32_ray_stays_within_the_padding(
+            offset in prop::array::uniform3(-1e7..1e7f64),
+            origin in prop::array::uniform3(-30.0..30.0f64),
+            target in prop::array::uniform3(-0.5..0.5f64),
+            scale in -200i32..200,
+        ) {
+            let offset = DVec3::from(offset);
+            let space = unit_space(offset);
+            let (from, to) = (DVec3::from(origin), DVec3::from(target));
+            let direction = (to - from) * 2f64.powi(scale);
+            let ray = Ray::new(offset + from, direction);
+            let (exact, org, dir, _, traced) = single(&space, ray);
+            prop_assert!(traced);
+            // The exact point of the ray nearest the target, and the f32 ray there.
+            let t = (offset + to - ray.origin).dot(direction) / direction.length_squared();
+            let along = (t - exact.interval.start[0]) * exact.interval.scale[0];
+            let p = DVec3::from(org.map(f64::from)) + DVec3::from(dir.map(f64::from)) * along;
+            let error = (p - (ray.position(t) - space.center)).abs().max_element();
+            prop_assert!(error <= 0.5 * BOX_PADDING, "{error:e}");
+        }
     }
 }

@@ -5,7 +5,7 @@ use crate::scene::{
 };
 use glam::{DVec3, Vec3};
 
-/// A ball over the ground and a lamp, in 16 × 16 pixels.
+/// Returns a sphere over the ground and a light, in 16 × 16 pixels.
 fn scene() -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [16, 16];
@@ -26,7 +26,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// The same with a mirror for a ball, in which the ground is seen.
+/// Returns the same scene with a mirror for a sphere, in which the ground is reflected.
 fn mirror() -> Scene {
     let mut scene = scene();
     let mirror = Material { reflect: Vec3::ONE, ..Material::default() };
@@ -37,16 +37,16 @@ fn mirror() -> Scene {
 #[test]
 fn rays_off_a_mirror_are_compared_too() {
     let scene = mirror();
-    let judge = Bvh::build(&scene, Precision::Certified);
-    let subject = Spoilt(Bvh::build(&scene, Precision::Certified), |ray, hit| {
+    let reference = Bvh::build(&scene, Precision::Certified);
+    let tested = Faulty(Bvh::build(&scene, Precision::Certified), |ray, hit| {
         if ray.departure.is_some() {
             *hit = None;
         }
     });
-    let (subject, judge): (&dyn Intersector, &dyn Intersector) = (&subject, &judge);
+    let (tested, reference): (&dyn Intersector, &dyn Intersector) = (&tested, &reference);
     let precision = Precision::Fast;
     let found =
-        Comparer { scene: &scene, precision, subject, margin: 1e-6, judge, camera: 0 }.run();
+        Comparer { scene: &scene, precision, tested, margin: 1e-6, reference, camera: 0 }.run();
     assert!(found.secondary_rays > 20, "{found}");
     assert!(found.causes.other > 20 && !found.passed, "{found}");
 }
@@ -56,12 +56,12 @@ fn without_mirrors_there_are_no_secondary_rays() {
     assert_eq!(compared(Precision::Certified, |_, _| {}).secondary_rays, 0);
 }
 
-/// An intersector that is right, but for what `spoil` does to its hits.
-struct Spoilt<'s>(Bvh<'s>, fn(&Ray, &mut Option<Hit>));
+/// A certified intersector whose hits the function alters.
+struct Faulty<'s>(Bvh<'s>, fn(&Ray, &mut Option<Hit>));
 
-impl Intersector for Spoilt<'_> {
+impl Intersector for Faulty<'_> {
     fn name(&self) -> &'static str {
-        "spoilt"
+        "faulty"
     }
 
     fn version(&self) -> String {
@@ -78,21 +78,21 @@ impl Intersector for Spoilt<'_> {
     }
 }
 
-fn compared(precision: Precision, spoil: fn(&Ray, &mut Option<Hit>)) -> Validation {
+fn compared(precision: Precision, fault: fn(&Ray, &mut Option<Hit>)) -> Validation {
     let scene = scene();
-    let judge = Bvh::build(&scene, Precision::Certified);
-    let subject = Spoilt(Bvh::build(&scene, Precision::Certified), spoil);
-    let (subject, judge): (&dyn Intersector, &dyn Intersector) = (&subject, &judge);
-    Comparer { scene: &scene, precision, subject, margin: 1e-6, judge, camera: 0 }.run()
+    let reference = Bvh::build(&scene, Precision::Certified);
+    let tested = Faulty(Bvh::build(&scene, Precision::Certified), fault);
+    let (tested, reference): (&dyn Intersector, &dyn Intersector) = (&tested, &reference);
+    Comparer { scene: &scene, precision, tested, margin: 1e-6, reference, camera: 0 }.run()
 }
 
-/// Whether the ray is the one through the middle of pixel (8, 9), which meets the ball.
+/// True if the ray is the one through the centre of pixel (8, 9), which hits the sphere.
 fn is_chosen(ray: &Ray) -> bool {
-    *ray == scene().cameras[0].rays([16, 16]).ray(8.5, 9.5)
+    *ray == scene().cameras[0].ray_generator([16, 16]).ray(8.5, 9.5)
 }
 
 #[test]
-fn what_agrees_passes_in_both_precisions() {
+fn equal_hits_pass_in_both_precisions() {
     for precision in [Precision::Fast, Precision::Certified] {
         let found = compared(precision, |_, _| {});
         assert!(found.passed && found.worst.is_none(), "{found}");
@@ -102,20 +102,20 @@ fn what_agrees_passes_in_both_precisions() {
 
 #[test]
 fn an_ulp_of_t_is_a_figure_in_fast_and_a_failure_in_certified() {
-    let spoil: fn(&Ray, &mut Option<Hit>) = |ray, hit| {
+    let fault: fn(&Ray, &mut Option<Hit>) = |ray, hit| {
         if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
             hit.t = hit.t.next_up();
         }
     };
-    let fast = compared(Precision::Fast, spoil);
+    let fast = compared(Precision::Fast, fault);
     assert!(fast.passed && fast.max_t_error_ulp == 1, "{fast}");
     assert_eq!((fast.worst.as_ref().unwrap().pixel, fast.primitive_mismatches), ([8, 9], 0));
-    let certified = compared(Precision::Certified, spoil);
+    let certified = compared(Precision::Certified, fault);
     assert!(!certified.passed && certified.causes.other == 1, "{certified}");
 }
 
 #[test]
-fn what_hits_another_primitive_has_no_error_of_t() {
+fn a_hit_of_another_primitive_has_no_error_of_t() {
     let found = compared(Precision::Fast, |ray, hit| {
         if let Some(hit) = hit.as_mut().filter(|_| is_chosen(ray)) {
             hit.t *= 2.0;
@@ -138,7 +138,7 @@ fn a_weight_that_differs_fails_in_certified() {
 }
 
 #[test]
-fn a_ball_that_is_not_hit_is_unexplained_and_the_worst_ray_finds_it_again() {
+fn a_sphere_that_is_not_hit_is_unexplained_and_the_worst_ray_finds_it_again() {
     let found = compared(Precision::Fast, |ray, hit| {
         if is_chosen(ray) {
             *hit = None;
@@ -147,6 +147,6 @@ fn a_ball_that_is_not_hit_is_unexplained_and_the_worst_ray_finds_it_again() {
     assert!(!found.passed && found.unexplained_mismatches == 1, "{found}");
     assert_eq!(found.heatmap.pixel(8, 9), RED);
     let worst = found.worst.unwrap();
-    assert_eq!((worst.pixel, worst.cause, worst.shadow), ([8, 9], Some("other"), false));
+    assert_eq!((worst.pixel, worst.cause, worst.is_shadow_ray), ([8, 9], Some("other"), false));
     assert!(is_chosen(&crate::measure::ray_from_text(&worst.ray).unwrap()));
 }

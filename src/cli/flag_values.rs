@@ -1,0 +1,147 @@
+//! The values of flags, and their parsers.
+
+use std::str::FromStr;
+use std::time::Duration;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+use crate::error::Result;
+use crate::film::View;
+use crate::intersect::{Backend, BuildQuality, Precision};
+use crate::measure::stress::Goal;
+use crate::scene::Tone;
+use crate::scene::check::{check_samples, check_size};
+
+/// Returns the parser of a ray tracing backend. It knows the name of Embree in every build, and
+/// fails for it in a build without Embree.
+pub fn backend() -> impl TypedValueParser<Value = Backend> {
+    let backend = |name: String| -> Result<Backend, &'static str> {
+        match &*name {
+            "rust" => Ok(Backend::Rust),
+            #[cfg(feature = "embree")]
+            _ => Ok(Backend::Embree),
+            #[cfg(not(feature = "embree"))]
+            _ => Err("this envers was built without Embree; its backend is `rust`"),
+        }
+    };
+    PossibleValuesParser::new(["embree", "rust"]).try_map(backend)
+}
+
+/// The build quality of Embree's BVH; none leaves the choice to the renderer.
+pub type BvhQuality = Option<BuildQuality>;
+
+/// The names of values and the values.
+pub type Choices<T> = [(&'static str, T)];
+
+pub const PRECISIONS: &Choices<Precision> =
+    &[("fast", Precision::Fast), ("certified", Precision::Certified)];
+pub const BVH_QUALITIES: &Choices<BvhQuality> =
+    &[("auto", None), ("low", Some(BuildQuality::Low)), ("medium", Some(BuildQuality::Medium))];
+pub const VIEWS: &Choices<View> =
+    &[("beauty", View::Beauty), ("normal", View::Normal), ("depth", View::Depth), ("id", View::Id)];
+pub const TONES: &Choices<Tone> =
+    &[("none", Tone::None), ("reinhard", Tone::Reinhard), ("aces", Tone::Aces)];
+
+/// Returns the parser of a value that is chosen by name.
+pub fn choice<T>(choices: &'static Choices<T>) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let value = |name: String| {
+        let found = choices.iter().find(|(choice, _)| *choice == name);
+        found.expect("clap accepts no other names").1
+    };
+    PossibleValuesParser::new(choices.iter().map(|(name, _)| *name)).map(value)
+}
+
+/// Parses a picture's size, such as `1920x1080`.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let parse = || {
+        let (width, height) = text.split_once(['x', 'X', '×'])?;
+        Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+    };
+    let size = parse().ok_or("expected WIDTHxHEIGHT in pixels, such as 1920x1080")?;
+    check_size(size)
+        .map_err(|e| format!("{} ({})", e.message(), e.advice().unwrap_or_default()))?;
+    Ok(size)
+}
+
+/// Parses the name of a goal, `G1` to `G7`.
+pub fn goal(text: &str) -> Result<Goal, String> {
+    let is_named = |goal: &Goal| goal.name().eq_ignore_ascii_case(text.trim());
+    Goal::ALL.into_iter().find(is_named).ok_or("expected a goal, G1 to G7".to_owned())
+}
+
+/// Parses a time of an animation in seconds.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    number(text, |x| (0.0..=1e15).contains(x), "expected seconds, from 0 to 1e15")
+}
+
+/// Parses a time limit in seconds.
+pub fn duration(text: &str) -> Result<Duration, String> {
+    number(text, |x| (1e-3..=1e6).contains(x), "expected seconds, from 0.001 to 1e6")
+        .map(Duration::from_secs_f64)
+}
+
+/// Parses a number from 0 to 1.
+pub fn share(text: &str) -> Result<f32, String> {
+    number(text, |x| (0.0..=1.0).contains(x), "expected a number from 0 to 1")
+}
+
+/// Parses a finite number.
+pub fn finite(text: &str) -> Result<f64, String> {
+    number(text, |x: &f64| x.is_finite(), "expected a finite number")
+}
+
+/// Parses a number of at least 0.
+pub fn not_negative(text: &str) -> Result<f32, String> {
+    number(text, |x| *x >= 0.0, "expected a number, 0 or above")
+}
+
+/// Parses a number that must be valid.
+fn number<T: FromStr>(
+    text: &str,
+    is_valid: impl Fn(&T) -> bool,
+    expected: &str,
+) -> Result<T, String> {
+    text.parse().ok().filter(is_valid).ok_or(expected.to_owned())
+}
+
+/// The fewest and the most samples of a pixel in adaptive sampling.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleRange {
+    pub min: u32,
+    pub max: u32,
+}
+
+/// Parses a range of samples per pixel, such as `1..25`.
+pub fn sample_range(text: &str) -> Result<SampleRange, String> {
+    let parse = || {
+        let (min, max) = text.split_once("..")?;
+        Some(SampleRange { min: min.trim().parse().ok()?, max: max.trim().parse().ok()? })
+    };
+    let range = parse().ok_or("expected MIN..MAX samples per pixel, such as 1..25")?;
+    check_samples(range.min, range.max).map_err(|e| e.message().to_owned())?;
+    Ok(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_samples_is_two_numbers_with_two_dots() {
+        assert_eq!(sample_range("4..36"), Ok(SampleRange { min: 4, max: 36 }));
+        for bad in ["4", "4..", "..4", "4-36", "4...36", "0..4", "36..4", "1..65537", "-1..4", ""] {
+            assert!(sample_range(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn size_is_two_numbers_with_an_x() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for bad in ["640", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

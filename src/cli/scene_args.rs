@@ -1,0 +1,172 @@
+//! The flags for loading and tracing a scene, and the scene that they select.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::flag_values::{PRECISIONS, choice, seconds, size};
+use crate::cli::{load_report, paths};
+use crate::error::{Error, Result};
+use crate::intersect::Precision;
+use crate::load::{Limits, LoadOptions, LoadReport, Loaded, NamedLimit};
+use crate::scene::Scene;
+use crate::scene::check::{MAX_DEPTH, MAX_SPP};
+
+/// The flags for loading a scene's files; shared by the commands that load one.
+#[derive(Args, Clone)]
+pub struct LoadArgs {
+    /// Material variant of a glTF file to use; `envers info` lists them. In a scene file it applies
+    /// to every model that has this variant and selects none itself
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// Allow files to refer to files outside the folder of SCENE
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Change a limit on what SCENE may use: bytes, json, nodes, depth, instances, vertices,
+    /// triangles, deformed, elements, keys, pictures or pixels; can be given several times
+    #[arg(long, value_name = "NAME=NUMBER")]
+    pub limit: Vec<NamedLimit>,
+}
+
+impl LoadArgs {
+    /// Returns the options of a load.
+    pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
+        let set = |limits: Limits, &NamedLimit(limit, value): &_| limits.with_limit(limit, value);
+        LoadOptions {
+            size,
+            variant: self.variant.clone(),
+            allow_outside: self.allow_outside,
+            limits: self.limit.iter().fold(Limits::default(), set),
+        }
+    }
+}
+
+/// The scene and the flags that select what of it to show; shared by the commands that render one.
+#[derive(Args)]
+pub struct InputArgs {
+    /// Scene file (.toml) or model (.gltf, .glb, .vrm, .obj)
+    pub scene: PathBuf,
+    /// Image size in pixels, such as 1920x1080 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<[u32; 2]>,
+    /// Camera, by name or by index from 0 [default: the first]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub camera: Option<String>,
+    /// Number of threads [default: one per processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
+    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub load: LoadArgs,
+    /// Do not print progress and warnings
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// The flags for tracing a scene; shared by `render` and `validate`.
+#[derive(Args)]
+pub struct TraceArgs {
+    #[command(flatten)]
+    pub input: InputArgs,
+    /// Samples per pixel [default: the scene's; 16 for a model]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SPP)), allow_negative_numbers = true)]
+    pub spp: Option<u32>,
+    /// Maximum number of reflections and refractions along a light path, from 0 to 65536 [default:
+    /// the scene's, or 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), allow_negative_numbers = true)]
+    pub max_depth: Option<u32>,
+    /// Time of an animation to show, in seconds [default: 0, the first frame]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// Precision of the hits: fast traces in f32 and intersects in f64, certified equals exact
+    /// arithmetic
+    #[arg(long, value_name = "PRECISION", value_parser = choice(PRECISIONS), default_value = "fast")]
+    pub precision: Precision,
+    /// Fail with exit status 2 if anything in the scene's files is dropped, unsupported or replaced
+    /// by a placeholder
+    #[arg(long)]
+    pub strict: bool,
+}
+
+/// A loaded scene, with the flags applied.
+pub struct SceneInput {
+    pub scene: Scene,
+    /// The load report.
+    pub report: LoadReport,
+    /// The index of the camera.
+    pub camera: usize,
+}
+
+impl InputArgs {
+    /// Loads the scene, with its animation. If `strict`, it must be complete.
+    ///
+    /// # Errors
+    /// When the scene cannot be loaded, is not complete, or has no such camera.
+    pub fn load(&self, strict: bool) -> Result<SceneInput> {
+        paths::check_input(&self.scene)?;
+        // The number of threads applies to loading and writing, too. Building the global pool fails
+        // only if there is one already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
+        let Loaded { scene, report } = self.load.options(self.size).load(&self.scene)?;
+        if strict {
+            load_report::check_strictly(&report, &self.scene)?;
+        }
+        let camera = match &self.camera {
+            None => 0,
+            Some(camera) => find_camera(&scene, camera)?,
+        };
+        Ok(SceneInput { scene, report, camera })
+    }
+
+    /// Returns the number of threads; 0 means one per processor.
+    pub fn threads(&self) -> usize {
+        self.threads.map_or(0, usize::from)
+    }
+}
+
+impl TraceArgs {
+    /// Loads the scene and applies the flags. With `--time` the scene is that of this time, without
+    /// an animation.
+    ///
+    /// # Errors
+    /// When the scene cannot be loaded, or the flags do not fit it.
+    pub fn load(&self) -> Result<SceneInput> {
+        let mut input = self.input.load(self.strict)?;
+        let (scene, path) = (&mut input.scene, &self.input.scene);
+        if let Some(spp) = self.spp {
+            (scene.film.spp, scene.film.adaptive) = (spp, None);
+        }
+        if let Some(depth) = self.max_depth {
+            scene.film.max_depth = depth;
+        }
+        if let Some(time) = self.time {
+            if scene.animation.is_none() {
+                return Err(Error::input(
+                    "--time needs an animation, and the scene has no animation",
+                )
+                .at(path)
+                .help("leave out --time"));
+            }
+            *scene = scene.at_time(time).map_err(|e| e.at(path))?;
+        }
+        Ok(input)
+    }
+}
+
+/// Returns the index of a camera, given by its name or index.
+fn find_camera(scene: &Scene, camera: &str) -> Result<usize> {
+    if let Some(index) = scene.cameras.iter().position(|c| c.name == camera) {
+        return Ok(index);
+    }
+    match camera.parse::<usize>() {
+        Ok(index) if index < scene.cameras.len() => Ok(index),
+        _ => {
+            let label = |(i, name): (usize, &str)| {
+                if name.is_empty() { i.to_string() } else { format!("{i} `{name}`") }
+            };
+            let cameras = scene.cameras.iter().map(|c| &*c.name).enumerate();
+            let labels: Vec<String> = cameras.map(label).collect();
+            Err(Error::input(format!("there is no camera `{camera}`"))
+                .help(format!("the scene has {}", labels.join(", "))))
+        }
+    }
+}

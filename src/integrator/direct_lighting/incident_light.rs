@@ -1,0 +1,67 @@
+//! The light of one source that arrives at the surfaces of a wave.
+
+use glam::DVec3;
+
+use crate::geometry::{LANES, Lanes};
+use crate::integrator::radiance::set_lane;
+use crate::integrator::surface_evaluation::LitSurface16;
+use crate::scene::{Light, LightKind};
+
+/// The light of one source that arrives at sixteen points, if nothing is in between.
+#[derive(Default)]
+#[repr(C, align(64))]
+pub(super) struct IncidentLight16 {
+    /// The vectors to the light, of any length.
+    pub toward: [Lanes<f64>; 3],
+    /// The intensities.
+    pub intensity: [Lanes<f32>; 3],
+    /// True in each lane at which light arrives.
+    pub arrives: Lanes<bool>,
+    /// The ends of rays along `toward`.
+    pub tmax: f64,
+}
+
+impl IncidentLight16 {
+    /// Sets it to the light that arrives at the surfaces that scatter any.
+    #[inline(always)]
+    pub fn set(&mut self, light: &Light, lit: &LitSurface16) {
+        self.intensity = light.intensity.to_array().map(|channel| [channel; LANES]);
+        self.arrives = lit.scatters;
+        self.tmax = if light.is_bounded() { 1.0 } else { f64::INFINITY };
+        match light.kind {
+            LightKind::Directional { direction } => {
+                self.toward = (-direction).to_array().map(|x| [x; LANES]);
+            }
+            LightKind::Point { position, .. } if light.has_constant_intensity() => {
+                for axis in 0..3 {
+                    for i in 0..LANES {
+                        self.toward[axis][i] = position[axis] - lit.surface.position[axis][i];
+                    }
+                }
+                for i in 0..LANES {
+                    self.arrives[i] &= self.toward(i).length_squared() != 0.0;
+                }
+            }
+            // Any other light is evaluated point by point.
+            _ => {
+                for i in (0..LANES).filter(|&i| lit.scatters[i]) {
+                    match light.incident(lit.surface.position(i)) {
+                        None => self.arrives[i] = false,
+                        Some(incident) => {
+                            for axis in 0..3 {
+                                self.toward[axis][i] = incident.toward[axis];
+                            }
+                            set_lane(&mut self.intensity, i, incident.intensity);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Returns the vector to the light in lane `i`.
+    #[inline(always)]
+    pub fn toward(&self, i: usize) -> DVec3 {
+        DVec3::new(self.toward[0][i], self.toward[1][i], self.toward[2][i])
+    }
+}

@@ -1,0 +1,286 @@
+//! The direct lighting of the surfaces of a wave: what they reflect of one light, if nothing is in
+//! between, and the shadow rays that ask whether anything is.
+
+mod incident_light;
+#[cfg(test)]
+mod tests;
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId16};
+use crate::integrator::counts::FeatureCounts;
+use crate::integrator::radiance::{Radiance16, WaveRadiance, all_finite, any, lane, set_lane};
+use crate::integrator::shadow_rays::{PendingLight, ShadowQueue};
+use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
+use crate::integrator::wave::Wave;
+use crate::integrator::{Counts, Integrator, simd};
+use crate::scene::Light;
+use crate::shading;
+use incident_light::IncidentLight16;
+
+/// The radiance due to incident light that is not finite. No finite factors make NaN.
+const NOT_FINITE_LIGHT: Vec3 = Vec3::NAN;
+
+/// Adds the ambient light that the surfaces of a wave reflect.
+pub(super) fn add_ambient(
+    light: &Light,
+    surfaces: &WaveSurfaces,
+    has_occlusion: bool,
+    radiance: &mut WaveRadiance,
+) {
+    for lit in surfaces.lit() {
+        let mut reflected = lit.diffuse;
+        for channel in 0..3 {
+            reflected[channel].iter_mut().for_each(|x| *x *= light.intensity[channel]);
+            if has_occlusion {
+                reflected[channel].iter_mut().zip(lit.ambient).for_each(|(x, share)| *x *= share);
+            }
+        }
+        radiance.add_block(lit.block, &reflected, &lit.scatters);
+    }
+}
+
+/// Works out what the surfaces of a wave reflect of a light. For a light that casts shadows it is
+/// queued in `shadows` with a shadow ray for each surface; else it is added to the radiance.
+pub(super) fn reflect(
+    integrator: &Integrator<'_>,
+    light: &Light,
+    wave: &Wave,
+    surfaces: &WaveSurfaces,
+    radiance: &mut WaveRadiance,
+    shadows: &mut ShadowQueue,
+    counts: &mut Counts,
+) {
+    // The loop is compiled for what a scene has, and for each instruction set.
+    let (lit, counts) = (surfaces.lit(), &mut counts.work);
+    shadows.clear();
+    simd::dispatch(
+        integrator.arch,
+        #[inline(always)]
+        || {
+            if integrator.features.highlights {
+                reflect_blocks::<true>(light, wave, lit, radiance, shadows, counts);
+            } else {
+                reflect_blocks::<false>(light, wave, lit, radiance, shadows, counts);
+            }
+        },
+    );
+}
+
+#[inline(always)]
+fn reflect_blocks<const HIGHLIGHTS: bool>(
+    light: &Light,
+    wave: &Wave,
+    lit_blocks: &[LitSurface16],
+    radiance: &mut WaveRadiance,
+    shadows: &mut ShadowQueue,
+    counts: &mut FeatureCounts,
+) {
+    let casts_shadow = light.casts_shadow();
+    let (mut incident, mut reflected) = (IncidentLight16::default(), Reflected16::default());
+    for lit in lit_blocks {
+        let hits = &wave.hits.blocks()[lit.block];
+        // The light that arrives, and the share of it that goes to the viewer.
+        incident.set(light, lit);
+        reflected.set::<HIGHLIGHTS>(lit, &incident, &wave.rays.blocks()[lit.block].direction, hits);
+        if !any(&reflected.faces_light) {
+            continue;
+        }
+        if HIGHLIGHTS && lit.has_highlights {
+            counts.highlights += LANES as u64;
+        }
+        let mut contribution = [[0.0f32; LANES]; 3];
+        for channel in 0..3 {
+            for i in 0..LANES {
+                contribution[channel][i] =
+                    reflected.share[channel][i] * incident.intensity[channel][i];
+            }
+        }
+        // Only lanes that are not black count.
+        let mut is_lit = [false; LANES];
+        for i in 0..LANES {
+            let [r, g, b] = [contribution[0][i], contribution[1][i], contribution[2][i]];
+            is_lit[i] = reflected.faces_light[i] & ((r != 0.0) | (g != 0.0) | (b != 0.0));
+        }
+        if !all_finite(&contribution) {
+            mark_not_finite(&incident, &reflected, &mut contribution, &mut is_lit);
+        } else if !any(&is_lit) {
+            continue;
+        }
+        // What may be in shadow waits for its shadow ray.
+        if casts_shadow {
+            let block = lit.block;
+            shadows.pending.push(PendingLight { block, radiance: contribution, is_active: is_lit });
+            spawn_shadow_rays(lit, hits, &incident, &reflected, &is_lit, shadows);
+        } else {
+            radiance.add_block(lit.block, &contribution, &is_lit);
+        }
+    }
+}
+
+/// Spawns shadow rays from the lit surfaces of a block toward a light. The other lanes get rays that
+/// hit nothing.
+#[inline(always)]
+fn spawn_shadow_rays(
+    lit: &LitSurface16,
+    hits: &Hit16,
+    incident: &IncidentLight16,
+    reflected: &Reflected16,
+    is_lit: &Lanes<bool>,
+    shadows: &mut ShadowQueue,
+) {
+    let (rays, departure) = shadows.rays.push_block();
+    for axis in 0..3 {
+        rays.origin[axis] = lit.surface.position[axis];
+        rays.direction[axis] = incident.toward[axis];
+    }
+    for i in 0..LANES {
+        rays.tmax[i] = if is_lit[i] { incident.tmax } else { 0.0 };
+        // They leave their surfaces on the light's side.
+        departure.is_back[i] = !reflected.is_light_in_front[i];
+    }
+    departure.id.geometry = hits.id.geometry;
+    departure.id.primitive = hits.id.primitive;
+    departure.id.instance = hits.id.instance;
+}
+
+/// Tells, in lanes that are not finite, the causes apart: makes them NaN where the incident light is
+/// not finite, and infinite where the surface's share of it is not. What overflows only in their
+/// product is infinite already.
+#[cold]
+fn mark_not_finite(
+    incident: &IncidentLight16,
+    reflected: &Reflected16,
+    contribution: &mut Radiance16,
+    is_lit: &mut Lanes<bool>,
+) {
+    for i in (0..LANES).filter(|&i| reflected.faces_light[i]) {
+        let (share, intensity) = (lane(&reflected.share, i), lane(&incident.intensity, i));
+        if share == Vec3::ZERO {
+            is_lit[i] = false;
+        } else if !intensity.is_finite() {
+            set_lane(contribution, i, NOT_FINITE_LIGHT);
+            is_lit[i] = true;
+        } else if !share.is_finite() {
+            set_lane(contribution, i, Vec3::INFINITY);
+            is_lit[i] = true;
+        }
+    }
+}
+
+/// The light that sixteen surfaces reflect to the viewer, in units of its intensity.
+#[derive(Default)]
+#[repr(C, align(64))]
+struct Reflected16 {
+    /// The shares.
+    share: [Lanes<f32>; 3],
+    /// True in each lane whose surface faces the light.
+    faces_light: Lanes<bool>,
+    /// True in each lane whose geometric normal points to the light's side.
+    is_light_in_front: Lanes<bool>,
+}
+
+impl Reflected16 {
+    /// Sets it to what surfaces, seen along `directions`, reflect of the incident light: Lambert's
+    /// n·l, without 1/π, and Phong's max(0, r·l)^α with r = u − 2(u·n)n, both as in the tutorial
+    /// (III.2, III.3; Bui Tuong Phong, *Illumination for Computer Generated Pictures*, 1975).
+    /// A surface that faces away from the light reflects nothing.
+    #[inline(always)]
+    fn set<const HIGHLIGHTS: bool>(
+        &mut self,
+        lit: &LitSurface16,
+        incident: &IncidentLight16,
+        directions: &[Lanes<f64>; 3],
+        hits: &Hit16,
+    ) {
+        // The cosines of Lambert and Phong.
+        let surface = &lit.surface;
+        let (mut diffuse, mut mirrored) = ([0.0; LANES], [0.0; LANES]);
+        let unit = shading::normalize16(&incident.toward, &incident.arrives);
+        let light = |i: usize| DVec3::new(unit[0][i], unit[1][i], unit[2][i]);
+        for i in 0..LANES {
+            diffuse[i] = shading::lambert(surface.normal(i), light(i));
+        }
+        if HIGHLIGHTS && lit.has_highlights {
+            let view = shading::normalize16(directions, &incident.arrives);
+            for i in 0..LANES {
+                let view = DVec3::new(view[0][i], view[1][i], view[2][i]);
+                mirrored[i] = shading::phong(surface.normal(i), view, light(i));
+            }
+        }
+        self.set_facing(lit, incident, &diffuse, hits);
+        if !any(&self.faces_light) {
+            return;
+        }
+        // The shares by the material's colours.
+        for channel in 0..3 {
+            for i in 0..LANES {
+                self.share[channel][i] = lit.diffuse[channel][i] * diffuse[i] as f32;
+            }
+        }
+        if HIGHLIGHTS && lit.has_highlights {
+            self.add_highlights(lit, mirrored);
+        }
+    }
+
+    /// Sets which surfaces face the light: by the cosine of the shading normal, and by the side of
+    /// the geometric normal where the two may disagree.
+    #[inline(always)]
+    fn set_facing(
+        &mut self,
+        lit: &LitSurface16,
+        incident: &IncidentLight16,
+        cosine: &Lanes<f64>,
+        hits: &Hit16,
+    ) {
+        let surface = &lit.surface;
+        let mut geometric = [0.0; LANES];
+        for i in 0..LANES {
+            geometric[i] = surface.geometric_normal(i).dot(incident.toward(i));
+        }
+        for i in 0..LANES {
+            self.faces_light[i] = incident.arrives[i] & ((cosine[i] > 0.0) | cosine[i].is_nan());
+            self.is_light_in_front[i] = geometric[i] > 0.0;
+        }
+        if surface.has_triangles {
+            for i in 0..LANES {
+                // On a smooth-shaded mesh the shading normal may see a light that is behind the
+                // surface itself.
+                let facing = if surface.is_back[i] { -geometric[i] } else { geometric[i] };
+                self.faces_light[i] &=
+                    !((hits.id.geometry[i] >= PrimitiveId16::MESHES) & (facing <= 0.0));
+            }
+        }
+        if lit.has_mapped_normals {
+            // So may a normal that a normal map bends on anything else.
+            for i in 0..LANES {
+                let facing = if surface.is_back[i] { -geometric[i] } else { geometric[i] };
+                let is_inside_sphere =
+                    surface.is_back[i] & (hits.id.geometry[i] == PrimitiveId16::SPHERES);
+                self.faces_light[i] &= (facing > 0.0) | is_inside_sphere;
+            }
+        }
+    }
+
+    /// Adds Phong's highlights, by the cosines r·l.
+    #[inline(always)]
+    fn add_highlights(&mut self, lit: &LitSurface16, mirrored: Lanes<f64>) {
+        let highlight = match lit.common_exponent {
+            Some(exponent) => shading::power16(mirrored, exponent),
+            None => {
+                let mut highlight = [0.0; LANES];
+                for i in (0..LANES).filter(|&i| self.faces_light[i]) {
+                    highlight[i] = shading::power(mirrored[i], lit.shininess[i]);
+                }
+                highlight
+            }
+        };
+        for channel in 0..3 {
+            for i in 0..LANES {
+                let specular = lit.specular[channel][i];
+                let product = specular * highlight[i] as f32;
+                self.share[channel][i] += if specular == 0.0 { 0.0 } else { product };
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The materials of a scene as shading reads them, close together.
+
+use glam::Vec3;
+
+use crate::geometry::{Geometry, Hit};
+use crate::integrator::counts::FeatureCounts;
+use crate::scene::{Material, MaterialId, Mesh, Scene, ShadingParams};
+use crate::shading::Reflectance;
+use crate::surface::{self, TextureContext};
+
+/// The materials of a scene, and where textures, checkers or vertex colours change them.
+pub(super) struct MaterialCache {
+    materials: Vec<CachedMaterial>,
+    /// True for each plane with a checker.
+    has_checker: Vec<bool>,
+    /// True for each mesh with vertex colours.
+    has_vertex_colors: Vec<bool>,
+}
+
+/// A material as it is where no texture, checker or vertex colour changes it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CachedMaterial {
+    /// The shading parameters.
+    pub params: ShadingParams,
+    /// The reflectance toward lights, by these parameters.
+    pub reflectance: Reflectance,
+    /// True if the parameters are finite.
+    pub is_finite: bool,
+    /// True if it may have a highlight.
+    pub has_highlight: bool,
+    /// True if it needs texture coordinates.
+    pub is_textured: bool,
+    /// True if it has a normal map.
+    pub has_normal_map: bool,
+    /// True if it may send light on.
+    pub spawns_rays: bool,
+}
+
+impl CachedMaterial {
+    fn new(scene: &Scene, material: &Material) -> Self {
+        // A material that nothing is made of may have textures that were not read.
+        let params = if material.is_textured() {
+            material.shading_params()
+        } else {
+            surface::shading_params(scene, material, &TextureContext::default())
+        };
+        let reflectance = scattered_reflectance(&params);
+        Self {
+            params,
+            reflectance,
+            is_finite: params.emission.is_finite() && reflectance.diffuse.is_finite(),
+            has_highlight: reflectance.specular != Vec3::ZERO || material.metallic.is_some(),
+            is_textured: material.is_textured(),
+            has_normal_map: material.normal_map.is_some(),
+            spawns_rays: material.spawns_rays(),
+        }
+    }
+}
+
+/// Returns the reflectance of the share of the light that a surface neither mirrors nor transmits.
+pub(super) fn scattered_reflectance(params: &ShadingParams) -> Reflectance {
+    let share = (Vec3::ONE - params.reflect - params.transmit).max(Vec3::ZERO);
+    Reflectance {
+        diffuse: params.diffuse * share,
+        specular: params.specular * share,
+        shininess: params.shininess,
+    }
+}
+
+impl MaterialCache {
+    /// Builds the cache of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let cached = |material| CachedMaterial::new(scene, material);
+        let has_colors = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
+        Self {
+            materials: scene.materials.iter().map(cached).collect(),
+            has_checker: scene.planes.iter().map(|plane| plane.checker.is_some()).collect(),
+            has_vertex_colors: scene.meshes.iter().map(|mesh| has_colors(mesh)).collect(),
+        }
+    }
+
+    /// Returns a material.
+    #[inline(always)]
+    pub fn get(&self, id: MaterialId) -> &CachedMaterial {
+        &self.materials[id.0 as usize]
+    }
+
+    /// True if a material differs from point to point on the primitive that was hit.
+    #[inline(always)]
+    pub fn varies_on(&self, material: &CachedMaterial, hit: &Hit) -> bool {
+        material.is_textured || material.has_normal_map || self.is_colored(hit)
+    }
+
+    /// True if the primitive that was hit has a checker or vertex colours.
+    #[inline(always)]
+    fn is_colored(&self, hit: &Hit) -> bool {
+        match hit.id.geometry {
+            Geometry::Spheres => false,
+            Geometry::Planes => self.has_checker[hit.id.primitive as usize],
+            Geometry::Mesh(mesh) => self.has_vertex_colors[mesh as usize],
+        }
+    }
+
+    /// Counts the lookups for a point at which a material varies.
+    pub fn count_lookups(&self, material: &CachedMaterial, hit: &Hit, counts: &mut FeatureCounts) {
+        counts.uv += u64::from(material.is_textured);
+        counts.normal_maps += u64::from(material.has_normal_map);
+        let colors = match hit.id.geometry {
+            Geometry::Planes => &mut counts.checkers,
+            _ => &mut counts.vertex_colors,
+        };
+        *colors += u64::from(self.is_colored(hit));
+    }
+}

@@ -1,0 +1,101 @@
+//! Null interfaces: surfaces that light passes as if nothing were there.
+//!
+//! They are hidden in another body, or clear and with the same index of refraction on both sides. A
+//! ray that hits one goes straight on in the same wave.
+
+use glam::Vec3;
+
+use crate::geometry::{HitBatch, RayBatch};
+use crate::integrator::nested_dielectrics::InterfaceMedia;
+use crate::integrator::radiance::{DARK, Radiance16};
+use crate::integrator::surface_evaluation::shading_params_at;
+use crate::integrator::wave::Wave;
+use crate::integrator::{Counts, Integrator};
+use crate::intersect::Coherence;
+use crate::scene::{Material, Scene, ShadingParams};
+use crate::surface::Surface;
+
+/// True if a scene may have null interfaces that are not hidden: between equal indices of refraction.
+pub(super) fn may_match_indices(scene: &Scene) -> bool {
+    let indices = || {
+        let bodies = scene.materials_in_use().filter(|material| material.is_dielectric());
+        std::iter::once(1.0).chain(bodies.map(|material| material.ior))
+    };
+    scene.materials_in_use().any(|material| {
+        // Its own index is among them once, and counts where another one is the same.
+        let matches = indices().filter(|&ior| material.is_clear_in(ior)).count();
+        matches > usize::from(material.is_dielectric())
+    })
+}
+
+/// True if a surface of a material is a null interface.
+pub(super) fn is_null_interface(
+    integrator: &Integrator<'_>,
+    material: &Material,
+    params: &ShadingParams,
+    media: &InterfaceMedia,
+) -> bool {
+    let ior = |interior| integrator.media.dielectrics.medium(interior).ior;
+    let ior_behind = if material.thin { material.ior } else { ior(&media.transmitted) };
+    let is_clear = params.transmit == Vec3::ONE && params.emission == Vec3::ZERO;
+    media.is_hidden || (is_clear && ior(&media.incident) == ior_behind)
+}
+
+/// Gives each camera ray of a wave its path, and clears its sample.
+pub(super) fn begin_paths(
+    integrator: &Integrator<'_>,
+    wave: &mut Wave,
+    samples: &mut Vec<Radiance16>,
+) {
+    wave.paths = (0..wave.rays.len()).map(|i| wave.path(i, integrator)).collect();
+    samples.clear();
+    samples.resize(wave.rays.blocks().len(), DARK);
+}
+
+/// Takes the rays of a wave through null interfaces, and multiplies their throughput with what is
+/// left of the light on their way. They stay in the wave, so that nothing tells that something was
+/// there.
+pub(super) fn pass(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut Counts) {
+    // Camera rays without paths start in empty space, where they hit none.
+    if wave.paths.is_empty() {
+        return;
+    }
+    let (scene, dielectrics) = (integrator.scene, &integrator.media.dielectrics);
+    let Wave { rays, hits, paths } = wave;
+    let (mut continued, mut continued_hits) = (RayBatch::default(), HitBatch::default());
+    let mut passed = Vec::new();
+    let mut active: Vec<usize> = (0..rays.len()).collect();
+    while !active.is_empty() {
+        passed.clear();
+        continued.clear();
+        for &i in &active {
+            // The medium before the surface absorbs.
+            let (ray, hit, path) = (rays.ray(i), hits.get(i), &mut paths[i]);
+            let end = hit.map_or(f64::INFINITY, |hit| hit.t);
+            path.throughput *= dielectrics.transmittance(&ray, end, &path.interior);
+            let Some(hit) = &hit else { continue };
+            let material = &scene.materials[scene.material_of(hit.id).0 as usize];
+            if !material.may_transmit() {
+                continue;
+            }
+            // Through a null interface the ray goes straight on.
+            let surface = Surface::new(scene, &ray, hit);
+            let media = dielectrics.interface(hit.id, surface.side, &path.interior);
+            let params = shading_params_at(integrator, &ray, hit, &surface, &path.cone);
+            if is_null_interface(integrator, material, &params, &media) {
+                let continuation = ray.continue_past(hit, surface.side.opposite());
+                rays.set(i, &continuation);
+                path.interior = media.transmitted;
+                passed.push(i);
+                continued.push(&continuation);
+            }
+        }
+        // These rays find their next hits, and may pass again.
+        integrator.closest_hits(&continued, Coherence::Incoherent, &mut continued_hits, counts);
+        counts.rays.refraction += continued.len() as u64;
+        for (&i, hit) in passed.iter().zip(continued_hits.iter()) {
+            hits.set(i, hit);
+        }
+        std::mem::swap(&mut active, &mut passed);
+    }
+}

@@ -1,0 +1,156 @@
+//! The secondary rays of a wave: light that mirrors reflect, and that glass refracts.
+
+use glam::{DVec3, Vec3};
+
+use crate::geometry::{Departure, Hit, Ray, Side};
+use crate::integrator::nested_dielectrics::InterfaceMedia;
+use crate::integrator::surface_evaluation::SpecularHit;
+use crate::integrator::wave::{PathState, Wave};
+use crate::integrator::{Counts, Integrator};
+use crate::shading::{DielectricInterface, reflect};
+
+/// A ray that a surface sends on.
+#[derive(Clone, Debug)]
+pub(super) struct SpawnedRay {
+    /// The ray.
+    pub ray: Ray,
+    /// True if it went through the surface.
+    pub is_refracted: bool,
+    /// The path that it continues.
+    pub path: PathState,
+}
+
+/// The greatest throughput that changes no sum: times the greatest f32 it is less than half of the
+/// least one.
+const NEGLIGIBLE: f64 = 1.0 / (1u128 << 127) as f64 / (1u128 << 127) as f64 / (1u64 << 26) as f64;
+
+/// Spawns the rays that the mirrors and the glass of a wave send on, in the order in which they were
+/// hit.
+pub(super) fn spawn(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    specular_hits: &[SpecularHit],
+    next: &mut Wave,
+    counts: &mut Counts,
+) {
+    for specular in specular_hits {
+        let i = specular.ray as usize;
+        let Some(hit) = wave.hits.get(i) else { continue };
+        let path = wave.path(i, integrator);
+        let spawned = spawn_at_hit(integrator, &wave.rays.ray(i), &hit, specular, &path);
+        for SpawnedRay { ray, is_refracted, path } in spawned.into_iter().flatten() {
+            if is_refracted {
+                counts.rays.refraction += 1;
+            } else {
+                counts.rays.reflection += 1;
+            }
+            next.rays.push(&ray);
+            next.paths.push(path);
+        }
+    }
+}
+
+/// Returns the reflected and the refracted ray that a surface, which `ray` hit, sends on.
+pub(super) fn spawn_at_hit(
+    integrator: &Integrator<'_>,
+    ray: &Ray,
+    hit: &Hit,
+    specular: &SpecularHit,
+    path: &PathState,
+) -> [Option<SpawnedRay>; 2] {
+    let (scene, surface) = (integrator.scene, &specular.surface);
+    if path.depth >= scene.film.max_depth {
+        return [None, None];
+    }
+    // The directions, and the shares of the light.
+    let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
+    let scattered = scatter(integrator, specular, &media, ray.direction.normalize());
+    // Rays that leave the surface, or go straight on through it.
+    let departing = |direction: DVec3, side: Side| Ray {
+        departure: Some(Departure { id: surface.id, side }),
+        ..Ray::new(surface.position, direction)
+    };
+    let opposite = surface.side.opposite();
+    let reflected = departing(scattered.reflected, surface.side);
+    let refracted = match scattered.refracted {
+        Some(direction) => departing(direction, opposite),
+        None => ray.continue_past(hit, opposite),
+    };
+    // A ray whose light would change no pixel is not traced.
+    let length = hit.t * ray.direction.length();
+    let spawned = |ray: Ray, share: DVec3, is_refracted: bool, interior| {
+        let throughput = path.throughput * share;
+        let is_visible = throughput.max_element() > scene.film.cutoff.max(NEGLIGIBLE);
+        is_visible.then(|| {
+            let lod = &integrator.texture_lod;
+            let cone = if ray.continuation.is_some() {
+                path.cone
+            } else {
+                lod.spawned_cone(&path.cone, length, scene, surface, is_refracted)
+            };
+            let (sample, depth) = (path.sample, path.depth + 1);
+            let path = PathState { sample, depth, throughput, interior, cone };
+            SpawnedRay { ray, is_refracted, path }
+        })
+    };
+    [
+        spawned(reflected, scattered.reflected_share, false, media.incident),
+        spawned(refracted, scattered.refracted_share, true, media.transmitted),
+    ]
+}
+
+/// The directions into which a surface sends light, and the shares that go there.
+struct Scattered {
+    reflected: DVec3,
+    /// `None` for light that goes straight on, and under total reflection.
+    refracted: Option<DVec3>,
+    reflected_share: DVec3,
+    refracted_share: DVec3,
+}
+
+/// Scatters light that comes along `incoming`, of length 1.
+fn scatter(
+    integrator: &Integrator<'_>,
+    SpecularHit { surface, params, .. }: &SpecularHit,
+    media: &InterfaceMedia,
+    incoming: DVec3,
+) -> Scattered {
+    let material = &integrator.scene.materials[surface.material.0 as usize];
+    let ior = |interior| integrator.media.dielectrics.medium(interior).ior;
+    let scatter_at = |normal: DVec3| {
+        let cosine = -normal.dot(incoming);
+        let interface = if params.transmit == Vec3::ZERO {
+            DielectricInterface::new(cosine, 1.0, 1.0)
+        } else if material.thin {
+            DielectricInterface::sheet(cosine, ior(&media.incident), material.ior)
+        } else {
+            DielectricInterface::new(cosine, ior(&media.incident), ior(&media.transmitted))
+        };
+        let is_straight = interface.is_straight();
+        let transmit = params.transmit.as_dvec3();
+        Scattered {
+            reflected: reflect(incoming, normal).normalize(),
+            refracted: if is_straight { None } else { interface.refract(incoming, normal) },
+            reflected_share: params.reflect.as_dvec3() + transmit * interface.reflected,
+            refracted_share: transmit * (1.0 - interface.reflected),
+        }
+    };
+    let facing = surface.facing_normal();
+    let shading = surface.normal * -surface.normal.dot(incoming).signum();
+    let scattered = scatter_at(shading);
+    // An interpolated normal may send light to the wrong side of the surface itself.
+    let is_wrong_side = scattered.reflected.dot(facing) <= 0.0
+        || scattered.refracted.is_some_and(|refracted| refracted.dot(facing) >= 0.0);
+    if is_wrong_side && shading != facing { scatter_at(facing) } else { scattered }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn negligible_throughput_makes_the_greatest_f32_less_than_half_of_the_least() {
+        assert_eq!(NEGLIGIBLE, 2f64.powi(-280));
+        assert_eq!((NEGLIGIBLE * f64::from(f32::MAX)) as f32, 0.0);
+    }
+}

@@ -1,0 +1,284 @@
+//! The evaluation of the surfaces that a wave hit: positions, normals and shading parameters, before
+//! any light falls on them.
+
+use glam::Vec3;
+
+use crate::geometry::{Hit, Hit16, LANES, Lanes, PrimitiveId16, Ray};
+use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
+use crate::integrator::material_cache::scattered_reflectance;
+use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
+use crate::integrator::wave::Wave;
+use crate::integrator::{Integrator, ShadingFeatures, simd};
+use crate::scene::ShadingParams;
+use crate::shading::{self, Reflectance};
+use crate::surface::{self, RayCone, Surface, Surface16, TextureContext};
+
+/// The surfaces that a wave hit.
+#[derive(Default)]
+pub(super) struct WaveSurfaces {
+    /// Blocks of surfaces that scatter light, and memory for more.
+    blocks: Vec<LitSurface16>,
+    /// The number of blocks in use.
+    count: usize,
+    /// The mirrors and the glass, by ray.
+    pub specular: Vec<SpecularHit>,
+}
+
+/// A block of sixteen surfaces, some of which scatter light.
+#[derive(Default)]
+#[repr(C, align(64))]
+pub(super) struct LitSurface16 {
+    /// The block of the wave that hit them.
+    pub block: usize,
+    /// Their positions, normals and materials.
+    pub surface: Surface16,
+    /// True for each one that scatters any light.
+    pub scatters: Lanes<bool>,
+    /// The share of light scattered to all sides.
+    pub diffuse: [Lanes<f32>; 3],
+    /// The share of light in the highlight.
+    pub specular: [Lanes<f32>; 3],
+    /// Phong's exponents.
+    pub shininess: Lanes<f32>,
+    /// The share of the ambient light that arrives.
+    pub ambient: Lanes<f32>,
+    /// True if a normal map has bent any normal.
+    pub has_mapped_normals: bool,
+    /// True if any may have a highlight.
+    pub has_highlights: bool,
+    /// The exponent of all highlights, if they share one and it is an integer.
+    pub common_exponent: Option<u32>,
+}
+
+/// A surface that may send light on, as a mirror or glass does.
+pub(super) struct SpecularHit {
+    /// The number of the ray in its wave.
+    pub ray: u32,
+    /// The surface; its normal is the one that a normal map gives.
+    pub surface: Surface,
+    /// The shading parameters there.
+    pub params: ShadingParams,
+}
+
+impl WaveSurfaces {
+    /// Returns the blocks of surfaces that scatter light.
+    pub fn lit(&self) -> &[LitSurface16] {
+        &self.blocks[..self.count]
+    }
+}
+
+/// Evaluates the surfaces that a wave hit, and sets its radiance to the background and to what
+/// surfaces emit.
+pub(super) fn evaluate(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    surfaces: &mut WaveSurfaces,
+    radiance: &mut WaveRadiance,
+    counts: &mut FeatureCounts,
+) {
+    // The loop is compiled for what a scene has, and for each instruction set.
+    let ShadingFeatures { textures, smooth_normals, .. } = integrator.features;
+    simd::dispatch(
+        integrator.arch,
+        #[inline(always)]
+        || match (textures, smooth_normals) {
+            (false, false) => {
+                evaluate_blocks::<false, false>(integrator, wave, surfaces, radiance, counts)
+            }
+            (false, true) => {
+                evaluate_blocks::<false, true>(integrator, wave, surfaces, radiance, counts)
+            }
+            (true, false) => {
+                evaluate_blocks::<true, false>(integrator, wave, surfaces, radiance, counts)
+            }
+            (true, true) => {
+                evaluate_blocks::<true, true>(integrator, wave, surfaces, radiance, counts)
+            }
+        },
+    );
+}
+
+#[inline(always)]
+fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    surfaces: &mut WaveSurfaces,
+    radiance: &mut WaveRadiance,
+    counts: &mut FeatureCounts,
+) {
+    let scene = integrator.scene;
+    let background = scene.film.background;
+    let WaveSurfaces { blocks, count, specular } = surfaces;
+    specular.clear();
+    *count = 0;
+    radiance.reset(wave.hits.blocks().len());
+    for (block, hits) in wave.hits.blocks().iter().enumerate() {
+        if *count == blocks.len() {
+            blocks.push(LitSurface16::default());
+        }
+        let lit = &mut blocks[*count];
+        // Positions, normals and materials.
+        lit.surface.set::<SMOOTH_NORMALS>(scene, &wave.rays, block, hits);
+        // Rays that hit nothing see the background.
+        for channel in 0..3 {
+            radiance.blocks[block][channel] = [background[channel]; LANES];
+        }
+        if !lit.surface.has_hits() {
+            continue;
+        }
+        if SMOOTH_NORMALS {
+            let is_triangle = |&&geometry: &&u32| geometry >= PrimitiveId16::MESHES;
+            counts.smooth_normals += hits.id.geometry.iter().filter(is_triangle).count() as u64;
+        }
+        // Shading parameters; a block on which no light falls is overwritten by the next.
+        lit.block = block;
+        let is_uniform =
+            !TEXTURES && evaluate_uniform_block(integrator, hits, lit, &mut radiance.blocks[block]);
+        if !is_uniform {
+            evaluate_block::<TEXTURES>(integrator, wave, hits, lit, radiance, specular, counts);
+        }
+        *count += usize::from(lit.scatters.contains(&true));
+    }
+}
+
+/// Evaluates the shading parameters of sixteen surfaces, if they are all of one finite material
+/// that sends no light on; returns false otherwise.
+#[inline(always)]
+fn evaluate_uniform_block(
+    integrator: &Integrator<'_>,
+    hits: &Hit16,
+    lit: &mut LitSurface16,
+    radiance: &mut Radiance16,
+) -> bool {
+    let first = lit.surface.material[0];
+    let mut is_uniform = true;
+    for i in 0..LANES {
+        let [x, y, z] = lit.surface.position(i).to_array();
+        is_uniform &= (hits.t[i] < f64::INFINITY)
+            & (lit.surface.material[i] == first)
+            & (x + y + z).is_finite();
+    }
+    if !is_uniform {
+        return false;
+    }
+    let material = integrator.materials.get(first);
+    if material.spawns_rays || !material.is_finite {
+        return false;
+    }
+    let Reflectance { diffuse, specular, shininess } = material.reflectance;
+    for channel in 0..3 {
+        lit.diffuse[channel] = [diffuse[channel]; LANES];
+        lit.specular[channel] = [specular[channel]; LANES];
+    }
+    lit.scatters = [diffuse != Vec3::ZERO || specular != Vec3::ZERO; LANES];
+    lit.shininess = [shininess; LANES];
+    lit.ambient = [1.0; LANES];
+    lit.has_mapped_normals = false;
+    lit.has_highlights = material.has_highlight;
+    lit.common_exponent = shading::integer_exponent(shininess);
+    *radiance = material.params.emission.to_array().map(|channel| [channel; LANES]);
+    true
+}
+
+/// Evaluates the shading parameters of sixteen surfaces one by one, with their textures.
+#[inline(always)]
+fn evaluate_block<const TEXTURES: bool>(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    hits: &Hit16,
+    lit: &mut LitSurface16,
+    radiance: &mut WaveRadiance,
+    specular_hits: &mut Vec<SpecularHit>,
+    counts: &mut FeatureCounts,
+) {
+    let (scene, cache) = (integrator.scene, &integrator.materials);
+    lit.scatters = [false; LANES];
+    lit.has_highlights = false;
+    lit.has_mapped_normals = false;
+    lit.ambient = [1.0; LANES];
+    let mut exponent = None;
+    let mut shares_exponent = true;
+    for i in 0..LANES {
+        let Some(hit) = hits.hit(i) else { continue };
+        let ray = lit.block * LANES + i;
+        let cached = cache.get(lit.surface.material[i]);
+        let (mut params, mut reflectance) = (cached.params, cached.reflectance);
+        let (mut is_finite, mut spawns_rays) = (cached.is_finite, cached.spawns_rays);
+        // Where textures, a checker or vertex colours count, the parameters are looked up.
+        if TEXTURES && cache.varies_on(cached, &hit) {
+            let material = &scene.materials[lit.surface.material[i].0 as usize];
+            let surface = lit.surface.surface(i, hit.id);
+            let context = context_on_wave(integrator, wave, ray, &hit, &surface, counts);
+            cache.count_lookups(cached, &hit, counts);
+            params = surface::shading_params(scene, material, &context);
+            reflectance = scattered_reflectance(&params);
+            is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
+            spawns_rays &= params.spawns_rays() || !material.spawns_rays();
+            lit.ambient[i] = surface::occlusion(scene, material, &context);
+            if cached.has_normal_map {
+                let normal = surface::mapped_normal(scene, &surface, &hit, &context.point);
+                lit.has_mapped_normals |= normal != surface.normal;
+                lit.surface.set_normal(i, normal);
+            }
+        }
+        if !(is_finite && lit.surface.position(i).is_finite()) {
+            radiance.mark_not_finite(lit.block, i, NotFiniteCause::Surface);
+            continue;
+        }
+        // The surface emits, scatters light, and may send light on.
+        let Reflectance { diffuse, specular, shininess } = reflectance;
+        set_lane(&mut radiance.blocks[lit.block], i, params.emission);
+        lit.scatters[i] = diffuse != Vec3::ZERO || specular != Vec3::ZERO;
+        set_lane(&mut lit.diffuse, i, diffuse);
+        set_lane(&mut lit.specular, i, specular);
+        lit.shininess[i] = shininess;
+        if cached.has_highlight {
+            lit.has_highlights = true;
+            shares_exponent &= *exponent.get_or_insert(shininess) == shininess;
+        }
+        if spawns_rays {
+            let surface = lit.surface.surface(i, hit.id);
+            specular_hits.push(SpecularHit { ray: ray as u32, surface, params });
+        }
+    }
+    lit.common_exponent = exponent.filter(|_| shares_exponent).and_then(shading::integer_exponent);
+}
+
+/// Returns the texture context of what ray `ray` of a wave hit.
+fn context_on_wave(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    ray: usize,
+    hit: &Hit,
+    surface: &Surface,
+    counts: &mut FeatureCounts,
+) -> TextureContext {
+    let (lod, is_textured) =
+        (&integrator.texture_lod, integrator.materials.get(surface.material).is_textured);
+    let mut footprint = None;
+    if is_textured && lod.is_needed() {
+        counts.mipmaps += 1;
+        let (ray, path) = (wave.rays.ray(ray), wave.paths.get(ray));
+        let cone = path.map_or_else(|| lod.camera_cone(&ray), |path| path.cone);
+        footprint = lod.footprint(&ray, hit, surface, &cone);
+    }
+    TextureContext::new(integrator.scene, hit, surface, is_textured, footprint.as_ref())
+}
+
+/// Evaluates the shading parameters of a surface that `ray`, with this cone, hit.
+pub(super) fn shading_params_at(
+    integrator: &Integrator<'_>,
+    ray: &Ray,
+    hit: &Hit,
+    surface: &Surface,
+    cone: &RayCone,
+) -> ShadingParams {
+    let (scene, cache) = (integrator.scene, &integrator.materials);
+    let cached = cache.get(surface.material);
+    if !integrator.features.textures || !cache.varies_on(cached, hit) {
+        return cached.params;
+    }
+    let footprint = integrator.texture_lod.footprint(ray, hit, surface, cone);
+    let context = TextureContext::new(scene, hit, surface, cached.is_textured, footprint.as_ref());
+    surface::shading_params(scene, &scene.materials[surface.material.0 as usize], &context)
+}

@@ -1,0 +1,274 @@
+//! The loop of the integrator: the way of a tile from its camera rays to its pixels.
+
+use glam::Vec3;
+
+use crate::film::{Pixel, View};
+use crate::geometry::{HitBatch, LANES, RayBatch};
+use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
+use crate::integrator::radiance::{DARK, Radiance16, WaveRadiance, lane, set_lane};
+use crate::integrator::shadow_rays::ShadowQueue;
+use crate::integrator::surface_evaluation::WaveSurfaces;
+use crate::integrator::tiling::Tile;
+use crate::integrator::transmissive_shadows::TransmissiveShadows;
+use crate::integrator::wave::{Wave, WaveQueue};
+use crate::integrator::{
+    Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, radiance,
+    secondary_rays, surface_evaluation, transmissive_shadows,
+};
+use crate::intersect::{Coherence, Query};
+use crate::scene::LightKind;
+
+/// The number of pixels that are refined together.
+const REFINED_TOGETHER: usize = 1024;
+
+/// Memory that a thread uses again and again.
+#[derive(Default)]
+pub struct Scratch {
+    tile: Tile,
+    waves: WaveQueue,
+    surfaces: WaveSurfaces,
+    radiance: WaveRadiance,
+    shadows: ShadowMemory,
+    /// One sample of each pixel of the tile.
+    samples: Vec<Radiance16>,
+    /// The sums of their samples.
+    sums: Vec<Radiance16>,
+    records: PixelRecords,
+}
+
+/// Memory for the shadow rays to one light.
+#[derive(Default)]
+struct ShadowMemory {
+    shadows: ShadowQueue,
+    glass: TransmissiveShadows,
+}
+
+/// A strip of an adaptive picture after the first pass, in whole rows.
+pub struct RefineStrip<'a> {
+    /// The row of the picture where it begins.
+    pub first_row: usize,
+    /// The sums of each pixel's first samples; they become means.
+    pub pixels: &'a mut [Pixel],
+    /// The records of the pixels.
+    pub records: &'a [PixelRecord],
+    /// True for each pixel that gets more samples.
+    pub refined: &'a [bool],
+}
+
+/// A pixel that gets more samples.
+#[derive(Clone, Copy)]
+struct ActivePixel {
+    /// The index of the pixel in the strip.
+    index: usize,
+    record: PixelRecord,
+}
+
+impl Integrator<'_> {
+    /// Renders the strip that begins at row `first_row`; `pixels` are whole rows. In an adaptive
+    /// picture they become the sums of every pixel's first samples, and `records`, as many, the
+    /// records of these; otherwise `records` is empty.
+    pub fn render_strip(
+        &self,
+        first_row: usize,
+        pixels: &mut [Pixel],
+        records: &mut [PixelRecord],
+        scratch: &mut Scratch,
+    ) -> Counts {
+        let width = self.scene.film.size[0] as usize;
+        let rows = pixels.len() / width;
+        let first_samples = self.samples.steps[0];
+        let mut counts = Counts::default();
+        for column in (0..width).step_by(self.tiling.columns) {
+            // The first samples of each pixel of a tile.
+            scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
+            scratch.sums.clear();
+            scratch.sums.resize(scratch.tile.pixels.len(), DARK);
+            scratch.records.clear();
+            for position in &self.samples.offsets[..first_samples] {
+                self.trace_sample(*position, scratch, &mut counts);
+            }
+            // Their means, or, where more may follow, their sums and records.
+            let Scratch { tile, sums, records: tile_records, .. } = &*scratch;
+            let weight = if self.is_adaptive() { 1.0 } else { 1.0 / first_samples as f32 };
+            radiance::write_pixels(self.arch, tile, sums, weight, pixels, width);
+            if self.is_adaptive() {
+                let mut read = tile_records.records.iter();
+                for run in &tile.runs {
+                    let written = records[tile.run_in_strip(run, width)].iter_mut();
+                    written.zip(&mut read).for_each(|(to, from)| *to = *from);
+                }
+            }
+        }
+        counts
+    }
+
+    /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to their
+    /// sums.
+    fn trace_sample(&self, position: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
+        let Scratch { tile, waves, surfaces, radiance, samples, sums, records, .. } = scratch;
+        // Camera rays, one through each pixel.
+        let mut wave = &mut waves.current;
+        wave.paths.clear();
+        camera_rays::generate(self.arch, &self.camera, tile, position, &mut wave.rays);
+        // Closest hits.
+        self.closest_hits(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
+        counts.rays.primary += wave.rays.len() as u64;
+        counts.hits += wave.hits.count() as u64;
+        // Debug views show the hits themselves.
+        if self.view != View::Beauty {
+            debug_view::set_pixels(self.scene, self.view, wave, sums);
+            return;
+        }
+        // Adaptive sampling compares what the samples of a pixel hit.
+        if self.is_adaptive() {
+            records.record_hits(self.arch, self.scene, wave);
+        }
+        // Camera rays may start in a transparent body.
+        if self.media.may_alter_camera_rays {
+            null_interfaces::begin_paths(self, wave, samples);
+        }
+        loop {
+            // Rays may go straight on through null interfaces, and be absorbed on their way.
+            if self.media.may_alter_rays {
+                null_interfaces::pass(self, wave, counts);
+            }
+            // Surfaces, with what they emit.
+            surface_evaluation::evaluate(self, wave, surfaces, radiance, &mut counts.work);
+            // For each light: contributions, shadow rays, and what they let through.
+            self.light_surfaces(wave, surfaces, radiance, &mut scratch.shadows, counts);
+            // The radiance that comes back along the rays joins the samples of the pixels.
+            radiance.add_to_samples(wave, samples, counts);
+            // Secondary rays form the next wave.
+            if !self.features.secondary_rays {
+                break;
+            }
+            secondary_rays::spawn(self, wave, &surfaces.specular, &mut waves.next, counts);
+            if !waves.advance() {
+                break;
+            }
+            wave = &mut waves.current;
+            self.closest_hits(&wave.rays, Coherence::Incoherent, &mut wave.hits, counts);
+        }
+        // Adaptive sampling compares the colours, too.
+        if let Some(threshold) = self.contrast_threshold {
+            records.compare_radiance(samples, threshold);
+        }
+        // Sums of samples.
+        if self.samples.offsets.len() == 1 && !self.features.secondary_rays {
+            // The only sample is the sum; what is NaN becomes black in the end.
+            std::mem::swap(sums, samples);
+            return;
+        }
+        radiance::add_samples(self.arch, samples, sums, &mut counts.not_finite.sum);
+    }
+
+    /// Adds the light of each source that the surfaces of the current wave reflect.
+    fn light_surfaces(
+        &self,
+        wave: &Wave,
+        surfaces: &WaveSurfaces,
+        radiance: &mut WaveRadiance,
+        memory: &mut ShadowMemory,
+        counts: &mut Counts,
+    ) {
+        let ShadowMemory { shadows, glass } = memory;
+        for light in &self.scene.lights {
+            if light.kind == LightKind::Ambient {
+                direct_lighting::add_ambient(light, surfaces, self.features.textures, radiance);
+                continue;
+            }
+            // Contributions: of a light that casts shadows, they wait for shadow rays.
+            direct_lighting::reflect(self, light, wave, surfaces, radiance, shadows, counts);
+            if shadows.rays.is_empty() {
+                continue;
+            }
+            // Shadow rays: occluded, or attenuated by glass.
+            self.occluded(&shadows.rays, &mut shadows.occluded, counts);
+            counts.rays.shadow += shadows.count();
+            if self.features.transmission {
+                transmissive_shadows::attenuate(self, light.shadow, wave, shadows, glass, counts);
+            }
+            // The contributions that arrive.
+            shadows.add_light(self.arch, radiance);
+        }
+    }
+
+    /// Finds the closest hits of rays.
+    pub(super) fn closest_hits(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        hits: &mut HitBatch,
+        counts: &mut Counts,
+    ) {
+        self.intersector.closest_batch(rays, coherence, hits);
+        let has_filter = self.intersector.uses_filter(Query::Closest, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
+    }
+
+    /// Finds which shadow rays are occluded.
+    fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
+        self.intersector.occluded_batch(rays, Coherence::Coherent, occluded);
+        let has_filter = self.intersector.uses_filter(Query::Occluded, rays);
+        counts.work.add_extra_tests(self.scene, has_filter, rays);
+    }
+
+    /// Takes more samples of the pixels of a strip that need them, and makes all sums means.
+    pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
+        let RefineStrip { first_row, pixels, records, refined } = strip;
+        let width = self.scene.film.size[0] as usize;
+        let rows = pixels.len() / width;
+        let steps = &self.samples.steps;
+        let weights: Vec<f32> = steps.iter().map(|&samples| 1.0 / samples as f32).collect();
+        let mut counts = Counts::default();
+        // Pixels without contrast have all their samples.
+        for (pixel, _) in pixels.iter_mut().zip(refined).filter(|(_, refined)| !**refined) {
+            pixel.iter_mut().for_each(|value| *value *= weights[0]);
+        }
+        // The others are taken in the order in which tiles order their rays.
+        let mut active: Vec<ActivePixel> = Vec::new();
+        for column in (0..width).step_by(self.tiling.columns) {
+            scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
+            for run in &scratch.tile.runs {
+                let run = scratch.tile.run_in_strip(run, width).filter(|&i| refined[i]);
+                active.extend(run.map(|index| ActivePixel { index, record: records[index] }));
+            }
+        }
+        for step in 1..steps.len() {
+            counts.refined[step - 1] += active.len() as u64;
+            let mut next_active = Vec::new();
+            for group in active.chunks(REFINED_TOGETHER) {
+                // A tile of these pixels, with their sums and records so far.
+                let Scratch { tile, sums, records, .. } = scratch;
+                tile.set_pixels(
+                    group.iter().map(|p| [p.index % width, first_row + p.index / width]),
+                );
+                sums.clear();
+                sums.resize(group.len().div_ceil(LANES), DARK);
+                records.clear();
+                for (i, &ActivePixel { index, record }) in group.iter().enumerate() {
+                    let sum = Vec3::from(pixels[index]);
+                    set_lane(&mut sums[i / LANES], i % LANES, sum);
+                    records.push(record, sum * weights[step - 1]);
+                }
+                // The samples of this step.
+                for position in &self.samples.offsets[steps[step - 1]..steps[step]] {
+                    self.trace_sample(*position, scratch, &mut counts);
+                }
+                // Pixels whose samples disagree go on, if there are more to take.
+                let read = group.iter().zip(&scratch.records.records);
+                for (i, (&ActivePixel { index, .. }, &record)) in read.enumerate() {
+                    let goes_on = record.disagrees && step + 1 < steps.len();
+                    let weight = if goes_on { 1.0 } else { weights[step] };
+                    let sum = lane(&scratch.sums[i / LANES], i % LANES);
+                    pixels[index] = (sum * weight).to_array();
+                    if goes_on {
+                        next_active.push(ActivePixel { index, record });
+                    }
+                }
+            }
+            active = next_active;
+        }
+        counts
+    }
+}

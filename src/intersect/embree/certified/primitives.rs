@@ -1,0 +1,196 @@
+//! Spheres and triangles as user geometry of precision `certified`: each that Embree offers is tested in
+//! f64 with an error bound, and exactly where that cannot tell.
+//!
+//! Of Embree's own ray the tests only lower `tfar`, with slack, so that what lies behind is skipped.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
+use crate::intersect::embree::f32_space::F32Space;
+use crate::intersect::embree::fast::{SphereEntry, SphereTable};
+use crate::intersect::embree::ffi::{
+    CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
+};
+use crate::intersect::embree::packet::QueryContext;
+use crate::intersect::primitive::{SphereDeparture, sphere_departure, starts_on_triangle};
+use crate::scene::{Instance, Mesh, Scene};
+
+/// A primitive as the callbacks of precision `certified` test it.
+pub struct CertifiedPrimitive<S> {
+    pub id: PrimitiveId,
+    pub shape: S,
+    blocks_light: bool,
+    /// True if a mask may cut holes into it, so that only the exact weights of a hit tell.
+    pub is_masked: bool,
+}
+
+/// The shape of a primitive. All functions are to be inlined always.
+pub trait Shape {
+    /// False if a line certainly misses it.
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
+
+    /// The estimate of the first t > 0, for a ray that left no surface.
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
+
+    /// True if a ray that left a surface, and that by its estimate hits it,
+    /// starts on it and so may not hit it.
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool;
+}
+
+impl<S: Shape> UserPrimitive for CertifiedPrimitive<S> {
+    #[inline(always)]
+    fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
+        let (context, active, tfar) = packet.parts();
+        context.keep_closest(self, active, tfar);
+    }
+
+    #[inline(always)]
+    fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize) {
+        context.resolve_exactly(lane, self.id);
+    }
+
+    #[inline(always)]
+    fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
+        let (context, active, tfar) = packet.parts();
+        if self.blocks_light {
+            context.mark_occluded(self, active, tfar);
+        }
+    }
+
+    #[inline(always)]
+    fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        self.blocks_light && context.exact_hit(lane, self.id).is_some()
+    }
+}
+
+/// A sphere, tested with a bound.
+pub struct CertifiedSphere {
+    index: u32,
+    center: DVec3,
+    radius: f64,
+}
+
+impl UserPrimitives for CertifiedSphere {
+    type Table = SphereTable;
+    type Primitive<'t> = CertifiedPrimitive<Self>;
+
+    #[inline(always)]
+    fn get<const W: usize>(
+        table: &SphereTable,
+        index: u32,
+        _: &QueryContext<'_, W>,
+    ) -> CertifiedPrimitive<Self> {
+        let SphereEntry { center, radius, blocks_light } = table.spheres[index as usize];
+        let shape = Self { index, center, radius };
+        let id = PrimitiveId::sphere(index);
+        CertifiedPrimitive { id, shape, blocks_light, is_masked: false }
+    }
+}
+
+impl Shape for CertifiedSphere {
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
+        sphere::certified::QuadraticBound::new(self.center, self.radius, origin, direction, inverse)
+            .may_cross()
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, inverse: f64) -> Estimate {
+        sphere::certified::estimate(self.center, self.radius, origin, direction, inverse)
+    }
+
+    #[inline(always)]
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        let f = context.rays.origin_and_direction(lane).0 - self.center;
+        let power = f.length_squared() - self.radius * self.radius;
+        context.departures.may_start_on_sphere(lane, self.index, self.radius, power)
+            && sphere_departure(context.scene, self.index, &context.packet.ray(lane))
+                != SphereDeparture::No
+    }
+}
+
+/// The triangles of a mesh as user data. The vertices themselves are baked from the scene when a
+/// triangle is tested.
+pub struct TriangleTable {
+    mesh: Arc<Mesh>,
+    mesh_index: u32,
+    /// The instance that lies in world space and its index, or none for a mesh in object space, whose
+    /// instance is in the query context.
+    instance: Option<(u32, Instance)>,
+    space: F32Space,
+}
+
+impl TriangleTable {
+    /// Makes the table of an instance, in world space; on the heap since Embree keeps its address.
+    pub fn in_world_space(scene: &Scene, index: u32, space: F32Space) -> Box<Self> {
+        let instance = scene.instances[index as usize].clone();
+        let table = Self::in_object_space(scene, instance.mesh.0, space);
+        Box::new(Self { instance: Some((index, instance)), ..*table })
+    }
+
+    /// Makes the table of a mesh, in object space; on the heap since Embree keeps its address.
+    pub fn in_object_space(scene: &Scene, mesh_index: u32, space: F32Space) -> Box<Self> {
+        let mesh = scene.meshes[mesh_index as usize].clone();
+        Box::new(Self { mesh, mesh_index, instance: None, space })
+    }
+}
+
+impl PrimitiveTable for TriangleTable {
+    fn len(&self) -> usize {
+        self.mesh.triangles.len()
+    }
+
+    fn bounds(&self, index: u32) -> (Bounds, &F32Space) {
+        let vertices = self.mesh.triangle_vertices(index);
+        let vertices = match &self.instance {
+            Some((_, instance)) => vertices.map(|p| instance.to_world(p)),
+            None => vertices.map(|p| DVec3::from(p.map(f64::from))),
+        };
+        (Bounds::from_points(vertices), &self.space)
+    }
+}
+
+/// A triangle, tested with a bound.
+pub struct CertifiedTriangle {
+    vertices: [DVec3; 3],
+}
+
+impl UserPrimitives for CertifiedTriangle {
+    type Table = TriangleTable;
+    type Primitive<'t> = CertifiedPrimitive<Self>;
+
+    #[inline(always)]
+    fn get<const W: usize>(
+        table: &TriangleTable,
+        index: u32,
+        context: &QueryContext<'_, W>,
+    ) -> CertifiedPrimitive<Self> {
+        let instance = table.instance.as_ref().map_or(context.instance, |(index, _)| *index);
+        let id = PrimitiveId::triangle(table.mesh_index, index, instance);
+        let scene = context.scene;
+        CertifiedPrimitive {
+            id,
+            shape: Self { vertices: scene.triangle_vertices(id) },
+            blocks_light: scene.blocks_light(id),
+            is_masked: context.query.is_masked(instance),
+        }
+    }
+}
+
+impl Shape for CertifiedTriangle {
+    #[inline(always)]
+    fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
+        triangle::certified::EdgeBounds::new(self.vertices, origin, direction).may_cross()
+    }
+
+    #[inline(always)]
+    fn estimate(&self, origin: DVec3, direction: DVec3, _: f64) -> Estimate {
+        triangle::certified::estimate(self.vertices, origin, direction)
+    }
+
+    fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
+        starts_on_triangle(context.scene, self.vertices, &context.packet.ray(lane))
+    }
+}

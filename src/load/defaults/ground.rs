@@ -1,0 +1,78 @@
+//! The ground under a scene that has none.
+
+use glam::{DVec3, Vec3};
+
+use super::auto_lighting::BACKGROUND;
+use super::extents::extents;
+use crate::scene::{LightKind, Material, Plane, Scene};
+
+/// The distance of the ground from the lowest point of a model, as a share of its size: so a flat
+/// bottom does not coincide with it.
+const GAP: f64 = 1e-4;
+
+/// Adds a matt plane just below the lowest point of a scene, on which its shadow falls. Without a
+/// shadow it looks like the background, so that it has no horizon; where point or spot lights shine
+/// on it, it is an even grey instead.
+///
+/// Nothing happens to a scene that has no finite lowest point.
+pub fn add_ground(scene: &mut Scene) {
+    let bounds = scene.bounds_over_time();
+    let [lowest] = extents(scene, &bounds, [DVec3::NEG_Y]).map(|extent| -extent);
+    if bounds.is_empty() || !lowest.is_finite() {
+        return;
+    }
+    // The brightness of white there, where it is the same everywhere.
+    let white = scene.lights.iter().try_fold(Vec3::ZERO, |sum, light| match light.kind {
+        LightKind::Ambient => Some(sum + light.intensity),
+        LightKind::Directional { direction } => {
+            Some(sum + light.intensity * (-direction.y).max(0.0) as f32)
+        }
+        LightKind::Point { .. } | LightKind::Spot { .. } => None,
+    });
+    let diffuse = match white {
+        Some(white) if white.min_element() > 0.0 => (scene.film.background / white).min(Vec3::ONE),
+        _ => Vec3::splat(BACKGROUND),
+    };
+    let material = Material { name: "ground".to_owned(), diffuse, ..Material::default() };
+    let material = scene.add_material(material);
+    let point = bounds.center().with_y(lowest - GAP * bounds.diagonal());
+    scene.planes.push(Plane::new(point, DVec3::Y, material));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::load::defaults::auto_camera::add_camera;
+    use crate::load::defaults::auto_lighting::add_lights;
+    use crate::scene::{MaterialId, Sphere};
+
+    #[test]
+    fn the_ground_lies_under_the_lowest_point_and_looks_like_the_background() {
+        let mut scene = Scene::default();
+        scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
+        add_camera(&mut scene);
+        add_lights(&mut scene);
+        add_ground(&mut scene);
+        let plane = &scene.planes[0];
+        assert!(plane.point.y < 1.0 && plane.point.y > 0.99);
+        let diffuse = scene.materials[plane.material.0 as usize].diffuse;
+        let bright: f32 = scene
+            .lights
+            .iter()
+            .map(|light| match light.kind {
+                LightKind::Directional { direction } => {
+                    light.intensity.x * (-direction.y).max(0.0) as f32
+                }
+                _ => light.intensity.x,
+            })
+            .sum();
+        assert!((diffuse.x * bright - BACKGROUND).abs() < 1e-6);
+    }
+
+    #[test]
+    fn an_empty_scene_gets_no_ground() {
+        let mut scene = Scene::default();
+        add_ground(&mut scene);
+        assert_eq!(scene.planes.len(), 0);
+    }
+}

@@ -1,0 +1,4 @@
+//! Compressed vertex data: Draco and meshoptimizer.
+
+pub mod draco;
+pub mod meshopt;

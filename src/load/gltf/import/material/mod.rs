@@ -1,0 +1,205 @@
+//! glTF's materials as Lambert and Phong materials, as docs/formats.md explains.
+
+mod metallic_roughness;
+mod reader;
+
+use std::collections::HashMap;
+
+use glam::Vec3;
+use gltf::json;
+use gltf::json::extensions::material::PbrSpecularGlossiness;
+use gltf::json::material::AlphaMode as Mode;
+use gltf::json::validation::Checked;
+
+use self::metallic_roughness::base_color;
+pub use self::reader::NeededAttributes;
+use self::reader::{MaterialReader, clamped};
+use super::texture::Textures;
+use super::texture_reference::TextureReference;
+use crate::error::Result;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::gltf::json::lookup;
+use crate::scene::{
+    AlphaMode, Channel, Coverage, Material, MaterialId, NormalMap, OcclusionMap, Scene,
+    ShininessMap, TextureId, Transfer, shininess,
+};
+
+/// The materials of a file, each imported when a primitive first uses it.
+pub struct Materials<'a> {
+    root: &'a json::Root,
+    textures: Textures<'a>,
+    imported: HashMap<Option<usize>, ImportedMaterial>,
+}
+
+/// A material of the scene.
+#[derive(Clone)]
+pub struct ImportedMaterial {
+    /// Its id.
+    pub id: MaterialId,
+    /// The vertex attributes that it needs.
+    pub needed: NeededAttributes,
+}
+
+impl<'a> Materials<'a> {
+    /// The materials of a file, of which none is imported.
+    pub fn new(root: &'a json::Root, textures: Textures<'a>) -> Self {
+        Self { root, textures, imported: HashMap::new() }
+    }
+
+    /// Returns the material with an index, or that of primitives that name none. The reference to
+    /// it is at the JSON path `by`.
+    ///
+    /// # Errors
+    /// When the reference, or one that it leads to, leads nowhere.
+    pub fn material(
+        &mut self,
+        index: Option<usize>,
+        by: &str,
+        scene: &mut Scene,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<ImportedMaterial> {
+        if let Some(known) = self.imported.get(&index) {
+            return Ok(known.clone());
+        }
+        let (material, needed) = match index {
+            // The standard's default is a rough white metal, which nobody means who names no
+            // material; ours is the neutral grey of an OBJ without one.
+            None => Default::default(),
+            Some(i) => {
+                let source = lookup(&self.root.materials, i, "material", by)?;
+                let mut reader = MaterialReader {
+                    source,
+                    path: format!("materials[{i}]"),
+                    needed: NeededAttributes::default(),
+                    textures: &mut self.textures,
+                    scene,
+                    diagnostics,
+                };
+                (read(&mut reader)?, reader.needed)
+            }
+        };
+        let imported = ImportedMaterial { id: scene.add_material(material), needed };
+        self.imported.insert(index, imported.clone());
+        Ok(imported)
+    }
+
+    /// Decodes the images of the materials' textures.
+    pub fn decode_images(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
+        self.textures.decode_images(scene, diagnostics);
+    }
+}
+
+/// Reads a material.
+fn read(reader: &mut MaterialReader) -> Result<Material> {
+    let source = reader.source;
+    let extensions = source.extensions.as_ref();
+    let mut material =
+        Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
+
+    // The base: metallic and rough, or specular and glossy.
+    let glossy = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
+    let base_map = match glossy {
+        Some(glossy) => specular_glossiness(reader, glossy, &mut material)?,
+        None => metallic_roughness::read(reader, &mut material)?,
+    };
+
+    // An unlit material shows its base colour as it is.
+    if extensions.is_some_and(|e| e.unlit.is_some()) {
+        material = Material {
+            name: material.name,
+            emission: base_color(reader),
+            emission_map: base_map,
+            unlit: true,
+            diffuse: Vec3::ZERO,
+            ..Material::default()
+        };
+    } else {
+        emission(reader, &mut material)?;
+        normal_map(reader, &mut material)?;
+        occlusion(reader, &mut material)?;
+    }
+    let base = source.pbr_metallic_roughness.base_color_factor.0;
+    let [.., alpha] = glossy.map_or(base, |glossy| glossy.diffuse_factor.0);
+    coverage(reader, clamped(alpha), base_map, &mut material);
+    Ok(material)
+}
+
+/// Sets the parameters of KHR_materials_pbrSpecularGlossiness, which is close to Phong as it is;
+/// returns the diffuse texture.
+fn specular_glossiness(
+    reader: &mut MaterialReader,
+    source: &PbrSpecularGlossiness,
+    material: &mut Material,
+) -> Result<Option<TextureId>> {
+    let key = |key: &str| format!("extensions.KHR_materials_pbrSpecularGlossiness.{key}");
+    let [r, g, b, _] = source.diffuse_factor.0;
+    material.diffuse = reader.color([r, g, b], key("diffuseFactor"));
+    material.specular = reader.color(source.specular_factor.0, key("specularFactor"));
+    let gloss = clamped(source.glossiness_factor.0);
+    material.shininess = shininess(1.0 - gloss);
+    let info = source.specular_glossiness_texture.as_ref();
+    material.specular_map = reader.color_texture(info, key("specularGlossinessTexture"))?;
+    material.shininess_map = material
+        .specular_map
+        .map(|texture| ShininessMap::Gloss(Channel { texture, channel: 3 }, gloss));
+    let info = source.diffuse_texture.as_ref();
+    material.diffuse_map = reader.color_texture(info, key("diffuseTexture"))?;
+    Ok(material.diffuse_map)
+}
+
+fn emission(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+    let source = reader.source;
+    let extension = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+    let strength = extension.map_or(1.0, |e| e.emissive_strength.0);
+    material.emission =
+        reader.color(source.emissive_factor.0.map(|f| f * strength), "emissiveFactor");
+    let info = source.emissive_texture.as_ref().filter(|_| material.emission != Vec3::ZERO);
+    material.emission_map = reader.color_texture(info, "emissiveTexture")?;
+    Ok(())
+}
+
+fn normal_map(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+    let Some(info) = &reader.source.normal_texture else { return Ok(()) };
+    let reference = TextureReference::from_normal(info);
+    let texture = reader.texture(reference, Transfer::None, "normalTexture")?;
+    let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
+    material.normal_map = Some(NormalMap { texture, scale });
+    reader.needed.tangents = true;
+    Ok(())
+}
+
+fn occlusion(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+    let Some(info) = &reader.source.occlusion_texture else { return Ok(()) };
+    let reference = TextureReference::from_occlusion(info);
+    let texture = reader.texture(reference, Transfer::None, "occlusionTexture")?;
+    let map = Channel { texture, channel: 0 };
+    material.occlusion_map = Some(OcclusionMap { map, strength: clamped(info.strength.0) });
+    Ok(())
+}
+
+/// Sets the alpha coverage, by a factor and the alpha of the base colour texture.
+fn coverage(
+    reader: &mut MaterialReader,
+    alpha: f32,
+    base_map: Option<TextureId>,
+    material: &mut Material,
+) {
+    let mode = match reader.source.alpha_mode {
+        Checked::Valid(Mode::Opaque) | Checked::Invalid => return,
+        Checked::Valid(Mode::Mask) => {
+            let cutoff = reader.source.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0);
+            AlphaMode::Mask { cutoff }
+        }
+        Checked::Valid(Mode::Blend) if material.may_transmit() => {
+            let reason = "{} materials transmit light and have alpha: the alpha is left out";
+            return reader.report_unsupported(reason);
+        }
+        Checked::Valid(Mode::Blend) => {
+            (material.thin, material.ior) = (true, 1.0);
+            AlphaMode::Blend
+        }
+    };
+    reader.needed.alpha = true;
+    let map = base_map.map(|texture| Channel { texture, channel: 3 });
+    material.coverage = Some(Coverage { alpha, map, mode });
+}

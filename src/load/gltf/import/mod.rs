@@ -1,0 +1,214 @@
+//! The import of a file's nodes, and of all they refer to, into a scene.
+
+mod animation;
+mod cameras;
+mod deformation;
+mod implicit_shapes;
+mod instancing;
+mod lights;
+mod material;
+mod mesh;
+mod morph_targets;
+mod nodes;
+mod placement;
+mod skin;
+mod texture;
+mod texture_reference;
+mod variants;
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::DAffine3;
+use gltf::json;
+
+use self::animation::AnimationClip;
+use self::material::Materials;
+use self::mesh::PrimitiveMesh;
+use self::nodes::{SceneNode, collect_nodes};
+use self::skin::SkinJoints;
+use self::texture::Textures;
+use self::variants::Variants;
+use super::accessor::Accessors;
+use super::buffers::Buffers;
+use super::json::{Document, at_path, lookup};
+use crate::error::Result;
+use crate::load::ModelOptions;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::limits::Limit;
+use crate::load::report::{LoadReport, Loaded};
+use crate::load::sandbox::Sandbox;
+use crate::scene::animation::Animated;
+use crate::scene::{MaterialId, MeshId, Scene};
+
+/// Imports the scene that a file shows.
+///
+/// # Errors
+/// When something that is shown refers to what is missing or cannot be read, or there is no
+/// animation of the chosen name.
+pub fn import(
+    path: &Path,
+    document: &Document,
+    bin: Option<&[u8]>,
+    sandbox: &Sandbox,
+    choice: &ModelOptions,
+    mut diagnostics: Diagnostics,
+) -> Result<Loaded> {
+    let root = &document.root;
+    let buffers = Buffers::new(root, sandbox, path, bin);
+    let accessors = Accessors::new(root, sandbox, &buffers);
+    let mut clip =
+        AnimationClip::read(root, sandbox, &accessors, choice.animation, &mut diagnostics)?;
+    let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
+    let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
+    let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
+    let textures = Textures::new(root, sandbox, &buffers, choice.needs_images);
+    let mut importer = Importer {
+        root,
+        value: document.value.as_ref(),
+        sandbox,
+        accessors,
+        materials: Materials::new(root, textures),
+        variants: Variants::read(root, choice.variant),
+        meshes: HashMap::new(),
+        nodes: &nodes,
+        joints: HashMap::new(),
+        scene: Scene::default(),
+        clip,
+        diagnostics,
+    };
+    for index in shown {
+        importer.add_node(&nodes[&index])?;
+    }
+    Ok(importer.finish(path))
+}
+
+/// A primitive that is imported.
+#[derive(Clone)]
+struct ImportedPrimitive {
+    mesh: PrimitiveMesh,
+    material: MaterialId,
+    /// The id of its mesh as it was modelled, once that is in the scene.
+    id: Option<MeshId>,
+}
+
+/// The state of an import, node by node.
+struct Importer<'a> {
+    root: &'a json::Root,
+    /// The values of the JSON, unless they are too large.
+    value: Option<&'a json::Value>,
+    sandbox: &'a Sandbox,
+    accessors: Accessors<'a>,
+    materials: Materials<'a>,
+    variants: Variants<'a>,
+    /// The primitives of the file's meshes so far, which nodes share.
+    meshes: HashMap<usize, Vec<ImportedPrimitive>>,
+    /// The nodes, by their index in the file.
+    nodes: &'a HashMap<usize, SceneNode<'a>>,
+    /// The joints of the skins so far.
+    joints: HashMap<usize, SkinJoints>,
+    scene: Scene,
+    clip: AnimationClip,
+    diagnostics: Diagnostics,
+}
+
+impl Importer<'_> {
+    /// Adds the camera, the light, the shape and the mesh of a node to the scene.
+    ///
+    /// # Errors
+    /// When it refers to what is missing or cannot be read.
+    fn add_node(&mut self, node: &SceneNode) -> Result<()> {
+        // What moves is also needed in the space of the node that moves it; warnings about it are
+        // those of the first time.
+        let mut ignored = Diagnostics::default();
+        let at_rest = node.animated.map(|_| node.in_animated_space());
+        if let Some(camera) = cameras::camera(self.root, node, &mut self.diagnostics)? {
+            if let Some(at_rest) = &at_rest
+                && let Some(rest) = cameras::camera(self.root, at_rest, &mut ignored)?
+            {
+                let (camera, node) = (self.scene.cameras.len(), node.animated);
+                let animated = Animated::Camera { camera, node, rest, aim: None, lens: None };
+                self.clip.objects.push(animated);
+            }
+            self.scene.cameras.push(camera);
+        }
+        if let Some(light) = lights::light(self.root, node, &mut self.diagnostics)? {
+            if let Some(at_rest) = &at_rest
+                && let Some(rest) = lights::light(self.root, at_rest, &mut ignored)?
+            {
+                let (light, node) = (self.scene.lights.len(), node.animated);
+                let (direction, intensity) = (None, None);
+                self.clip.objects.push(Animated::Light { light, node, rest, direction, intensity });
+            }
+            self.scene.lights.push(light);
+        }
+        if let Some(shape) = implicit_shapes::shape(self.root, node)? {
+            self.add_shape(shape, node)?;
+        }
+        let Some(mesh) = node.node.mesh else { return Ok(()) };
+        let by = format!("nodes[{}].mesh", node.index);
+        let primitives = self.primitives(mesh.value(), &by)?;
+        let (sandbox, accessors) = (self.sandbox, &self.accessors);
+        let instances = instancing::transforms(node, sandbox, accessors, &mut self.diagnostics)?
+            .unwrap_or_else(|| vec![DAffine3::IDENTITY]);
+        if instances.is_empty() {
+            return Ok(());
+        }
+        let added = (primitives.len() * instances.len()) as u64;
+        let count = self.scene.instances.len() as u64 + added;
+        self.sandbox.check(Limit::Instances, count).map_err(at_path(&by))?;
+        primitives.iter().try_for_each(|primitive| self.add_mesh(primitive, node, &instances, &by))
+    }
+
+    /// Returns the primitives of a mesh, each with its material.
+    fn primitives(&mut self, index: usize, by: &str) -> Result<Vec<ImportedPrimitive>> {
+        if let Some(known) = self.meshes.get(&index) {
+            return Ok(known.clone());
+        }
+        let source = lookup(&self.root.meshes, index, "mesh", by)?;
+        let mut primitives = Vec::new();
+        for (i, primitive) in source.primitives.iter().enumerate() {
+            let path = format!("meshes[{index}].primitives[{i}]");
+            // The material says which attributes are read.
+            let reference = self.variants.material(primitive, &path);
+            let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
+            let material =
+                self.materials.material(reference.index, &reference.path, scene, diagnostics)?;
+            let read =
+                mesh::read(primitive, &self.accessors, &material.needed, diagnostics, &path)?;
+            let unsupported = self
+                .value
+                .map_or(0, |value| morph_targets::unsupported_attributes(value, index, i));
+            let reason = "{} texture coordinates and colours of morph targets are not morphed";
+            diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
+            let Some(mut read) = read else { continue };
+            let sizes = [
+                (Limit::Vertices, read.mesh.positions.len()),
+                (Limit::Triangles, read.mesh.triangles.len()),
+            ];
+            for (limit, count) in sizes {
+                self.sandbox.consume(limit, count as u64).map_err(at_path(&path))?;
+            }
+            if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
+                mesh.name.clone_from(name);
+            }
+            primitives.push(ImportedPrimitive { mesh: read, material: material.id, id: None });
+        }
+        self.meshes.insert(index, primitives.clone());
+        Ok(primitives)
+    }
+
+    /// Returns the scene and the load report, once all nodes are added.
+    fn finish(mut self, path: &Path) -> Loaded {
+        self.scene.animation = self.clip.into_animation();
+        self.materials.decode_images(&mut self.scene, &mut self.diagnostics);
+        let Scene { instances, spheres, planes, .. } = &self.scene;
+        if instances.is_empty() && spheres.is_empty() && planes.is_empty() {
+            self.diagnostics.note("there is no triangle in the scene that the file shows");
+        }
+        let report = self.diagnostics.into_report(path, &self.scene);
+        let variants = self.variants.names();
+        Loaded { scene: self.scene, report: LoadReport { variants, ..report } }
+    }
+}

@@ -1,0 +1,241 @@
+//! The tree of nodes, walked without recursion and each node once: files from strangers have
+//! cycles, and graphs that are no trees.
+
+use std::collections::HashSet;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use gltf::json;
+use gltf::json::Node;
+
+use super::animation::AnimationClip;
+use crate::error::Result;
+use crate::load::diagnostics::Diagnostics;
+use crate::load::gltf::json::{at_path, error_at, lookup};
+use crate::load::limits::Limit;
+use crate::load::sandbox::Sandbox;
+use crate::scene::animation::NodeId;
+
+/// A node of the file with its transforms.
+pub struct SceneNode<'a> {
+    /// The node.
+    pub node: &'a Node,
+    /// Its index in the file.
+    pub index: usize,
+    /// The transform from its space to world space, as the file has it.
+    pub to_world: DAffine3,
+    /// The nearest node of the animation, this one or an ancestor, that it moves with.
+    pub animated: Option<NodeId>,
+    /// The transform from its space to that of `animated`, or to world space if there is none.
+    pub to_animated: DAffine3,
+    /// True if the scene shows it; others are needed as joints of skins.
+    pub is_shown: bool,
+}
+
+impl SceneNode<'_> {
+    /// Returns the node as it is in the space of its animated node.
+    pub fn in_animated_space(&self) -> Self {
+        Self { to_world: self.to_animated, ..*self }
+    }
+
+    /// Returns the own name of what the node carries, or else the name of the node.
+    pub fn name_of(&self, own: &Option<String>) -> String {
+        own.as_ref().or(self.node.name.as_ref()).cloned().unwrap_or_default()
+    }
+}
+
+/// A node that is still to be visited.
+struct PendingNode {
+    index: usize,
+    /// The JSON path of the reference to it.
+    by: String,
+    parent: Parent,
+}
+
+/// The parent of a node, or the scene; its fields are as in [`SceneNode`].
+#[derive(Clone, Copy)]
+struct Parent {
+    to_world: DAffine3,
+    animated: Option<NodeId>,
+    to_animated: DAffine3,
+    is_shown: bool,
+    /// The number of nodes above its children.
+    depth: u64,
+}
+
+/// Returns the nodes of the scene that is shown (the default one, else the first, else all nodes)
+/// in the order of the file, and those that may be joints. Nodes that move are added to the
+/// animation.
+///
+/// # Errors
+/// When a node refers to a missing one, is its own ancestor, or has numbers that are not finite.
+pub fn collect_nodes<'a>(
+    root: &'a json::Root,
+    sandbox: &Sandbox,
+    clip: &mut AnimationClip,
+    diagnostics: &mut Diagnostics,
+) -> Result<Vec<SceneNode<'a>>> {
+    sandbox.consume(Limit::Nodes, root.nodes.len() as u64).map_err(at_path("nodes"))?;
+    let parents = parents(root)?;
+    let mut roots = scene_roots(root, &parents)?;
+    // A child that is listed among the roots as well is placed by its parent.
+    roots.sort_by_key(|&(i, _)| parents.get(i).is_some_and(Option::is_some));
+
+    // The stack begins with the roots of the scene, the first on top; below them are the roots of
+    // what the scene does not show, since joints are posed whether they are shown or not.
+    let scene = Parent {
+        to_world: DAffine3::IDENTITY,
+        animated: None,
+        to_animated: DAffine3::IDENTITY,
+        is_shown: true,
+        depth: 0,
+    };
+    let shown: HashSet<usize> = roots.iter().map(|(i, _)| *i).collect();
+    let mut stack = Vec::new();
+    if !root.skins.is_empty() {
+        let hidden = (0..parents.len()).filter(|i| parents[*i].is_none() && !shown.contains(i));
+        let parent = Parent { is_shown: false, ..scene };
+        stack.extend(hidden.map(|index| PendingNode { index, by: String::new(), parent }));
+    }
+    let roots = roots.into_iter().rev();
+    stack.extend(roots.map(|(index, by)| PendingNode { index, by, parent: scene }));
+
+    let mut nodes = Vec::new();
+    let mut is_visited = vec![false; root.nodes.len()];
+    while let Some(PendingNode { index, by, parent }) = stack.pop() {
+        let node = lookup(&root.nodes, index, "node", &by)?;
+        let path = format!("nodes[{index}]");
+        let depth = parent.depth + 1;
+        sandbox.check(Limit::Depth, depth).map_err(at_path(&path))?;
+        if std::mem::replace(&mut is_visited[index], true) {
+            if parent.is_shown {
+                let reason = "{} nodes stand twice in the tree and are drawn once";
+                diagnostics.add(reason, 1, || by);
+            }
+            continue;
+        }
+
+        // The transforms of the node.
+        let local = local_transform(node, &path, diagnostics)?;
+        let to_world = parent.to_world * local;
+        if !to_world.is_finite() {
+            let message = "the transforms of the node and those above it overflow";
+            return Err(error_at(&path, message));
+        }
+        let (animated, to_animated) =
+            match clip.add_node(index, node, parent.animated, parent.to_animated) {
+                Some(own) => (Some(own), DAffine3::IDENTITY),
+                None => (parent.animated, parent.to_animated * local),
+            };
+        let is_shown = parent.is_shown && !is_hidden(node);
+
+        // The children come next, the first of them on top of the stack.
+        let parent = Parent { to_world, animated, to_animated, is_shown, depth };
+        let children = node.children.as_deref().unwrap_or_default().iter().enumerate().rev();
+        stack.extend(children.map(|(i, child)| PendingNode {
+            index: child.value(),
+            by: format!("{path}.children[{i}]"),
+            parent,
+        }));
+        nodes.push(SceneNode { node, index, to_world, animated, to_animated, is_shown });
+    }
+    Ok(nodes)
+}
+
+/// True if KHR_node_visibility hides a node, and with it all its descendants.
+fn is_hidden(node: &Node) -> bool {
+    let extension = node.extensions.as_ref().and_then(|e| e.others.get("KHR_node_visibility"));
+    extension.and_then(|object| object.get("visible")) == Some(&json::Value::Bool(false))
+}
+
+/// Returns the parent of each node.
+///
+/// # Errors
+/// When a child is missing, or a node is its own ancestor.
+fn parents(root: &json::Root) -> Result<Vec<Option<usize>>> {
+    let mut parents: Vec<Option<usize>> = vec![None; root.nodes.len()];
+    for (index, node) in root.nodes.iter().enumerate() {
+        for (i, child) in node.children.iter().flatten().enumerate() {
+            let by = format_args!("nodes[{index}].children[{i}]");
+            lookup(&root.nodes, child.value(), "node", by)?;
+            parents[child.value()].get_or_insert(index);
+        }
+    }
+    // Each chain of parents is followed to its end, or to a node that an earlier chain has visited.
+    let mut visited_from = vec![usize::MAX; root.nodes.len()];
+    for start in 0..parents.len() {
+        let mut next = Some(start);
+        while let Some(node) = next {
+            if visited_from[node] == start {
+                let path = format_args!("nodes[{node}]");
+                let error = error_at(path, "the node is its own ancestor");
+                return Err(error.help("nodes must form a tree"));
+            }
+            if visited_from[node] != usize::MAX {
+                break;
+            }
+            visited_from[node] = start;
+            next = parents[node];
+        }
+    }
+    Ok(parents)
+}
+
+/// Returns the indices of the root nodes of the scene that is shown, each with its JSON path.
+fn scene_roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usize, String)>> {
+    let index = match root.scene {
+        Some(scene) => scene.value(),
+        None if root.scenes.is_empty() => {
+            let orphans = (0..parents.len()).filter(|&i| parents[i].is_none());
+            return Ok(orphans.map(|i| (i, format!("nodes[{i}]"))).collect());
+        }
+        None => 0,
+    };
+    let scene = lookup(&root.scenes, index, "scene", "scene")?;
+    let path = |i: usize| format!("scenes[{index}].nodes[{i}]");
+    Ok(scene.nodes.iter().enumerate().map(|(i, node)| (node.value(), path(i))).collect())
+}
+
+/// Returns the transform from a node's space to that of its parent.
+fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Result<DAffine3> {
+    let check_finite = |numbers: &[f32], key: &str| {
+        if numbers.iter().all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        let error = error_at(format_args!("{path}.{key}"), "a number is too large");
+        Err(error.help("at most about 3.4e38"))
+    };
+    if let Some(m) = &node.matrix {
+        check_finite(m, "matrix")?;
+        if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
+            let reason = "{} matrices have a last row other than 0 0 0 1, which is ignored";
+            diagnostics.add(reason, 1, || format!("{path}.matrix"));
+        }
+        let [x, y, z, translation] = [0, 4, 8, 12].map(|i| vector([m[i], m[i + 1], m[i + 2]]));
+        return Ok(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation));
+    }
+    let rotation = node.rotation.unwrap_or_default().0;
+    let scale = node.scale.unwrap_or([1.0; 3]);
+    let translation = node.translation.unwrap_or_default();
+    check_finite(&rotation, "rotation")?;
+    check_finite(&scale, "scale")?;
+    check_finite(&translation, "translation")?;
+    let rotation = unit_quaternion(rotation).unwrap_or_else(|| {
+        let reason = "{} rotations have length 0 and turn nothing";
+        diagnostics.add(reason, 1, || format!("{path}.rotation"));
+        DQuat::IDENTITY
+    });
+    Ok(DAffine3::from_scale_rotation_translation(vector(scale), rotation, vector(translation)))
+}
+
+/// Returns a vector of a file in f64.
+pub fn vector(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
+/// Returns a rotation of a file in f64 and of length 1, from which f32 rounding makes it differ a
+/// little, so that it would shear; `None` if its length is 0.
+pub fn unit_quaternion(q: [f32; 4]) -> Option<DQuat> {
+    let rotation = DQuat::from_array(q.map(f64::from));
+    let length = rotation.length();
+    (length > 0.0).then(|| rotation / length)
+}

@@ -1,0 +1,99 @@
+//! The placement of meshes and implicit shapes at nodes.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::implicit_shapes::{self, ImplicitShape, NodeShape};
+use super::mesh::PrimitiveMesh;
+use super::nodes::SceneNode;
+use super::{ImportedPrimitive, Importer};
+use crate::error::Result;
+use crate::scene::animation::Animated;
+use crate::scene::{Instance, Plane, Sphere};
+
+impl Importer<'_> {
+    /// Adds instances of a primitive to the scene, at some transforms in the space of a node.
+    pub(super) fn add_mesh(
+        &mut self,
+        primitive: &ImportedPrimitive,
+        node: &SceneNode,
+        transforms: &[DAffine3],
+        by: &str,
+    ) -> Result<()> {
+        let mesh = self.mesh_at_node(primitive, node)?;
+        if mesh.is_skinned {
+            let instanced = u64::from(transforms.len() > 1);
+            let reason = "{} skinned meshes stand once, whatever the instances of their node";
+            self.diagnostics.unsupported(reason, instanced, || by.to_owned());
+            // The joints place the mesh, whatever the transform of the node.
+            let instance = Instance::new(mesh.id, DAffine3::IDENTITY, primitive.material);
+            self.scene.instances.push(instance);
+            return Ok(());
+        }
+        for &transform in transforms {
+            let instance = Instance::new(mesh.id, node.to_world * transform, primitive.material);
+            // An instance that moves may be flat at one time and not at another.
+            if let Some(animated) = node.animated {
+                self.clip.objects.push(Animated::Instance {
+                    instance: self.scene.instances.len(),
+                    node: animated,
+                    transform: node.to_animated * transform,
+                });
+            } else if instance.is_flat() {
+                let reason = "{} meshes are not drawn where their scale is 0 along some direction";
+                self.diagnostics.add(reason, 1, || by.to_owned());
+                continue;
+            }
+            self.scene.instances.push(instance);
+        }
+        Ok(())
+    }
+
+    /// Adds the implicit shape of a node to the scene.
+    pub(super) fn add_shape(&mut self, shape: NodeShape, node: &SceneNode) -> Result<()> {
+        let NodeShape { shape, material } = shape;
+        let path = format!("nodes[{}].extensions.KHR_implicit_shapes", node.index);
+        let by = format!("{path}.material");
+        let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
+        let material = self.materials.material(material, &by, scene, diagnostics)?.id;
+        let mesh = match shape {
+            ImplicitShape::Sphere(radius) => {
+                match implicit_shapes::transformed_sphere(&node.to_world, radius) {
+                    Some(sphere) => {
+                        if node.animated.is_some() {
+                            self.clip.objects.push(Animated::Sphere {
+                                sphere: scene.spheres.len(),
+                                node: node.animated,
+                                center: node.to_animated.translation,
+                                radius: None,
+                            });
+                        }
+                        scene.spheres.push(Sphere::new(sphere.center, sphere.radius, material));
+                        return Ok(());
+                    }
+                    None => implicit_shapes::sphere_mesh(radius),
+                }
+            }
+            ImplicitShape::Plane => {
+                let is_animated = u64::from(node.animated.is_some());
+                let reason = "{} planes stand still on nodes that move";
+                diagnostics.unsupported(reason, is_animated, || path.clone());
+                let normal = node.to_world.matrix3.inverse().transpose() * DVec3::Y;
+                match normal.try_normalize() {
+                    Some(normal) => {
+                        let point = node.to_world.translation;
+                        scene.planes.push(Plane::new(point, normal, material));
+                    }
+                    None => diagnostics.add("{} planes have no direction", 1, || path),
+                }
+                return Ok(());
+            }
+            ImplicitShape::Mesh(mesh) => *mesh,
+        };
+        let mesh =
+            PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
+        let primitive = ImportedPrimitive { mesh, material, id: None };
+        self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
+    }
+}

@@ -1,0 +1,206 @@
+//! Textures: their samplers and images, which are decoded when all textures are known.
+
+use std::fmt::Display;
+use std::path::PathBuf;
+
+use glam::Affine2;
+use gltf::json;
+use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
+use gltf::json::validation::Checked;
+
+use super::texture_reference::TextureReference;
+use crate::error::{Error, Result};
+use crate::load::diagnostics::Diagnostics;
+use crate::load::gltf::buffers::{Buffers, UriTarget, unreadable};
+use crate::load::gltf::json::{as_index, at_path, lookup};
+use crate::load::images::decode;
+use crate::load::images::placeholder::set_image_or_placeholder;
+use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
+use crate::load::sandbox::Sandbox;
+use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
+
+/// The textures of a file; the images that they show are decoded when all are known.
+pub struct Textures<'a> {
+    root: &'a json::Root,
+    sandbox: &'a Sandbox,
+    buffers: &'a Buffers<'a>,
+    /// True if images are read; otherwise they are only named.
+    reads_images: bool,
+    cache: TextureCache<ImageKey<'a>, ImageSource<'a>, TextureKey>,
+}
+
+/// The identity of an image: two with the same key are decoded once.
+#[derive(PartialEq, Eq, Hash)]
+enum ImageKey<'a> {
+    DataUri(&'a str),
+    File(PathBuf),
+    BufferView(usize),
+}
+
+/// The index of a texture in the file, the bits of its transform, the set of texture coordinates
+/// in the scene's mesh, and the transfer function of its values.
+type TextureKey = (usize, [u32; 6], u8, Transfer);
+
+/// An image that is still to be decoded.
+struct ImageSource<'a> {
+    bytes: Result<ImageBytes<'a>>,
+    /// Its JSON path.
+    path: String,
+}
+
+/// The place of an image's bytes.
+#[derive(Clone, Copy)]
+enum ImageBytes<'a> {
+    BufferView(&'a [u8]),
+    /// In the URI or the file that it names, which is opened when it is read, so that few are open
+    /// at a time.
+    Uri(&'a str),
+}
+
+impl<'a> Textures<'a> {
+    /// The textures of a file, without any so far.
+    pub fn new(
+        root: &'a json::Root,
+        sandbox: &'a Sandbox,
+        buffers: &'a Buffers<'a>,
+        reads_images: bool,
+    ) -> Self {
+        Self { root, sandbox, buffers, reads_images, cache: TextureCache::default() }
+    }
+
+    /// The texture of the scene for a material's reference, which is at the JSON path `by`; it is
+    /// placed by the texture coordinates `set` of the scene's mesh.
+    ///
+    /// # Errors
+    /// When the file's own references lead nowhere.
+    pub fn texture(
+        &mut self,
+        reference: TextureReference,
+        set: u8,
+        transfer: Transfer,
+        by: &str,
+        scene: &mut Scene,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<TextureId> {
+        let TextureReference { index, mut transform, .. } = reference;
+        let key = (index, transform_bits(transform), set, transfer);
+        if let Some(known) = self.cache.find_texture(&key) {
+            return Ok(known);
+        }
+
+        // Follow the texture's own references.
+        let path = format!("textures[{index}]");
+        let texture = lookup(&self.root.textures, index, "texture", by)?;
+        let lookup_sampler = |sampler: json::Index<_>| {
+            let by = format_args!("{path}.sampler");
+            lookup(&self.root.samplers, sampler.value(), "sampler", by)
+        };
+        let sampler = texture.sampler.map(lookup_sampler).transpose()?;
+        let image = match image_index(texture) {
+            Some(image) => self.image(image, format_args!("{path}.source"))?,
+            None => {
+                let bytes = Err(Error::input("there is no image that can be read"));
+                self.cache.add_image(ImageSource { bytes, path: path.clone() })
+            }
+        };
+
+        if !transform.is_finite() {
+            diagnostics.note(format!("{path}: a transform that is not finite is left out"));
+            transform = Affine2::IDENTITY;
+        }
+        Ok(self.cache.texture(key, image, scene, |image| Texture {
+            transfer,
+            wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
+            filter: sampler.map_or(Filter::Linear, filter),
+            mipmap: sampler.is_none_or(has_mipmaps),
+            set,
+            transform,
+            ..Texture::new(image)
+        }))
+    }
+
+    /// The image with an index in the file; several of one file, URI or buffer view are the same.
+    fn image(&mut self, index: usize, by: impl Display) -> Result<ImageIndex> {
+        let image = lookup(&self.root.images, index, "image", by)?;
+        let path = format!("images[{index}]");
+        let found = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => match self.buffers.resolve(uri) {
+                Ok(UriTarget::Data(_)) => Ok((ImageKey::DataUri(uri), ImageBytes::Uri(uri))),
+                Ok(UriTarget::File(file)) => {
+                    Ok((ImageKey::File(file.identity), ImageBytes::Uri(uri)))
+                }
+                Err(error) => Err(unreadable("image", uri, &error)),
+            },
+            (None, Some(view)) => {
+                let bytes = self.buffers.view(view.value(), &format!("{path}.bufferView"));
+                bytes.map(|b| (ImageKey::BufferView(view.value()), ImageBytes::BufferView(b)))
+            }
+            (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
+        };
+        Ok(match found {
+            Ok((key, bytes)) => self.cache.image(key, || ImageSource { bytes: Ok(bytes), path }),
+            Err(error) => self.cache.add_image(ImageSource { bytes: Err(error), path }),
+        })
+    }
+
+    /// Decodes the images, in parallel, and gives them to the textures of the scene. For one that
+    /// cannot be read there is a warning and a placeholder.
+    pub fn decode_images(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
+        let Self { sandbox, buffers, reads_images, cache, .. } = self;
+        let open = |image: &ImageSource<'a>| match image.bytes.clone()? {
+            ImageBytes::BufferView(bytes) => {
+                Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
+            }
+            ImageBytes::Uri(uri) => match buffers.resolve(uri) {
+                Ok(UriTarget::Data(bytes)) => {
+                    Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
+                }
+                Ok(UriTarget::File(file)) => Ok(decode::Source::File(file)),
+                Err(error) => Err(unreadable("image", uri, &error)),
+            },
+        };
+        for decoded in cache.decode(sandbox, open, |_| reads_images) {
+            let path = decoded.source.path;
+            let image = decoded.image.map_err(at_path(&path));
+            set_image_or_placeholder(image, &path, &decoded.textures, scene, diagnostics);
+        }
+    }
+}
+
+/// Returns the index of the image that a texture shows; that of an extension where there is one.
+fn image_index(texture: &json::Texture) -> Option<usize> {
+    let others = texture.extensions.as_ref().map(|extensions| &extensions.others);
+    let in_extension = |name: &str| as_index(others?.get(name)?.get("source")?);
+    // The crate writes a missing source as the greatest index.
+    let own = Some(texture.source.value()).filter(|&index| index != u32::MAX as usize);
+    in_extension("KHR_texture_basisu").or_else(|| in_extension("EXT_texture_webp")).or(own)
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+        Checked::Valid(WrappingMode::Repeat) | Checked::Invalid => Wrap::Repeat,
+    }
+}
+
+/// Returns the magnification filter; if there is only a minification filter, that.
+fn filter(sampler: &json::texture::Sampler) -> Filter {
+    use MinFilter::{Nearest, NearestMipmapLinear, NearestMipmapNearest};
+    match sampler.mag_filter {
+        Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
+        Some(_) => Filter::Linear,
+        None => match sampler.min_filter {
+            Some(Checked::Valid(Nearest | NearestMipmapLinear | NearestMipmapNearest)) => {
+                Filter::Nearest
+            }
+            _ => Filter::Linear,
+        },
+    }
+}
+
+/// True if the texture has mipmaps: unless the sampler says that it has none.
+fn has_mipmaps(sampler: &json::texture::Sampler) -> bool {
+    use MinFilter::{Linear, Nearest};
+    !matches!(sampler.min_filter, Some(Checked::Valid(Linear | Nearest)))
+}

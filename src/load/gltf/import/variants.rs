@@ -1,0 +1,62 @@
+//! KHR_materials_variants: the materials of primitives in the variant that is shown.
+
+use std::collections::BTreeSet;
+
+use gltf::json;
+use gltf::json::Value;
+use gltf::json::mesh::Primitive;
+
+use crate::load::gltf::json::{as_index, list};
+
+const EXTENSION: &str = "KHR_materials_variants";
+
+/// The variants of a file, and the one that is shown.
+pub struct Variants<'a> {
+    names: Vec<&'a str>,
+    /// The index of the variant that is shown; `None` for the default materials.
+    shown: Option<u64>,
+}
+
+/// A primitive's reference to its material.
+pub struct MaterialReference {
+    /// The index of the material, if the primitive has one.
+    pub index: Option<usize>,
+    /// The JSON path of the reference.
+    pub path: String,
+}
+
+impl<'a> Variants<'a> {
+    /// Reads the variants of a file, of which the first with this name is shown.
+    pub fn read(root: &'a json::Root, name: Option<&str>) -> Self {
+        let extension = root.extensions.as_ref().and_then(|e| e.others.get(EXTENSION));
+        let all = extension.map_or(&[][..], |extension| list(extension, "variants"));
+        let named = || (0..).zip(all).filter_map(|(i, v)| Some((i, v.get("name")?.as_str()?)));
+        let shown = named().find(|(_, found)| Some(*found) == name).map(|(i, _)| i);
+        Self { names: named().map(|(_, name)| name).collect(), shown }
+    }
+
+    /// Returns the material of a primitive, whose JSON path is `path`. A primitive that does not
+    /// mention the variant keeps its default.
+    pub fn material(&self, primitive: &Primitive, path: &str) -> MaterialReference {
+        self.variant_material(primitive, path).unwrap_or_else(|| MaterialReference {
+            index: primitive.material.map(|m| m.value()),
+            path: format!("{path}.material"),
+        })
+    }
+
+    fn variant_material(&self, primitive: &Primitive, path: &str) -> Option<MaterialReference> {
+        let shown = Value::from(self.shown?);
+        let extension = primitive.extensions.as_ref()?.others.get(EXTENSION)?;
+        let mut mappings = list(extension, "mappings").iter().enumerate();
+        let (i, mapping) = mappings.find(|(_, m)| list(m, "variants").contains(&shown))?;
+        // A value that is no index becomes one that no file has.
+        let index = mapping.get("material").and_then(as_index).unwrap_or(usize::MAX);
+        let path = format!("{path}.extensions.{EXTENSION}.mappings[{i}].material");
+        Some(MaterialReference { index: Some(index), path })
+    }
+
+    /// The names of the variants.
+    pub fn names(&self) -> BTreeSet<String> {
+        self.names.iter().map(|name| (*name).to_owned()).collect()
+    }
+}

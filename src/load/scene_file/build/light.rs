@@ -1,0 +1,190 @@
+//! The lights, and their motion.
+
+use glam::{DVec3, Vec3};
+
+use super::SceneBuilder;
+use crate::error::{Error, Result};
+use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::tables::{Kind, LightTable};
+use crate::load::scene_file::source::{Source, Span};
+use crate::load::spelling;
+use crate::scene::animation::Animated;
+use crate::scene::{Light, LightKind, Shadow, Transfer};
+
+/// The default half-angle of a spot light within which it is whole, in degrees.
+const DEFAULT_INNER_ANGLE: f64 = 0.0;
+/// The default half-angle of a spot light beyond which there is no light, in degrees.
+const DEFAULT_OUTER_ANGLE: f64 = 45.0;
+
+impl SceneBuilder<'_> {
+    /// Adds a light.
+    ///
+    /// # Errors
+    /// When its keys do not fit its kind or each other, or its intensity is beyond f32 at some time.
+    pub fn add_light(&mut self, table: &LightTable) -> Result<()> {
+        let light = light(self.source, table, self.scene.film.transfer)?;
+        let animated = self.animated_light(table, &light)?;
+        self.add_animated(animated);
+        self.scene.lights.push(light);
+        Ok(())
+    }
+
+    /// Returns the animation of the next light of the scene, if it has one.
+    fn animated_light(&self, table: &LightTable, light: &Light) -> Result<Option<Animated>> {
+        let Some(motion) = self.motion(&table.name) else { return Ok(None) };
+        let mut rest = light.clone();
+        if motion.is_keyed
+            && let LightKind::Point { position, .. } | LightKind::Spot { position, .. } =
+                &mut rest.kind
+        {
+            *position = DVec3::ZERO;
+        }
+        let direction = motion.curves.direction.as_ref().map(|curve| curve.value.clone());
+        let mut intensity = None;
+        if let Some(At { span, value: curve }) = &motion.curves.intensity {
+            rest.intensity = color(table, self.scene.film.transfer);
+            let greatest = curve.values.iter().fold(0.0f64, |a, &b| a.max(b));
+            check_intensity(self.source, span, rest.intensity * greatest as f32)?;
+            intensity = Some(curve.clone());
+        }
+        if motion.node.is_none() && direction.is_none() && intensity.is_none() {
+            return Ok(None);
+        }
+        let light = self.scene.lights.len();
+        Ok(Some(Animated::Light { light, node: motion.node, rest, direction, intensity }))
+    }
+}
+
+impl Kind {
+    /// Returns the kind's name in a scene file.
+    fn name(self) -> &'static str {
+        match self {
+            Kind::Point => "point",
+            Kind::Directional => "directional",
+            Kind::Spot => "spot",
+            Kind::Ambient => "ambient",
+        }
+    }
+
+    /// Returns the keys that a light of this kind may have.
+    fn keys(self) -> &'static [&'static str] {
+        match self {
+            Kind::Point => &["position", "color", "intensity", "falloff", "range", "shadow"],
+            Kind::Directional => &["direction", "color", "intensity", "shadow"],
+            Kind::Spot => &[
+                "position",
+                "direction",
+                "inner_angle",
+                "outer_angle",
+                "color",
+                "intensity",
+                "falloff",
+                "range",
+                "shadow",
+            ],
+            Kind::Ambient => &["color", "intensity"],
+        }
+    }
+}
+
+/// Returns the light that a table describes.
+fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Result<Light> {
+    check_keys(source, table)?;
+    let mut intensity = color(table, transfer);
+    if let Some(At { span, value }) = &table.intensity {
+        intensity *= value.0 as f32;
+        check_intensity(source, span, intensity)?;
+    }
+    let kind = light_kind(source, table)?;
+    let shadow = match kind {
+        LightKind::Ambient => Shadow::None,
+        _ => table.shadow.as_ref().map(|shadow| shadow.value.0).unwrap_or_default(),
+    };
+    let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
+    Ok(Light { name, kind, intensity, shadow })
+}
+
+/// Returns the linear colour of a light, white by default.
+fn color(table: &LightTable, transfer: Transfer) -> Vec3 {
+    table.color.map_or(Vec3::ONE, |c| c.to_linear(transfer))
+}
+
+/// Checks that an intensity is within f32.
+fn check_intensity(source: &Source<'_>, span: &Span, intensity: Vec3) -> Result<()> {
+    if intensity.is_finite() {
+        return Ok(());
+    }
+    Err(source.error(span, "`color` times `intensity` is too large"))
+}
+
+/// Returns the kind of a light, with the values that it needs.
+fn light_kind(source: &Source<'_>, table: &LightTable) -> Result<LightKind> {
+    let missing = |key: &str| -> Error {
+        let kind = table.kind.value.name();
+        source.error(&table.kind.span, format!("a {kind} light needs the key `{key}`"))
+    };
+    let position = || table.position.as_ref().map(|p| p.value.0).ok_or_else(|| missing("position"));
+    let direction =
+        || table.direction.as_ref().map(|d| d.value.0).ok_or_else(|| missing("direction"));
+    let falloff = table.falloff.as_ref().map(|f| f.value).unwrap_or_default();
+    let range = table.range.as_ref().map_or(f64::INFINITY, |r| r.value.0);
+    Ok(match table.kind.value {
+        Kind::Ambient => LightKind::Ambient,
+        Kind::Directional => LightKind::Directional { direction: direction()? },
+        Kind::Point => LightKind::Point { position: position()?, falloff, range },
+        Kind::Spot => {
+            let (inner_angle, outer_angle) = cone_angles(source, table)?;
+            let (position, direction) = (position()?, direction()?);
+            LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle }
+        }
+    })
+}
+
+/// Returns the inner and the outer half-angle of a spot light, in radians.
+fn cone_angles(source: &Source<'_>, table: &LightTable) -> Result<(f64, f64)> {
+    let inner = table.inner_angle.as_ref().map_or(DEFAULT_INNER_ANGLE, |a| a.value.0);
+    let outer = table.outer_angle.as_ref().map_or(DEFAULT_OUTER_ANGLE, |a| a.value.0);
+    let (inner_angle, outer_angle) = (inner.to_radians(), outer.to_radians());
+    let given = table.inner_angle.as_ref().or(table.outer_angle.as_ref());
+    match given {
+        Some(At { span, .. }) if inner_angle >= outer_angle => Err(source.error(
+            span,
+            format!("`inner_angle` ({inner}) must be less than `outer_angle` ({outer})"),
+        )),
+        _ => Ok((inner_angle, outer_angle)),
+    }
+}
+
+/// Checks that a light has only keys that mean something for its kind.
+fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
+    fn span<T>(value: &Option<At<T>>) -> Option<&Span> {
+        value.as_ref().map(|v| &v.span)
+    }
+    // The keys that are given, of those that not every kind has.
+    let kind = table.kind.value;
+    let given = [
+        ("position", span(&table.position)),
+        ("direction", span(&table.direction)),
+        ("inner_angle", span(&table.inner_angle)),
+        ("outer_angle", span(&table.outer_angle)),
+        ("falloff", span(&table.falloff)),
+        ("range", span(&table.range)),
+        ("shadow", span(&table.shadow)),
+    ];
+    for (key, span) in given {
+        if let Some(span) = span
+            && !kind.keys().contains(&key)
+        {
+            let article = if kind == Kind::Ambient { "an" } else { "a" };
+            let name = kind.name();
+            let help = format!("its keys are {}", spelling::list(kind.keys()));
+            return Err(source
+                .error(
+                    &source.key_span(key, span),
+                    format!("{article} {name} light has no `{key}`"),
+                )
+                .help(help));
+        }
+    }
+    Ok(())
+}

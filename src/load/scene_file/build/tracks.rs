@@ -1,0 +1,214 @@
+//! The curves of an object's keys, from the tracks of the animation.
+
+use glam::DVec3;
+
+use super::objects::{NamedObject, ObjectKind};
+use crate::error::Result;
+use crate::load::scene_file::schema::animation_tables::{self, List, TrackTable};
+use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::tables::Kind;
+use crate::load::scene_file::source::Source;
+use crate::load::spelling;
+use crate::scene::Projection;
+use crate::scene::animation::{Curve, Interpolate, Interpolation};
+
+/// The curves of an object's animated keys, each with the place of its values.
+#[derive(Debug, Default)]
+pub struct ObjectCurves {
+    /// The position: `center`, `translate` or `position`.
+    pub position: Option<At<Curve<DVec3>>>,
+    /// A model's angles, in radians.
+    pub rotation: Option<At<Curve<DVec3>>>,
+    /// A model's factors of scale.
+    pub scale: Option<At<Curve<DVec3>>>,
+    /// A sphere's radius.
+    pub radius: Option<At<Curve<f64>>>,
+    /// The direction in which a light travels or a camera looks.
+    pub direction: Option<At<Curve<DVec3>>>,
+    /// The points that a camera looks at.
+    pub look_at: Option<At<Curve<DVec3>>>,
+    /// A light's intensity.
+    pub intensity: Option<At<Curve<f64>>>,
+    /// The kind of a camera's projection and its values, in radians, pixels or units.
+    pub projection: Option<(MakeProjection, At<Curve<f64>>)>,
+}
+
+/// A function from a value, and the film's width in pixels, to a projection.
+pub type MakeProjection = fn(f64, u32) -> Projection;
+
+impl ObjectKind {
+    /// Returns the keys of an object of this kind that can be animated.
+    fn animated_keys(self) -> &'static [&'static str] {
+        match self {
+            Self::Sphere => &["center", "radius"],
+            Self::Model => &["translate", "rotate", "scale"],
+            Self::Light(Kind::Point) => &["position", "intensity"],
+            Self::Light(Kind::Spot) => &["position", "direction", "intensity"],
+            Self::Light(Kind::Directional) => &["direction", "intensity"],
+            Self::Light(Kind::Ambient) => &["intensity"],
+            Self::Camera => {
+                &["position", "look_at", "direction", "fov_y", "fov_x", "focal_px", "ortho_height"]
+            }
+        }
+    }
+}
+
+/// Adds the curves of a track to those of its object.
+///
+/// # Errors
+/// When the object has no such key, or a curve of it already; when times do not increase, or are not
+/// as many as the values.
+pub fn add_track(
+    source: &Source<'_>,
+    object: &NamedObject,
+    table: &TrackTable,
+    curves: &mut ObjectCurves,
+) -> Result<()> {
+    check_times(source, table)?;
+    let mut track = TrackReader { source, object, table, is_empty: true };
+    // Vectors.
+    let smooth = Curve::<DVec3>::smooth;
+    track.read("center", &table.center, |p| p.0, smooth, &mut curves.position)?;
+    track.read("translate", &table.translate, |p| p.0, smooth, &mut curves.position)?;
+    track.read("position", &table.position, |p| p.0, smooth, &mut curves.position)?;
+    track.read("rotate", &table.rotate, |r| r.radians(), smooth, &mut curves.rotation)?;
+    track.read("scale", &table.scale, |s| s.0, smooth, &mut curves.scale)?;
+    track.read("direction", &table.direction, |d| d.0, smooth, &mut curves.direction)?;
+    track.read("look_at", &table.look_at, |p| p.0, smooth, &mut curves.look_at)?;
+    // Numbers.
+    let smooth = Curve::<f64>::smooth;
+    track.read("radius", &table.radius, |r| r.0, smooth, &mut curves.radius)?;
+    track.read("intensity", &table.intensity, |i| i.0, smooth, &mut curves.intensity)?;
+    // Projections, of which a camera has one.
+    let projection = &mut curves.projection;
+    let fov_y: MakeProjection = |angle, _| Projection::FovY(angle);
+    track.read_projection("fov_y", &table.fov_y, |a| a.0.to_radians(), fov_y, projection)?;
+    let fov_x: MakeProjection = |angle, _| Projection::FovX(angle);
+    track.read_projection("fov_x", &table.fov_x, |a| a.0.to_radians(), fov_x, projection)?;
+    let focal_px: MakeProjection = |focal, width| Projection::FocalPx { focal, width };
+    track.read_projection("focal_px", &table.focal_px, |d| d.0, focal_px, projection)?;
+    let ortho: MakeProjection = |height, _| Projection::OrthoHeight(height);
+    track.read_projection("ortho_height", &table.ortho_height, |h| h.0, ortho, projection)?;
+
+    let both = curves.look_at.is_some() && curves.direction.is_some();
+    if both && object.kind == ObjectKind::Camera {
+        let message = "a camera has `look_at` or `direction`, not both";
+        return Err(source.error(&table.object.span, message).help("leave one out"));
+    }
+    if track.is_empty {
+        let name = &object.name;
+        let message = format!("the track says nothing of what changes of `{name}`");
+        let keys = spelling::list(object.kind.animated_keys());
+        return Err(source.error(&table.object.span, message).help(format!(
+            "give it values for one or several of {keys}: one for each of its `times`"
+        )));
+    }
+    Ok(())
+}
+
+/// Checks that a track has times, and that they increase.
+fn check_times(source: &Source<'_>, table: &TrackTable) -> Result<()> {
+    let times = &table.times.value.0;
+    if let Some(pair) = times.windows(2).find(|w| w[1].value.0 <= w[0].value.0) {
+        let (before, after) = (pair[0].value.0, &pair[1]);
+        let message = format!("times must increase, and {} comes after {before}", after.value.0);
+        return Err(source.error(&after.span, message));
+    }
+    if times.is_empty() {
+        return Err(source.error(&table.times.span, "a track needs a time, and a value for it"));
+    }
+    Ok(())
+}
+
+/// A track while its curves are read.
+struct TrackReader<'a> {
+    source: &'a Source<'a>,
+    object: &'a NamedObject,
+    table: &'a TrackTable,
+    /// True until a key with values is found.
+    is_empty: bool,
+}
+
+impl TrackReader<'_> {
+    /// Reads the curve of a key, where it is given, into a slot that must be empty. `smooth` makes the
+    /// curve without corners.
+    fn read<T, V: Interpolate>(
+        &mut self,
+        key: &str,
+        list: &Option<At<List<T>>>,
+        value: impl Fn(&T) -> V,
+        smooth: fn(Vec<f64>, Vec<V>) -> Curve<V>,
+        slot: &mut Option<At<Curve<V>>>,
+    ) -> Result<()> {
+        let Some(curve) = self.curve(key, list, value, smooth)? else { return Ok(()) };
+        let key_span = self.source.key_span(key, &curve.span);
+        if slot.replace(curve).is_none() {
+            return Ok(());
+        }
+        let message = format!("another track says how `{key}` of `{}` changes", self.object.name);
+        Err(self.source.error(&key_span, message).help("put all its times into one"))
+    }
+
+    /// Reads the curve of a camera's projection, as [`TrackReader::read`].
+    fn read_projection<T>(
+        &mut self,
+        key: &str,
+        list: &Option<At<List<T>>>,
+        value: impl Fn(&T) -> f64,
+        make: MakeProjection,
+        slot: &mut Option<(MakeProjection, At<Curve<f64>>)>,
+    ) -> Result<()> {
+        let Some(curve) = self.curve(key, list, value, Curve::<f64>::smooth)? else {
+            return Ok(());
+        };
+        let key_span = self.source.key_span(key, &curve.span);
+        if slot.replace((make, curve)).is_none() {
+            return Ok(());
+        }
+        let message = "a camera has one lens, and a track says already how it changes";
+        let help = "keep one of `fov_y`, `fov_x`, `focal_px` and `ortho_height`";
+        Err(self.source.error(&key_span, message).help(help))
+    }
+
+    /// Returns the curve of a key, where it is given: checks that the object has the key, and that
+    /// there are as many values as times.
+    fn curve<T, V: Interpolate>(
+        &mut self,
+        key: &str,
+        list: &Option<At<List<T>>>,
+        value: impl Fn(&T) -> V,
+        smooth: fn(Vec<f64>, Vec<V>) -> Curve<V>,
+    ) -> Result<Option<At<Curve<V>>>> {
+        let Some(At { span, value: List(list) }) = list else { return Ok(None) };
+        self.is_empty = false;
+        // The object must have the key.
+        let kind = self.object.kind;
+        if !kind.animated_keys().contains(&key) {
+            let name = &self.object.name;
+            let message = format!("`{name}` is {}, which has no `{key}`", kind.noun());
+            let help = format!("what can change of it is {}", spelling::list(kind.animated_keys()));
+            return Err(self.source.error(&self.source.key_span(key, span), message).help(help));
+        }
+        // There must be a value for each time.
+        let times: Vec<f64> = self.table.times.value.0.iter().map(|time| time.value.0).collect();
+        if list.len() != times.len() {
+            let count =
+                |n: usize, noun: &str| format!("{n} {noun}{}", if n == 1 { "" } else { "s" });
+            let (values, times) = (count(list.len(), "value"), count(times.len(), "time"));
+            let message = format!("`{key}`: {values} for {times}");
+            return Err(self.source.error(span, message).help("a value for each time"));
+        }
+        // The curve through the values.
+        let values = list.iter().map(value).collect();
+        let value = match self.table.interpolation.unwrap_or_default() {
+            animation_tables::Interpolation::Smooth => smooth(times, values),
+            animation_tables::Interpolation::Linear => {
+                Curve { times, values, interpolation: Interpolation::Linear }
+            }
+            animation_tables::Interpolation::Step => {
+                Curve { times, values, interpolation: Interpolation::Step }
+            }
+        };
+        Ok(Some(At { span: span.clone(), value }))
+    }
+}

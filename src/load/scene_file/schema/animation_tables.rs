@@ -1,0 +1,126 @@
+//! The tables of a scene file that describe motion: `[animation]` and those in it.
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer};
+
+use super::spanned::{At, ListVisitor, Tables};
+use super::values::{
+    Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
+    Rotation, Scale, Seconds,
+};
+
+/// The motion of objects, and its length.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AnimationTable {
+    /// The number of frames, from 1 to 1000000.
+    pub frames: FrameCount,
+    /// The number of frames per second.
+    #[schemars(extend("default" = 24))]
+    pub fps: Option<Rate>,
+    /// Objects that circle around others, or move along with them.
+    #[serde(default)]
+    pub orbit: Tables<OrbitTable>,
+    /// Objects whose keys change over time.
+    #[serde(default)]
+    pub track: Tables<TrackTable>,
+}
+
+/// An orbit: an object circles around a centre, starting where its own table places it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OrbitTable {
+    /// The name of the object that circles.
+    pub object: At<String>,
+    /// The centre: a point, or the name of an object, which may move itself.
+    pub around: At<PointOrName>,
+    /// The seconds for one turn. Without it the object does not circle, but moves along with its
+    /// centre.
+    pub period: Option<Seconds>,
+    /// The axis of the orbit, of any length but zero. Seen from the axis's end, the object circles
+    /// counterclockwise.
+    #[schemars(extend("default" = [0, 1, 0]))]
+    pub axis: Option<Direction>,
+    /// True if the object turns as it circles, so that the same side always faces the centre.
+    #[schemars(extend("default" = false))]
+    pub turn: Option<bool>,
+}
+
+/// A track: values over time for keys of an object's own table, which replace the one value there.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TrackTable {
+    /// The name of the object.
+    pub object: At<String>,
+    /// The times of the values in seconds, increasing: one for each value.
+    pub times: At<List<At<Coordinate>>>,
+    /// The interpolation between the values: linear, a step, or a smooth curve.
+    #[schemars(extend("default" = "linear"))]
+    pub interpolation: Option<Interpolation>,
+    /// Centres (sphere).
+    pub center: Option<At<List<Point>>>,
+    /// Radii (sphere).
+    pub radius: Option<At<List<Length>>>,
+    /// Positions of the origin (model).
+    pub translate: Option<At<List<Point>>>,
+    /// Angles in degrees, each of which is interpolated by itself (model).
+    pub rotate: Option<At<List<Rotation>>>,
+    /// Scales: one factor, or three (model).
+    pub scale: Option<At<List<Scale>>>,
+    /// Positions (light, camera).
+    pub position: Option<At<List<Point>>>,
+    /// Directions in which the light travels or the camera looks (light, camera).
+    pub direction: Option<At<List<Direction>>>,
+    /// Points that the camera looks at (camera).
+    pub look_at: Option<At<List<Point>>>,
+    /// Factors on the colour (light).
+    pub intensity: Option<At<List<Amount>>>,
+    /// Fields of view from the lower to the upper edge, in degrees (camera).
+    pub fov_y: Option<At<List<FieldOfView>>>,
+    /// Fields of view from the left to the right edge, in degrees (camera).
+    pub fov_x: Option<At<List<FieldOfView>>>,
+    /// Distances from the eye to the picture, in pixels of the film's `size` (camera).
+    pub focal_px: Option<At<List<Length>>>,
+    /// Heights of the view, for an orthographic camera (camera).
+    pub ortho_height: Option<At<List<Length>>>,
+}
+
+/// The interpolation between two values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum Interpolation {
+    /// A straight line.
+    #[default]
+    Linear,
+    /// The first value, then a jump.
+    Step,
+    /// A smooth curve that starts and ends at rest and does not go beyond the values.
+    Smooth,
+}
+
+/// A list of any length.
+#[derive(Clone, Debug)]
+pub struct List<T>(pub Vec<T>);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let visitor = ListVisitor::new("a list with a value for each time");
+        deserializer.deserialize_seq(visitor).map(Self)
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for List<T> {
+    fn inline_schema() -> bool {
+        true
+    }
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}_list", T::schema_name()).into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "array", "minItems": 1, "items": generator.subschema_for::<T>(),
+        })
+    }
+}
