@@ -429,8 +429,8 @@ fn an_mtl_file_of_the_models_name_takes_the_place_of_a_missing_one() {
     let scene = &loaded.scene;
     assert_eq!(scene.materials[0].diffuse, Vec3::X);
     assert_warns(&loaded, "`none.mtl` are missing");
-    let scene = folder.load("model.obj", text("")).unwrap().scene;
-    assert_eq!((scene.materials[0].diffuse, loaded.report.warnings.len()), (Vec3::X, 0));
+    let loaded = folder.load("model.obj", text("")).unwrap();
+    assert_eq!((loaded.scene.materials[0].diffuse, loaded.report.warnings.len()), (Vec3::X, 0));
 }
 
 #[test]
