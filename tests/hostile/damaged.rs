@@ -431,7 +431,7 @@ fn the_files_are_valid_before() {
     let folder = valid_files();
     for file in ["model.glb", "model.gltf", "inside.gltf", "packed.glb", "model.obj", "scene.toml"]
     {
-        let scene = envers::load(&folder.path(file)).unwrap_or_else(|e| panic!("{e}")).scene;
+        let scene = envers::load(folder.path(file)).unwrap_or_else(|e| panic!("{e}")).scene;
         assert!(scene.triangle_count() > 0, "{file}");
     }
 }

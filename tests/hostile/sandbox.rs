@@ -331,7 +331,7 @@ fn a_model_in_a_scene_may_name_what_is_in_the_folder_of_the_scene() {
     let scene = place.folder.write("scene/a.toml", "[[model]]\nfile = \"models/a.obj\"\n");
     assert_eq!(envers::load(&scene).unwrap().report.warnings, [""; 0]);
     // By itself the model has a folder of its own.
-    let alone = envers::load(&place.folder.path("scene/models/a.obj")).unwrap();
+    let alone = envers::load(place.folder.path("scene/models/a.obj")).unwrap();
     assert!(alone.report.warnings[0].contains("not in the folder"), "{:?}", alone.report.warnings);
 }
 

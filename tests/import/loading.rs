@@ -11,7 +11,7 @@ pub trait LoadFile {
 
 impl LoadFile for Folder {
     fn load(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<Loaded> {
-        envers::load(&self.write(name, bytes))
+        envers::load(self.write(name, bytes))
     }
 }
 

@@ -65,7 +65,7 @@ fn chain_of_a_hundred_thousand_nodes() {
     model.load_in(&folder).unwrap_err();
     let limits = Limits::default().with_limit(Limit::Depth, 100_000);
     let options = LoadOptions::default().limits(limits);
-    assert_eq!(options.load(&folder.path("model.gltf")).unwrap().scene.triangle_count(), 1);
+    assert_eq!(options.load(folder.path("model.gltf")).unwrap().scene.triangle_count(), 1);
 }
 
 #[test]

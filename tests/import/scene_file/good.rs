@@ -344,7 +344,7 @@ fn a_byte_order_mark_and_windows_line_ends_are_no_matter() {
 #[test]
 fn a_diffuse_colour_in_bytes_is_a_warning() {
     let text = "[[material]]\nname = \"blue\"\ndiffuse = [52, 84, 216]\n";
-    let warnings = File::new(&format!("{}{text}", super::CAMERA)).load().unwrap().report.warnings;
+    let warnings = File::new(format!("{}{text}", super::CAMERA)).load().unwrap().report.warnings;
     let expected = "scene.toml:5:11: the material `blue` scatters more light than it gets";
     assert!(warnings[0].contains(expected), "{warnings:?}");
 }

@@ -35,7 +35,7 @@ impl File {
     }
 
     fn load(&self) -> Result<Loaded, Error> {
-        load(&self.path())
+        load(self.path())
     }
 }
 

@@ -66,7 +66,7 @@ fn warnings_of_a_model_name_it_and_come_once() {
     let warnings = file(text).load().unwrap().report.warnings;
     assert!(!warnings.is_empty());
     assert!(warnings.iter().all(|w| w.contains("two.obj: ")), "{warnings:?}");
-    let Loaded { report, .. } = envers::load(&file("").beside("two.obj")).unwrap();
+    let Loaded { report, .. } = envers::load(file("").beside("two.obj")).unwrap();
     assert_eq!(warnings.len(), report.warnings.len());
 }
 
