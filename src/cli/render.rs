@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::cli::args::Render;
 use crate::cli::flag_values::SampleRange;
 use crate::cli::render_plan::RenderPlan;
-use crate::cli::render_stats::RenderStats;
+use crate::cli::render_stats::{RenderStats, RenderTotals};
 use crate::cli::scene_args::SceneInput;
 use crate::cli::{Outcome, messages, output, paths};
 use crate::error::{Error, Result};
@@ -121,23 +121,6 @@ struct FrameWriter<'a> {
     settings: Settings,
     movies: Vec<Movie>,
     totals: RenderTotals,
-}
-
-/// The sums of all frames, and the times of the command.
-pub struct RenderTotals {
-    pub statistics: Statistics,
-    /// The number of frames.
-    pub frames: usize,
-    /// The number of encoded images.
-    pub images: u64,
-    /// True if all frames are black.
-    is_black: bool,
-    /// The time to load the scene and check the outputs.
-    pub load: Duration,
-    /// The time to encode and write images.
-    pub write: Duration,
-    /// The time of the whole command.
-    pub total: Duration,
 }
 
 impl<'a> FrameWriter<'a> {

@@ -2,16 +2,34 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 use serde::Serialize;
 
 use crate::cli::load_report::LoadSummary;
-use crate::cli::render::RenderTotals;
 use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
 use crate::intersect::BuildQuality;
 use crate::load::LoadReport;
 use crate::render::Statistics;
 use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
+
+/// The sums of all frames, and the times of the command.
+pub struct RenderTotals {
+    /// The sums of the statistics.
+    pub statistics: Statistics,
+    /// The number of frames.
+    pub frames: usize,
+    /// The number of encoded images.
+    pub images: u64,
+    /// True if all frames are black.
+    pub is_black: bool,
+    /// The time to load the scene and check the outputs.
+    pub load: Duration,
+    /// The time to encode and write images.
+    pub write: Duration,
+    /// The time of the whole command.
+    pub total: Duration,
+}
 
 /// The statistics of a rendering: `render --stats`.
 #[derive(Serialize)]

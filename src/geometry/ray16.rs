@@ -2,13 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Continuation, Departure, PrimitiveId16, Ray, Side};
-
-/// The number of lanes of a block: a multiple of every packet width.
-pub const LANES: usize = 16;
-
-/// One value for each of sixteen lanes.
-pub type Lanes<T> = [T; LANES];
+use crate::geometry::{Continuation, Departure, LANES, Lanes, PrimitiveId16, Ray, Side};
 
 /// Sixteen rays side by side, without their departures; see [`Ray`].
 #[derive(Clone, Debug, Default)]

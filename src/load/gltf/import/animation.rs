@@ -9,7 +9,7 @@ use gltf::json;
 use gltf::json::animation::{Channel, Interpolation as SamplerInterpolation, Property, Sampler};
 use gltf::json::validation::Checked;
 
-use super::nodes::vector;
+use super::vectors::vector;
 use crate::error::{Error, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;

@@ -3,7 +3,8 @@
 use glam::{DAffine3, DQuat};
 use gltf::json::Value;
 
-use super::nodes::{SceneNode, unit_quaternion, vector};
+use super::nodes::SceneNode;
+use super::vectors::{unit_quaternion, vector};
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;

@@ -15,6 +15,7 @@ mod skin;
 mod texture;
 mod texture_reference;
 mod variants;
+mod vectors;
 
 use std::collections::HashMap;
 use std::path::Path;

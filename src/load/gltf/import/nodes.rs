@@ -3,11 +3,12 @@
 
 use std::collections::HashSet;
 
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat};
 use gltf::json;
 use gltf::json::Node;
 
 use super::animation::AnimationClip;
+use super::vectors::{unit_quaternion, vector};
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::json::{at_path, error_at, lookup};
@@ -225,17 +226,4 @@ fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Re
         DQuat::IDENTITY
     });
     Ok(DAffine3::from_scale_rotation_translation(vector(scale), rotation, vector(translation)))
-}
-
-/// Returns a vector of a file in f64.
-pub fn vector(v: [f32; 3]) -> DVec3 {
-    DVec3::from(v.map(f64::from))
-}
-
-/// Returns a rotation of a file in f64 and of length 1, from which f32 rounding makes it differ a
-/// little, so that it would shear; `None` if its length is 0.
-pub fn unit_quaternion(q: [f32; 4]) -> Option<DQuat> {
-    let rotation = DQuat::from_array(q.map(f64::from));
-    let length = rotation.length();
-    (length > 0.0).then(|| rotation / length)
 }
