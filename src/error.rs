@@ -1,7 +1,7 @@
 //! The error type of the library: a message with its file, the place in the file, and advice.
 //!
 //! ```
-//! use envers::error::{Error, Place};
+//! use envers::{Error, Place};
 //! use std::path::Path;
 //!
 //! let error = Error::input("unknown key `centre`")

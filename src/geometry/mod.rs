@@ -7,7 +7,8 @@
 //! arithmetic.
 //!
 //! ```
-//! use envers::geometry::{Ray, plane};
+//! use envers::Ray;
+//! use envers::internals::plane;
 //! use glam::DVec3;
 //!
 //! let ray = Ray::new(DVec3::Y * 3.0, DVec3::new(1.0, -2.0, 0.0));

@@ -13,12 +13,12 @@
 //! let projection = Projection::FovY(45f64.to_radians());
 //! scene.cameras.push(Camera::look_at(DVec3::new(0.0, 2.0, 8.0), DVec3::Y, DVec3::Y, projection)?);
 //! scene.check()?;
-//! # Ok::<(), envers::error::Error>(())
+//! # Ok::<(), envers::Error>(())
 //! ```
 
 pub mod animation;
 mod camera;
-pub mod check;
+pub(crate) mod check;
 mod coverage;
 mod features;
 mod film_settings;
@@ -28,32 +28,39 @@ mod material;
 mod mesh;
 mod metallic_roughness;
 mod mipmap;
-pub mod precision_warnings;
+pub(crate) mod precision_warnings;
 mod shading_params;
 mod shapes;
 mod texels;
 mod texture;
 mod tone;
 mod triangles;
-pub mod watertight;
+pub(crate) mod watertight;
 
-pub use camera::{Camera, Projection, RayGenerator};
+pub(crate) use camera::RayGenerator;
+pub use camera::{Camera, Projection};
 pub use coverage::{AlphaMode, Coverage};
-pub use features::{Feature, SceneFeatures};
+#[doc(hidden)]
+pub use features::Feature;
+pub(crate) use features::SceneFeatures;
 pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
-pub use light::{Falloff, IncidentLight, Light, LightKind, Shadow};
+#[doc(hidden)]
+pub use light::IncidentLight;
+pub use light::{Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShininessMap};
 pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
-pub(crate) use metallic_roughness::mirror_share;
-pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps, shininess};
+pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
+pub(crate) use metallic_roughness::{mirror_share, shininess};
+#[doc(hidden)]
 pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};
 pub use texels::{Texel, Texels};
-pub use texture::{Channel, Filter, Texture, TextureId, TexturePoint, Wrap};
+pub(crate) use texture::TexturePoint;
+pub use texture::{Channel, Filter, Texture, TextureId, Wrap};
 pub use tone::Tone;
-pub use triangles::Triangles;
+pub(crate) use triangles::Triangles;
 
 use std::sync::Arc;
 

@@ -1,13 +1,13 @@
 //! The output files: a film written as PNG, EXR, GIF or animated PNG, completely or not at all.
 //!
 //! ```
-//! use envers::film::{Film, View};
-//! use envers::write::{Settings, write};
+//! use envers::{Film, View};
+//! use envers::internals::{Settings, write};
 //!
 //! let folder = tempfile::tempdir().unwrap();
 //! let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.5; 3]] };
 //! write(&film, &folder.path().join("grey.png"), &Settings::default())?;
-//! # Ok::<(), envers::error::Error>(())
+//! # Ok::<(), envers::Error>(())
 //! ```
 
 mod atomic;
@@ -106,7 +106,7 @@ pub fn check(path: &Path) -> Result<()> {
 }
 
 /// Writes a film in the format that the extension names; an animated format then has one frame.
-/// [`Movie`] writes several.
+/// `Movie` writes several.
 ///
 /// # Errors
 /// When the file cannot be written; an older file then stays as it was.

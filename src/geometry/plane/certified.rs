@@ -1,7 +1,7 @@
 //! The intersection of a ray with an infinite plane as exact arithmetic finds it.
 //!
 //! ```
-//! use envers::geometry::plane::certified::crossing;
+//! use envers::internals::plane::certified::crossing;
 //! use glam::DVec3;
 //!
 //! let t = |tmax| crossing(DVec3::ZERO, DVec3::Y, DVec3::Y, -DVec3::Y, tmax);

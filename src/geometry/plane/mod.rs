@@ -1,7 +1,7 @@
 //! The intersection of a ray with an infinite plane.
 //!
 //! ```
-//! use envers::geometry::plane;
+//! use envers::internals::plane;
 //! use glam::DVec3;
 //!
 //! // From 3 above the ground straight down, at 2 units of length per unit of t.

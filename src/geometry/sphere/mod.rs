@@ -7,7 +7,7 @@
 //! the centre from the line, and the root that would cancel comes from the other one's quotient.
 //!
 //! ```
-//! use envers::geometry::sphere::{first_root, inverse_length_squared, roots};
+//! use envers::internals::sphere::{first_root, inverse_length_squared, roots};
 //! use glam::DVec3;
 //!
 //! let (origin, direction) = (DVec3::Z * 5.0, -DVec3::Z);

@@ -8,7 +8,7 @@
 //! (JCGT 2013).
 //!
 //! ```
-//! use envers::geometry::triangle;
+//! use envers::internals::triangle;
 //! use glam::DVec3;
 //!
 //! let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];

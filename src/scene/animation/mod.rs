@@ -22,7 +22,7 @@
 //! animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius: None });
 //! scene.animation = Some(animation);
 //! assert_eq!(scene.at_time(0.5)?.spheres[0].center, DVec3::Y);
-//! # Ok::<(), envers::error::Error>(())
+//! # Ok::<(), envers::Error>(())
 //! ```
 
 mod check;

@@ -5,7 +5,7 @@
 //! integers.
 //!
 //! ```
-//! use envers::geometry::sphere::certified::first_root;
+//! use envers::internals::sphere::certified::first_root;
 //! use glam::DVec3;
 //!
 //! // A tangent is a hit, and one ulp less of radius a miss.

@@ -1,7 +1,7 @@
 //! The intersection of a ray with a triangle as exact arithmetic finds it.
 //!
 //! There are three stages, each of which passes on what it cannot decide: [`EdgeBounds`] bounds edge
-//! functions and t in f64, [`round`] computes in double-double numbers, and `exact` with integers.
+//! functions and t in f64, `round` computes in double-double numbers, and `exact` with integers.
 //!
 //! **The tie rule.** The line crosses the triangle when its three edge functions have one sign.
 //! Where one is exactly 0, the line touches the edge, and the sign is that for an origin moved by
@@ -12,7 +12,7 @@
 //! the triangle misses it, and a degenerate triangle is never hit.
 //!
 //! ```
-//! use envers::geometry::triangle::certified::crossing;
+//! use envers::internals::triangle::certified::crossing;
 //! use glam::DVec3;
 //!
 //! // A ray through the edge that two triangles share hits one of them.
