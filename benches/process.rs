@@ -111,7 +111,7 @@ fn bare_work(
     let (coherent, shadow, incoherent) =
         (rays(Batch::Coherent), rays(Batch::Shadow), rays(Batch::Incoherent));
     drop(recorder);
-    let shapes = Shapes::of(&scene);
+    let shapes = Shapes::from_scene(&scene);
     let (model, picture) = (model.to_owned(), picture.clone());
     const ALL_THREADS: &CStr = c"threads=0";
     move || {

@@ -45,7 +45,7 @@ pub enum Remedy {
 
 /// The place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Location {
     /// A place in a text file.
     Text {
         /// The line, counted from 1.
@@ -63,7 +63,7 @@ pub enum Place {
     Json(String),
 }
 
-impl Place {
+impl Location {
     /// The place of the bytes `span` in `text`; a span past the end means the end.
     pub fn in_text(text: &str, span: std::ops::Range<usize>) -> Self {
         let floor = |mut at: usize| {
@@ -77,7 +77,7 @@ impl Place {
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
         let quote = text[line_start..line_end].trim_end_matches('\r');
-        Place::Text {
+        Location::Text {
             line: text[..line_start].matches('\n').count() + 1,
             column: text[line_start..start].chars().count() + 1,
             length: text[start..end.clamp(start, line_end)].chars().count().max(1),
@@ -86,25 +86,25 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Text { line, column, .. } => write!(f, "{line}:{column}"),
-            Place::Line(line) => write!(f, "{line}"),
-            Place::Json(path) => f.write_str(path),
+            Location::Text { line, column, .. } => write!(f, "{line}:{column}"),
+            Location::Line(line) => write!(f, "{line}"),
+            Location::Json(path) => f.write_str(path),
         }
     }
 }
 
 /// An error: a message, with the file, the place in it and advice, as far as they are known.
 #[derive(Clone, Debug, thiserror::Error)]
-pub struct Error(Box<Details>);
+pub struct Error(Box<ErrorDetails>);
 
 #[derive(Clone, Debug)]
-struct Details {
+struct ErrorDetails {
     kind: ErrorKind,
     path: Option<PathBuf>,
-    place: Option<Place>,
+    place: Option<Location>,
     message: String,
     help: Option<String>,
     remedy: Option<Remedy>,
@@ -130,7 +130,7 @@ impl Error {
     }
 
     fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
-        Self(Box::new(Details {
+        Self(Box::new(ErrorDetails {
             kind,
             path: None,
             place: None,
@@ -149,7 +149,7 @@ impl Error {
 
     /// Adds the place in the file, unless one is named already.
     #[must_use]
-    pub fn place(mut self, place: Place) -> Self {
+    pub fn with_location(mut self, place: Location) -> Self {
         self.0.place.get_or_insert(place);
         self
     }
@@ -179,7 +179,7 @@ impl Error {
     }
 
     /// The place in the file, if it is known.
-    pub fn place_in_file(&self) -> Option<&Place> {
+    pub fn location(&self) -> Option<&Location> {
         self.0.place.as_ref()
     }
 
@@ -227,20 +227,23 @@ mod tests {
     fn place_counts_lines_and_characters_from_one() {
         let text = "a = 1\né = \"x\"\r\n";
         let start = text.find('"').unwrap();
-        let place = Place::in_text(text, start..start + 3);
-        assert_eq!(place, Place::Text { line: 2, column: 5, length: 3, quote: "é = \"x\"".into() });
+        let place = Location::in_text(text, start..start + 3);
+        assert_eq!(
+            place,
+            Location::Text { line: 2, column: 5, length: 3, quote: "é = \"x\"".into() }
+        );
     }
 
     #[test]
     fn place_past_the_end_is_the_end() {
-        assert_eq!(Place::in_text("ab", 9..12).to_string(), "1:3");
+        assert_eq!(Location::in_text("ab", 9..12).to_string(), "1:3");
     }
 
     #[test]
     fn display_names_file_place_message_and_advice() {
         let error = Error::input("unknown key `centre`")
             .at(Path::new("s.toml"))
-            .place(Place::Line(3))
+            .with_location(Location::Line(3))
             .help("did you mean `center`?");
         assert_eq!(error.to_string(), "s.toml:3: unknown key `centre` (did you mean `center`?)");
     }

@@ -81,7 +81,7 @@ pub mod measure;
 
 pub use glam;
 
-pub use error::{Error, ErrorKind, Place, Remedy, Result};
+pub use error::{Error, ErrorKind, Location, Remedy, Result};
 pub use film::{Film, View};
 pub use geometry::{
     Bounds, Continuation, Departure, Geometry, Hit, HitBatch, PrimitiveId, Ray, RayBatch, Side,

@@ -26,7 +26,7 @@ pub fn cloud(count: usize) -> Scene {
         let center = if i == 0 { DVec3::ZERO } else { center };
         scene.spheres.push(Sphere::new(center, radius, material));
     }
-    scenes::finish(scene, DVec3::new(0.2, 0.3, 2.2))
+    scenes::with_camera_and_light(scene, DVec3::new(0.2, 0.3, 2.2))
 }
 
 /// `count` rays from anywhere on a sphere about the scene to anywhere on it.

@@ -111,7 +111,7 @@ pub struct Shapes {
 }
 
 impl Shapes {
-    pub fn of(scene: &Scene) -> Self {
+    pub fn from_scene(scene: &Scene) -> Self {
         let center = scene.bounds().center();
         let mesh = |instance: &Instance| {
             let mesh = &scene.meshes[instance.mesh.0 as usize];
@@ -174,7 +174,7 @@ impl Shapes {
 impl Bare {
     /// Builds the same geometry, build quality and scene flags as envers's own Embree scene.
     pub fn build(scene: &Scene, width: usize) -> Self {
-        Shapes::of(scene).build(width, c"threads=1", sys::RTCBuildQuality::MEDIUM)
+        Shapes::from_scene(scene).build(width, c"threads=1", sys::RTCBuildQuality::MEDIUM)
     }
 
     /// True if the processor has packets of `width` natively.

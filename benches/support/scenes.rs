@@ -18,7 +18,7 @@ pub fn knot(resolution: [u32; 2]) -> Scene {
     let mesh = Mesh { name: "knot".into(), positions, triangles, ..Mesh::default() };
     let mesh = scene.add_mesh(mesh);
     scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
-    finish(scene, DVec3::new(0.25, 0.15, 2.1))
+    with_camera_and_light(scene, DVec3::new(0.25, 0.15, 2.1))
 }
 
 /// S: 501 spheres, one large and 500 on a spiral around it.
@@ -33,11 +33,11 @@ pub fn spheres() -> Scene {
         let center = DVec3::new(r * a.cos(), y, r * a.sin()) * (1.0 + 0.2 * f64::from(i % 3));
         scene.spheres.push(Sphere::new(center, 0.03 + 0.005 * f64::from(i % 7), material));
     }
-    finish(scene, DVec3::new(0.0, 0.6, 3.6))
+    with_camera_and_light(scene, DVec3::new(0.0, 0.6, 3.6))
 }
 
 /// A scene with a camera, which looks at the origin, and the light.
-pub fn finish(mut scene: Scene, eye: DVec3) -> Scene {
+pub fn with_camera_and_light(mut scene: Scene, eye: DVec3) -> Scene {
     scene.film.size = SIZE;
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.9));
     scene.cameras.push(camera.expect("the eye is not at the origin"));

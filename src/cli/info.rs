@@ -136,7 +136,7 @@ impl Summary {
             cameras: scene
                 .cameras
                 .iter()
-                .map(|c| labelled(&lens(&c.projection), &c.name))
+                .map(|c| labelled(&projection(&c.projection), &c.name))
                 .collect(),
             animation,
             bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
@@ -165,7 +165,7 @@ fn light_kind(kind: &LightKind) -> &'static str {
 }
 
 /// Returns the projection of a camera as a scene file sets it.
-fn lens(lens: &Projection) -> String {
+fn projection(lens: &Projection) -> String {
     match lens {
         Projection::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
         Projection::FovX(angle) => format!("fov_x {:.4}", angle.to_degrees()),

@@ -4,7 +4,7 @@ use std::io::{IsTerminal, Write};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::error::{Error, Place, Remedy};
+use crate::error::{Error, Location, Remedy};
 use crate::load::LoadReport;
 use crate::scene::{Scene, precision_warnings};
 
@@ -72,15 +72,15 @@ fn format(error: &Error) -> String {
     if let Some(path) = error.path() {
         text += &format!("{}:", path.display());
     }
-    if let Some(place) = error.place_in_file() {
+    if let Some(place) = error.location() {
         text += &format!("{place}:");
     }
-    if error.path().is_some() || error.place_in_file().is_some() {
+    if error.path().is_some() || error.location().is_some() {
         text.push(' ');
     }
     text += error.message();
     text.push('\n');
-    if let Some(Place::Text { line, column, length, quote }) = error.place_in_file() {
+    if let Some(Location::Text { line, column, length, quote }) = error.location() {
         let number = line.to_string();
         let margin = " ".repeat(number.len());
         // Tabs stay tabs, so that the mark is aligned with the text above it.
@@ -142,7 +142,7 @@ mod tests {
         let source = "[[sphere]]\n\tcentre = [0, 0, 0]\n";
         let error = Error::input("unknown key `centre`")
             .at(Path::new("s.toml"))
-            .place(Place::in_text(source, 12..18))
+            .with_location(Location::in_text(source, 12..18))
             .help("did you mean `center`?");
         let expected = "error: s.toml:2:2: unknown key `centre`\n  |\n2 | \tcentre = [0, 0, 0]\n  \
                         | \t^^^^^^\nhelp: did you mean `center`?\n";

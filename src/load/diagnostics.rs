@@ -10,7 +10,7 @@ use crate::scene::Scene;
 /// The warnings about a file so far, and the faces that were read and dropped.
 #[derive(Debug, Default)]
 pub struct Diagnostics {
-    entries: Vec<Entry>,
+    entries: Vec<CountedWarning>,
     /// The index of the entry of each reason.
     indices: HashMap<String, usize>,
     /// The number of different reasons of each kind.
@@ -23,7 +23,7 @@ const MAX_WARNINGS: u64 = 100;
 
 /// A warning, and how often there was a reason for it.
 #[derive(Debug)]
-struct Entry {
+struct CountedWarning {
     kind: Kind,
     /// The text, with `{}` where the count belongs.
     reason: String,
@@ -95,7 +95,7 @@ impl Diagnostics {
         if self.reasons[kind as usize] <= MAX_WARNINGS {
             self.indices.insert(reason.to_owned(), self.entries.len());
             let (reason, first_place) = (reason.to_owned(), place());
-            self.entries.push(Entry { kind, reason, count, first_place });
+            self.entries.push(CountedWarning { kind, reason, count, first_place });
         }
     }
 
@@ -133,7 +133,12 @@ impl Diagnostics {
             let count = self.reasons[kind as usize].saturating_sub(MAX_WARNINGS);
             let reason = "{} more warnings like these are left out".to_owned();
             if count > 0 {
-                self.entries.push(Entry { kind, reason, count, first_place: String::new() });
+                self.entries.push(CountedWarning {
+                    kind,
+                    reason,
+                    count,
+                    first_place: String::new(),
+                });
             }
         }
         for entry in self.entries {
@@ -156,7 +161,7 @@ impl Diagnostics {
     }
 }
 
-impl Entry {
+impl CountedWarning {
     /// Returns the warning as a sentence.
     fn sentence(&self, file: &Path) -> String {
         let text = match self.count {

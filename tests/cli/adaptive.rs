@@ -61,7 +61,7 @@ fn what_makes_no_sense_is_refused() {
         ("--adaptive 1..9 --spp 4", "--spp"),
         ("--adaptive 1..9 --threshold 2", "from 0 to 1"),
         ("--threshold 0.1", "--adaptive 1..25"),
-        ("--adaptive 1..9 --view normal", "--adaptive says nothing"),
+        ("--adaptive 1..9 --view normal", "--adaptive applies to the beauty view only"),
     ] {
         let message = folder.run(&format!("render scene.toml -o a.png {flags}")).refused();
         assert!(message.contains(why), "{flags}: {message}");

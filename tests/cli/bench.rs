@@ -19,7 +19,7 @@ fn json(folder: &Folder) -> Value {
     serde_json::from_slice(&folder.read("out/bench.json")).unwrap()
 }
 
-fn rows(report: &Value) -> &[Value] {
+fn report_rows(report: &Value) -> &[Value] {
     report["modes"].as_array().unwrap()
 }
 
@@ -49,9 +49,9 @@ fn bench_json_has_every_field() {
     assert_eq!(report["reference"]["spp"], 16);
     assert!(report["reference"]["mode"].as_str().unwrap().contains("certified"));
     let samples: Vec<_> =
-        rows(&report).iter().map(|row| row["samples"].as_str().unwrap()).collect();
+        report_rows(&report).iter().map(|row| row["samples"].as_str().unwrap()).collect();
     assert_eq!(samples, ["1", "4", "1..9"].repeat(SETUPS));
-    for row in rows(&report) {
+    for row in report_rows(&report) {
         for name in ["build_ms", "render_ms", "total_ms", "rmse", "max", "flip"] {
             assert!(row[name].as_f64().is_some_and(|x| x >= 0.0), "{name} in {row}");
         }
@@ -60,7 +60,7 @@ fn bench_json_has_every_field() {
         let dominated = row["standing"] == "dominated";
         assert_eq!(row["dominated_by"].is_string(), dominated, "{row}");
     }
-    assert!(rows(&report).iter().any(|row| row["standing"] == "front"));
+    assert!(report_rows(&report).iter().any(|row| row["standing"] == "front"));
     assert_eq!(report["left_out"], serde_json::json!([]));
 }
 
@@ -71,8 +71,8 @@ fn bench_csv_has_the_rows_of_the_json() {
     let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let names = lines.next().unwrap();
     let report = json(&folder);
-    assert_eq!(lines.clone().count(), rows(&report).len());
-    for (line, row) in lines.zip(rows(&report)) {
+    assert_eq!(lines.clone().count(), report_rows(&report).len());
+    for (line, row) in lines.zip(report_rows(&report)) {
         assert_eq!(line.len(), names.len());
         for (name, value) in names.iter().zip(line) {
             match &row[*name] {
@@ -86,7 +86,7 @@ fn bench_csv_has_the_rows_of_the_json() {
 #[test]
 fn bench_finds_no_error_in_the_reference_itself() {
     let report = json(&benched(SPHERE, "--spp 1,4 --reference-spp 4"));
-    for row in rows(&report).iter().filter(|row| row["precision"] == "certified") {
+    for row in report_rows(&report).iter().filter(|row| row["precision"] == "certified") {
         let errors = ["rmse", "max", "flip"].map(|name| row[name].as_f64().unwrap());
         let itself = row["samples"] == "4";
         assert!(errors.iter().all(|error| (*error == 0.0) == itself), "{row}");
@@ -102,7 +102,7 @@ fn bench_errors_are_those_that_diff_tells() {
     let diff = |arguments: &str| folder.run(&format!("diff {arguments} --json -")).json();
     let (exr, png) = (diff("a.exr b.exr"), diff("a.png b.png"));
     let report = json(&folder);
-    let row = &rows(&report)[0];
+    let row = &report_rows(&report)[0];
     assert_eq!((&row["precision"], &row["samples"]), (&"fast".into(), &"1".into()));
     assert!(row["rmse"].as_f64().unwrap() > 0.0);
     let told = [&exr["rmse"], &exr["max"], &png["flip"]].map(|x| x.as_f64().unwrap());
@@ -154,7 +154,7 @@ fn bench_leaves_out_what_has_no_time_and_says_why() {
     let flags = "--size 1024x1024 --spp 1 --reference-spp 1 --budget 0.001";
     let folder = benched(SPHERE, flags);
     let report = json(&folder);
-    assert!(rows(&report).is_empty());
+    assert!(report_rows(&report).is_empty());
     let left_out = report["left_out"].as_array().unwrap();
     assert_eq!(left_out.len(), SETUPS);
     for mode in left_out {
@@ -177,7 +177,10 @@ fn bench_counts_hits_that_are_not_the_certified_ones() {
     folder.run("bench floors.toml --out out --quick --runs 1 --size 100x50").good();
     let report = json(&folder);
     let wrong = |setup: [&str; 2]| {
-        let row = rows(&report).iter().find(|r| setup == [&r["backend"], &r["precision"]]).unwrap();
+        let row = report_rows(&report)
+            .iter()
+            .find(|r| setup == [&r["backend"], &r["precision"]])
+            .unwrap();
         row["hits_wrong"].as_u64().unwrap()
     };
     assert!(wrong(["embree", "fast"]) > 100);
@@ -187,7 +190,7 @@ fn bench_counts_hits_that_are_not_the_certified_ones() {
 #[test]
 fn bench_tries_only_the_backend_asked_for() {
     let report = json(&benched(SPHERE, "--quick --backend rust"));
-    assert!(rows(&report).iter().all(|row| row["backend"] == "rust"));
+    assert!(report_rows(&report).iter().all(|row| row["backend"] == "rust"));
     assert!(report["reference"]["mode"].as_str().unwrap().starts_with("rust certified"));
 }
 

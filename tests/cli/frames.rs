@@ -101,7 +101,7 @@ fn what_is_there_is_skipped() {
     let run = folder.run("render scene.toml --frames 1-3 -o f#.png --skip-existing").good();
     assert_eq!(folder.read("f2.png"), b"old");
     assert!(folder.has("f1.png") && folder.has("f3.png"));
-    assert!(run.stdout.ends_with("1 frame was there already\n"), "{}", run.stdout);
+    assert!(run.stdout.ends_with("1 frame existed already\n"), "{}", run.stdout);
     let run = folder.run("render scene.toml --frames 1-3 -o f#.png --skip-existing").good();
     assert_eq!(run.stdout, "3 frames existed already\n");
 }

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use draco_core::GeometryAttributeType as Kind;
 use envers::ErrorKind;
-use envers_testing::packed::{ktx, packed};
+use envers_testing::compressed::{compressed_model, ktx};
 use envers_testing::{Folder, Random, corpus, data_uri, files, whole};
 use image::ImageFormat;
 use serde_json::Value;
@@ -108,7 +108,7 @@ fn packed_file() -> Vec<u8> {
         ("POSITION", Kind::Position, 3, &positions[..]),
         ("TEXCOORD_0", Kind::TexCoord, 2, &uvs[..]),
     ];
-    packed(&attributes, &halves.collect::<Vec<_>>()).glb()
+    compressed_model(&attributes, &halves.collect::<Vec<_>>()).glb()
 }
 
 /// A folder with a model that shows one picture.
@@ -145,7 +145,7 @@ fn hdr() -> Vec<u8> {
 }
 
 /// Returns the file that is loaded to read another one.
-fn entry(file: &str) -> &str {
+fn entry_file(file: &str) -> &str {
     match file {
         "model.bin" => "model.gltf",
         "model.mtl" => "model.obj",
@@ -362,7 +362,7 @@ macro_rules! damaged {
         #[test]
         fn $test() {
             let count = number("ENVERS_MUTATIONS", MUTATIONS);
-            damaged(&valid_files(), $file, entry($file), count);
+            damaged(&valid_files(), $file, entry_file($file), count);
         }
     )*};
 }

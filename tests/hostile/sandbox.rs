@@ -14,13 +14,13 @@ use rustix::fs::inotify;
 use serde_json::json;
 
 /// A folder `scene` for strangers' files, and beside it what they want.
-struct Place {
+struct Folders {
     folder: Folder,
     watch: rustix::fd::OwnedFd,
     _socket: UnixListener,
 }
 
-impl Place {
+impl Folders {
     fn new() -> Self {
         let folder = Folder::new();
         for file in ["secret", "scene-2/secret", "far/away/secret"] {
@@ -181,7 +181,7 @@ const REFERENCES: [Reference; 6] = [
 ];
 
 /// Writes a file that refers to a name, and loads it; the texts of its error or warnings.
-fn load(place: &Place, (_, file, text): &Reference, name: &str, allow_outside: bool) -> String {
+fn load(place: &Folders, (_, file, text): &Reference, name: &str, allow_outside: bool) -> String {
     let path = place.folder.write(&format!("scene/{file}"), text(name));
     let path = match *file {
         "stranger.mtl" => place.folder.write(
@@ -197,7 +197,7 @@ fn load(place: &Place, (_, file, text): &Reference, name: &str, allow_outside: b
     }
 }
 
-fn attacks(place: &Place, ending: &str) -> Vec<String> {
+fn attacks(place: &Folders, ending: &str) -> Vec<String> {
     let top = place.folder.path("").canonicalize().unwrap();
     let name = |attack: &&str| attack.replace("TOP", top.to_str().unwrap()).replace("EXT", ending);
     ATTACKS.iter().map(name).collect()
@@ -205,7 +205,7 @@ fn attacks(place: &Place, ending: &str) -> Vec<String> {
 
 #[test]
 fn no_file_outside_is_opened() {
-    let place = Place::new();
+    let place = Folders::new();
     assert_eq!(place.opened(), [""; 0]);
     for reference in &REFERENCES {
         let (ending, file, _) = reference;
@@ -220,7 +220,7 @@ fn no_file_outside_is_opened() {
 /// The watch sees what is opened, so that the test above can fail.
 #[test]
 fn files_outside_are_seen_to_be_opened_where_they_are_allowed() {
-    let place = Place::new();
+    let place = Folders::new();
     for reference in &REFERENCES {
         let (ending, file, _) = reference;
         for name in [format!("../secret.{ending}"), format!("link.{ending}")] {
@@ -234,7 +234,7 @@ fn files_outside_are_seen_to_be_opened_where_they_are_allowed() {
 
 #[test]
 fn an_absolute_uri_is_read_where_files_outside_are_allowed() {
-    let place = Place::new();
+    let place = Folders::new();
     let uri = format!("file://{}", place.folder.path("secret.bin").display());
     assert_eq!(load(&place, &REFERENCES[0], &uri, true), "");
     assert!(place.opened().contains(&"secret.bin".to_owned()));
@@ -242,7 +242,7 @@ fn an_absolute_uri_is_read_where_files_outside_are_allowed() {
 
 #[test]
 fn pipes_and_devices_are_not_opened_even_where_files_outside_are_allowed() {
-    let place = Place::new();
+    let place = Folders::new();
     for reference in &REFERENCES {
         let (ending, file, _) = reference;
         for name in [format!("fifo.{ending}"), format!("zero.{ending}"), format!("folder.{ending}")]
@@ -256,14 +256,14 @@ fn pipes_and_devices_are_not_opened_even_where_files_outside_are_allowed() {
 
 #[test]
 fn a_socket_is_no_file() {
-    let place = Place::new();
+    let place = Folders::new();
     let said = load(&place, &REFERENCES[0], "socket.bin", false);
     assert!(said.contains("a pipe or a device"), "{said}");
 }
 
 #[test]
 fn the_error_names_the_folder_and_the_way_out() {
-    let place = Place::new();
+    let place = Folders::new();
     for reference in &REFERENCES {
         let said = load(&place, reference, &format!("../secret.{}", reference.0), false);
         let scene = place.folder.path("scene").canonicalize().unwrap();
@@ -275,7 +275,7 @@ fn the_error_names_the_folder_and_the_way_out() {
 /// A folder that becomes a link while its files are opened.
 #[test]
 fn no_file_outside_is_opened_in_a_race() {
-    let place = Place::new();
+    let place = Folders::new();
     let (inside, away) = (place.folder.path("scene/inside"), place.folder.path("scene/moved"));
     let over = std::sync::atomic::AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -297,7 +297,7 @@ fn no_file_outside_is_opened_in_a_race() {
 
 #[test]
 fn files_below_the_folder_are_read_by_any_name_that_leads_there() {
-    let place = Place::new();
+    let place = Folders::new();
     for reference in &REFERENCES {
         let ending = reference.0;
         symlink("inside", place.folder.path("scene/door-within")).ok();
@@ -322,7 +322,7 @@ fn files_below_the_folder_are_read_by_any_name_that_leads_there() {
 
 #[test]
 fn a_model_in_a_scene_may_name_what_is_in_the_folder_of_the_scene() {
-    let place = Place::new();
+    let place = Folders::new();
     place.folder.write("scene/models/a.mtl", "newmtl m\nmap_Kd ../inside/own.png\n");
     place.folder.write(
         "scene/models/a.obj",
@@ -337,7 +337,7 @@ fn a_model_in_a_scene_may_name_what_is_in_the_folder_of_the_scene() {
 
 #[test]
 fn a_file_may_be_named_through_a_link_and_has_the_folder_of_the_link() {
-    let place = Place::new();
+    let place = Folders::new();
     let target = place.folder.path("far/away/secret.gltf");
     let link = place.folder.path("scene/entry.gltf");
     symlink(target, &link).unwrap();

@@ -7,21 +7,21 @@ use envers_testing::{Folder, Model, data_uri, png};
 use serde_json::json;
 
 /// A file that needs as much of something as is said.
-struct Needs {
+struct Demand {
     limit: Limit,
     exactly: u64,
     folder: Folder,
     file: &'static str,
 }
 
-impl Needs {
+impl Demand {
     fn new(limit: Limit, exactly: u64, file: &'static str, bytes: impl AsRef<[u8]>) -> Self {
         let folder = Folder::new();
         folder.write(file, bytes);
         Self { limit, exactly, folder, file }
     }
 
-    fn of(limit: Limit, exactly: u64, model: &Model) -> Self {
+    fn of_model(limit: Limit, exactly: u64, model: &Model) -> Self {
         let json = model.to_json(Some(&data_uri(model.bin())));
         Self::new(limit, exactly, "model.gltf", json.to_string())
     }
@@ -94,7 +94,7 @@ fn bytes_of_all_files() {
     let model = Model::triangle();
     let json = model.to_json(Some("model.bin")).to_string();
     let bytes = (json.len() + model.bin().len()) as u64;
-    Needs::new(Limit::Bytes, bytes, "model.gltf", json).beside("model.bin", model.bin()).check();
+    Demand::new(Limit::Bytes, bytes, "model.gltf", json).beside("model.bin", model.bin()).check();
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn bytes_of_a_file_named_twice_count_once() {
     let text = "[[model]]\nfile = \"a.obj\"\n[[model]]\nfile = \"./a.obj\"\n";
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     let bytes = (text.len() + obj.len()) as u64;
-    Needs::new(Limit::Bytes, bytes, "scene.toml", text).beside("a.obj", obj).check();
+    Demand::new(Limit::Bytes, bytes, "scene.toml", text).beside("a.obj", obj).check();
 }
 
 #[test]
@@ -123,7 +123,7 @@ fn bytes_of_packed_views() {
     model.primitive()["attributes"]["NORMAL"] = normals.into();
     model.json["extensionsUsed"] = json!(["EXT_meshopt_compression"]);
     let glb = model.glb();
-    Needs::new(Limit::Bytes, glb.len() as u64 + 36, "model.glb", glb).check();
+    Demand::new(Limit::Bytes, glb.len() as u64 + 36, "model.glb", glb).check();
 }
 
 #[test]
@@ -133,21 +133,21 @@ fn json_by_what_it_takes() {
     // Strings do not count: the data URI has a comma.
     let count = |c| text.matches(c).count() as u64 - if c == ',' { 1 } else { 0 };
     let bytes = 640 * count('{') + 128 * count('[') + 32 * count(',');
-    Needs::new(Limit::Json, bytes, "model.gltf", text).check();
+    Demand::new(Limit::Json, bytes, "model.gltf", text).check();
 }
 
 #[test]
 fn nodes() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"mesh": 0}, {}, {}, {}, {}]);
-    Needs::of(Limit::Nodes, 5, &model).check();
+    Demand::of_model(Limit::Nodes, 5, &model).check();
 }
 
 #[test]
 fn nodes_of_all_models() {
     let text = "[[model]]\nfile = \"a.glb\"\n[[model]]\nfile = \"b.glb\"\n";
     let glb = Model::triangle().glb();
-    let scene = Needs::new(Limit::Nodes, 2, "scene.toml", text);
+    let scene = Demand::new(Limit::Nodes, 2, "scene.toml", text);
     scene.beside("a.glb", &glb).beside("b.glb", &glb).check();
 }
 
@@ -155,7 +155,7 @@ fn nodes_of_all_models() {
 fn depth_of_nodes() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"children": [1]}, {"children": [2, 3]}, {"mesh": 0}, {}]);
-    Needs::of(Limit::Depth, 3, &model).check();
+    Demand::of_model(Limit::Depth, 3, &model).check();
 }
 
 #[test]
@@ -163,32 +163,32 @@ fn instances_of_a_model() {
     let mut model = Model::triangle();
     model.json["nodes"] = json!([{"mesh": 0}, {"mesh": 0}, {"mesh": 0}]);
     model.json["scenes"][0]["nodes"] = json!([0, 1, 2]);
-    Needs::of(Limit::Instances, 3, &model).check();
+    Demand::of_model(Limit::Instances, 3, &model).check();
 }
 
 #[test]
 fn instances_of_a_scene() {
     let text = "[[model]]\nfile = \"a.glb\"\n".repeat(4);
-    let scene = Needs::new(Limit::Instances, 4, "scene.toml", text);
+    let scene = Demand::new(Limit::Instances, 4, "scene.toml", text);
     scene.beside("a.glb", Model::triangle().glb()).check();
 }
 
 #[test]
 fn vertices_of_a_gltf() {
-    Needs::of(Limit::Vertices, 3, &Model::triangle()).check();
+    Demand::of_model(Limit::Vertices, 3, &Model::triangle()).check();
 }
 
 #[test]
 fn vertices_of_an_obj() {
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 4 3\n";
-    Needs::new(Limit::Vertices, 4, "model.obj", obj).check();
+    Demand::new(Limit::Vertices, 4, "model.obj", obj).check();
 }
 
 #[test]
 fn triangles_of_a_gltf() {
     let mut model = Model::parabola(5);
     model.primitive()["mode"] = 5.into();
-    Needs::of(Limit::Triangles, 3, &model).check();
+    Demand::of_model(Limit::Triangles, 3, &model).check();
 }
 
 #[test]
@@ -198,7 +198,7 @@ fn vertices_of_morphed_copies() {
     model.primitive()["targets"] = json!([{"POSITION": up}]);
     model.json["nodes"] = vec![json!({"mesh": 0, "weights": [0.5]}); 4].into();
     model.json["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
-    Needs::of(Limit::Deformed, 4 * 3, &model).check();
+    Demand::of_model(Limit::Deformed, 4 * 3, &model).check();
 }
 
 #[test]
@@ -208,13 +208,13 @@ fn instances_of_one_node() {
     model.json["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
     model.json["nodes"][0]["extensions"] =
         json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": moves}}});
-    Needs::of(Limit::Instances, 3, &model).check();
+    Demand::of_model(Limit::Instances, 3, &model).check();
 }
 
 #[test]
 fn triangles_of_an_obj() {
     let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\no a\nf 1 2 4 3\no b\nf 1 2 3\n";
-    Needs::new(Limit::Triangles, 3, "model.obj", obj).check();
+    Demand::new(Limit::Triangles, 3, "model.obj", obj).check();
 }
 
 #[test]
@@ -223,7 +223,7 @@ fn elements_that_several_accessors_read_from_the_same_bytes() {
     let part = model.primitive().clone();
     model.json["meshes"][0]["primitives"] = vec![part; 20].into();
     // Three each, 36 of which its bytes make up for.
-    Needs::of(Limit::Elements, 60 - 36, &model).check();
+    Demand::of_model(Limit::Elements, 60 - 36, &model).check();
 }
 
 #[test]
@@ -233,7 +233,7 @@ fn elements_without_a_view() {
     let zeros = model.accessor(zeros);
     model.json["meshes"][0]["primitives"] =
         json!([{"attributes": {"POSITION": 0}}, {"attributes": {"POSITION": zeros}}]);
-    Needs::of(Limit::Elements, 102 - 36, &model).check_with("33 faces are left out");
+    Demand::of_model(Limit::Elements, 102 - 36, &model).check_with("33 faces are left out");
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn keys_of_all_channels() {
     model.json["animations"] = json!([{
         "channels": [channel("translation"), channel("scale")],
         "samplers": [{"input": times, "output": values}]}]);
-    Needs::of(Limit::Keys, 4, &model).check();
+    Demand::of_model(Limit::Keys, 4, &model).check();
 }
 
 #[test]
@@ -258,13 +258,13 @@ fn keys_of_each_morph_target() {
     model.json["animations"] = json!([{
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
         "samplers": [{"input": times, "output": weights}]}]);
-    Needs::of(Limit::Keys, 3 * 2, &model).check();
+    Demand::of_model(Limit::Keys, 3 * 2, &model).check();
 }
 
 #[test]
 fn pictures() {
     let uris = [0, 1, 2].map(|i| data_uri(&png(&[[i; 4]])));
-    Needs::of(Limit::Pictures, 3, &pictured(&uris)).check();
+    Demand::of_model(Limit::Pictures, 3, &pictured(&uris)).check();
 }
 
 #[test]
@@ -272,7 +272,7 @@ fn pixels_beyond_what_the_bytes_make_up_for() {
     let row = png(&vec![[7, 7, 7, 255]; 9000]);
     let beyond = 9000 - 16 * row.len() as u64;
     let uris = [data_uri(&row), data_uri(&[&row[..], b" "].concat())];
-    Needs::of(Limit::Pixels, 2 * beyond - 16, &pictured(&uris)).check();
+    Demand::of_model(Limit::Pixels, 2 * beyond - 16, &pictured(&uris)).check();
 }
 
 #[test]
@@ -282,7 +282,7 @@ fn a_limit_that_is_raised_lets_more_through() {
     let mut nodes: Vec<_> = (1..=depth).map(|i| json!({"children": [i]})).collect();
     nodes.push(json!({"mesh": 0}));
     model.json["nodes"] = nodes.into();
-    let needs = Needs::of(Limit::Depth, depth + 1, &model);
+    let needs = Demand::of_model(Limit::Depth, depth + 1, &model);
     assert!(needs.loads(depth).is_err());
     assert_eq!(needs.loads(u64::MAX), Ok(()));
 }

@@ -1,6 +1,6 @@
 //! The loading of test files, and assertions on errors and warnings.
 
-use envers::{Loaded, Place, Result};
+use envers::{Loaded, Location, Result};
 use envers_testing::{Folder, Model, data_uri};
 
 /// A folder whose files can be loaded.
@@ -38,8 +38,8 @@ impl LoadModel for Model {
 #[track_caller]
 pub fn json_place(result: Result<Loaded>) -> (String, String) {
     let error = result.map(|loaded| loaded.scene.triangle_count()).unwrap_err();
-    match error.place_in_file() {
-        Some(Place::Json(path)) => (path.clone(), error.to_string()),
+    match error.location() {
+        Some(Location::Json(path)) => (path.clone(), error.to_string()),
         other => panic!("{other:?} in {error}"),
     }
 }

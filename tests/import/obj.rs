@@ -1,7 +1,7 @@
 //! The scenes that OBJ and MTL files become: each test one feature or one fault.
 
 use envers::scene::{ShininessMap, Texels, Transfer, Wrap};
-use envers::{AlphaMode, Error, Loaded, Material, Place};
+use envers::{AlphaMode, Error, Loaded, Location, Material};
 use envers_testing::{Folder, png};
 use glam::{Vec2, Vec3};
 
@@ -207,7 +207,7 @@ fn file_without_faces_is_a_warning() {
 #[test]
 fn number_that_is_none_names_its_line() {
     let error = fails("v 0 0 0\nv 1,5 0 0");
-    assert_eq!(error.place_in_file(), Some(&Place::Line(2)));
+    assert_eq!(error.location(), Some(&Location::Line(2)));
     assert!(error.to_string().contains("1,5"), "{error}");
 }
 
@@ -215,13 +215,13 @@ fn number_that_is_none_names_its_line() {
 fn face_that_is_none_names_its_line() {
     for face in ["f 1 2 x", "f 1/2/3/4 2 3", "f 1 2 /3", "f 1 2 3.5"] {
         let error = fails(format!("{VERTICES}{face}"));
-        assert_eq!(error.place_in_file(), Some(&Place::Line(4)), "{face}");
+        assert_eq!(error.location(), Some(&Location::Line(4)), "{face}");
     }
 }
 
 #[test]
 fn vertex_cut_short_names_its_line() {
-    assert_eq!(fails("v 0 0").place_in_file(), Some(&Place::Line(1)));
+    assert_eq!(fails("v 0 0").location(), Some(&Location::Line(1)));
 }
 
 #[test]
@@ -311,7 +311,7 @@ fn mirrors_keep_their_colour_where_the_shininess_is_zero() {
 }
 
 /// Returns the material `m` of an MTL file that loads without a warning.
-fn optics(mtl: &str) -> Material {
+fn transmission(mtl: &str) -> Material {
     let (loaded, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{mtl}"));
     assert_eq!(loaded.report.warnings, [""; 0], "{mtl}");
     m
@@ -320,7 +320,7 @@ fn optics(mtl: &str) -> Material {
 #[test]
 fn opacity_below_1_is_a_thin_sheet_seen_straight_through() {
     for line in ["d 0.75", "Tr 0.25", "d -halo 0.75", "d 0.75\nTr 0.5", "d 0.75\nillum 9"] {
-        let m = optics(&format!("{line}\nNi 1.5\nTf 0.1 0.1 0.1"));
+        let m = transmission(&format!("{line}\nNi 1.5\nTf 0.1 0.1 0.1"));
         assert_eq!((m.transmit, m.thin, m.ior), (Vec3::splat(0.25), true, 1.0), "{line}");
         assert_eq!(m.reflect, Vec3::ZERO, "{line}");
     }
@@ -329,7 +329,7 @@ fn opacity_below_1_is_a_thin_sheet_seen_straight_through() {
 #[test]
 fn opacity_of_1_is_opaque_whatever_index_and_filter_say() {
     for illum in [2, 3, 8, 9] {
-        let m = optics(&format!("d 1\nNi 1.5\nTf 1 1 1\nillum {illum}"));
+        let m = transmission(&format!("d 1\nNi 1.5\nTf 1 1 1\nillum {illum}"));
         assert_eq!(m.transmit, Vec3::ZERO, "{illum}");
     }
 }
@@ -357,9 +357,9 @@ fn glass_may_have_a_transparency_of_1() {
 #[test]
 fn illumination_models_3_and_5_mirror_by_their_specular_colour() {
     for illum in [3, 5] {
-        let m = optics(&format!("Ks 0.5 0.25 2\nillum {illum}"));
+        let m = transmission(&format!("Ks 0.5 0.25 2\nillum {illum}"));
         assert_eq!(m.reflect, Vec3::new(0.5, 0.25, 1.0), "{illum}");
-        let m = optics(&format!("Ks 0.5 0.5 1\nd 0.5\nillum {illum}"));
+        let m = transmission(&format!("Ks 0.5 0.5 1\nd 0.5\nillum {illum}"));
         assert_eq!(m.reflect, Vec3::new(0.25, 0.25, 0.5), "{illum}");
         assert_eq!(m.transmit, Vec3::splat(0.5), "{illum}");
     }
@@ -368,7 +368,11 @@ fn illumination_models_3_and_5_mirror_by_their_specular_colour() {
 #[test]
 fn other_illumination_models_have_no_mirror() {
     for illum in [0, 1, 2, 4, 6, 7, 8, 9, 10] {
-        assert_eq!(optics(&format!("Ks 1 1 1\nillum {illum}")).reflect, Vec3::ZERO, "{illum}");
+        assert_eq!(
+            transmission(&format!("Ks 1 1 1\nillum {illum}")).reflect,
+            Vec3::ZERO,
+            "{illum}"
+        );
     }
 }
 
@@ -385,14 +389,18 @@ fn illumination_models_6_and_7_refract() {
 
 #[test]
 fn illumination_model_4_is_a_pane() {
-    let m = optics("Tf 1 1 1\nNi 1.25\nillum 4");
+    let m = transmission("Tf 1 1 1\nNi 1.25\nillum 4");
     assert_eq!((m.transmit, m.thin, m.ior), (Vec3::ONE, true, 1.25));
 }
 
 #[test]
 fn glass_that_lets_nothing_through_is_none() {
     for illum in [4, 6, 7] {
-        assert_eq!(optics(&format!("Kd 1 1 1\nillum {illum}")).transmit, Vec3::ZERO, "{illum}");
+        assert_eq!(
+            transmission(&format!("Kd 1 1 1\nillum {illum}")).transmit,
+            Vec3::ZERO,
+            "{illum}"
+        );
     }
 }
 
@@ -588,17 +596,17 @@ fn picture_of_emission() {
 
 #[test]
 fn roughness_and_metalness_are_gltfs() {
-    let metal = optics("Kd 1 0.5 0\nPr 0.5\nPm 1");
+    let metal = transmission("Kd 1 0.5 0\nPr 0.5\nPm 1");
     assert_eq!((metal.diffuse, metal.specular), (Vec3::ZERO, Vec3::new(1.0, 0.5, 0.0)));
     assert!((metal.shininess - 30.0).abs() < 1e-3, "{}", metal.shininess);
-    let plastic = optics("Kd 1 0.5 0\nPr 0.5");
+    let plastic = transmission("Kd 1 0.5 0\nPr 0.5");
     assert_eq!((plastic.diffuse, plastic.metallic), (Vec3::new(1.0, 0.5, 0.0), None));
     assert!((plastic.specular - 0.04).abs().max_element() < 1e-6, "{}", plastic.specular);
 }
 
 #[test]
 fn roughness_that_is_missing_is_that_of_the_shininess() {
-    let m = optics("Kd 1 1 1\nPm 1\nNs 30");
+    let m = transmission("Kd 1 1 1\nPm 1\nNs 30");
     assert!((m.metallic.unwrap().factors.roughness - 0.5).abs() < 1e-6);
 }
 
@@ -614,7 +622,7 @@ fn pictures_of_roughness_and_metalness_count_in_place_of_their_values() {
 
 #[test]
 fn metal_with_an_opacity_is_blended() {
-    let m = optics("Kd 1 1 1\nPm 1\nPr 0\nd 0.25");
+    let m = transmission("Kd 1 1 1\nPm 1\nPr 0\nd 0.25");
     let coverage = m.coverage.unwrap();
     assert_eq!((coverage.alpha, coverage.mode), (0.25, AlphaMode::Blend));
     assert_eq!((m.reflect, m.transmit, m.thin), (Vec3::ONE, Vec3::ZERO, true));

@@ -300,7 +300,7 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
 }
 
 /// The counts of what was placed, in the first frame and again.
-fn places(built: BuildStats) -> [u64; 5] {
+fn tlas_counts(built: BuildStats) -> [u64; 5] {
     [
         built.tlas_built,
         built.tlas_kept,
@@ -318,7 +318,7 @@ fn embree_places_again_only_what_moved() {
         let options =
             RenderOptions { backend: Backend::Embree, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
-        assert_eq!(places(built), [1, 5, 3, 5, 5], "{precision:?}");
+        assert_eq!(tlas_counts(built), [1, 5, 3, 5, 5], "{precision:?}");
     }
 }
 
@@ -328,7 +328,7 @@ fn nothing_is_placed_again_where_nothing_moved() {
     for (backend, precision) in backends() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &[0.1; 4], &options);
-        assert_eq!(places(built), [1, 3, 3, 0, 0], "{backend:?} {precision:?}");
+        assert_eq!(tlas_counts(built), [1, 3, 3, 0, 0], "{backend:?} {precision:?}");
     }
 }
 

@@ -5,7 +5,7 @@ mod adaptive_sampling;
 mod animation;
 mod gallery;
 mod golden;
+mod light_transport;
 mod not_finite;
-mod optics;
 mod radiance;
 mod textures;

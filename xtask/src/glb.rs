@@ -162,7 +162,13 @@ impl Glb {
     }
 
     /// A node with a mesh.
-    pub fn place(&mut self, name: &str, parent: Option<usize>, mesh: usize, place: Value) -> usize {
+    pub fn add_node(
+        &mut self,
+        name: &str,
+        parent: Option<usize>,
+        mesh: usize,
+        place: Value,
+    ) -> usize {
         let id = self.node(name, parent, place);
         self.nodes[id]["mesh"] = mesh.into();
         id

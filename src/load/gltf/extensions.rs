@@ -2,7 +2,7 @@
 
 use gltf::json;
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Location, Result};
 use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are read.
@@ -41,7 +41,7 @@ pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
     for (i, name) in root.extensions_required.iter().enumerate() {
         if !is_read(name) {
             return Err(Error::input(format!("the file requires {name}, which is not read"))
-                .place(Place::Json(format!("extensionsRequired[{i}]")))
+                .with_location(Location::Json(format!("extensionsRequired[{i}]")))
                 .help(remedy(name)));
         }
     }

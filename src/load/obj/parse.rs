@@ -80,7 +80,8 @@ impl<'a> ChunkParser<'a> {
             }
             self.last = None;
             let number = self.start.lines + line.number;
-            self.statement(&line, number).map_err(|e| e.place(error::Place::Line(number)))?;
+            self.statement(&line, number)
+                .map_err(|e| e.with_location(error::Location::Line(number)))?;
         }
         Ok(self.parsed)
     }

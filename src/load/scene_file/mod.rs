@@ -10,7 +10,7 @@ mod errors;
 mod schema;
 mod source;
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Location, Result};
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::load::{LoadOptions, Loaded};
 
@@ -36,7 +36,7 @@ fn decode_utf8(bytes: &[u8]) -> Result<&str> {
         let at = e.valid_up_to();
         let shown = String::from_utf8_lossy(bytes);
         Error::input("the file is not UTF-8 text")
-            .place(Place::in_text(&shown, at..at + 1))
+            .with_location(Location::in_text(&shown, at..at + 1))
             .help("save it as UTF-8")
     })?;
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::error::{Error, Place};
+use crate::error::{Error, Location};
 
 /// A range of bytes in the text.
 pub type Span = Range<usize>;
@@ -25,7 +25,7 @@ impl Source<'_> {
 
     /// Adds a place in the text to an error that names no file yet.
     pub fn locate(&self, span: &Span, error: Error) -> Error {
-        error.at(self.path).place(Place::in_text(self.text, span.clone()))
+        error.at(self.path).with_location(Location::in_text(self.text, span.clone()))
     }
 
     /// Returns the folder of the scene file, to which the paths that it names are relative.
@@ -58,7 +58,7 @@ impl Source<'_> {
 
     /// Returns the place as FILE:line:column, for warnings.
     pub fn location(&self, span: &Span) -> String {
-        format!("{}:{}", self.path.display(), Place::in_text(self.text, span.clone()))
+        format!("{}:{}", self.path.display(), Location::in_text(self.text, span.clone()))
     }
 
     /// Returns the place of `key` in `key = value`, by the place of the value; that of the value

@@ -4,6 +4,7 @@
 //!
 //! `ENVERS_HOSTILE=DIR` keeps the files there, each case in a folder with its name.
 
+mod compressed;
 mod deform;
 mod encode;
 mod glb;
@@ -12,7 +13,6 @@ mod gltf_edits;
 mod links;
 mod mtl;
 mod obj;
-mod packed;
 mod pictures;
 mod scene;
 
@@ -91,7 +91,7 @@ fn cases() -> Vec<Case> {
         mtl::cases(),
         scene::cases(),
         pictures::cases(),
-        packed::cases(),
+        compressed::cases(),
     ];
     all.into_iter().flatten().collect()
 }

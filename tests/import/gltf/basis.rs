@@ -3,7 +3,7 @@
 use envers::scene::Texels;
 
 use super::*;
-use envers_testing::packed::{ktx, ktx_of_floats};
+use envers_testing::compressed::{ktx, ktx_of_floats};
 
 const COLOR: [u8; 4] = [200, 100, 50, 128];
 const NAME: &str = "KHR_texture_basisu";

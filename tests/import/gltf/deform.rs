@@ -151,7 +151,7 @@ fn skinned(places: [[f32; 3]; 3]) -> Model {
 }
 
 /// The corners of the triangle as it stands in the world.
-fn standing(scene: &Scene) -> [[f64; 3]; 3] {
+fn deformed_positions(scene: &Scene) -> [[f64; 3]; 3] {
     let instance = &scene.instances[0];
     let mesh = &scene.meshes[instance.mesh.0 as usize];
     std::array::from_fn(|i| instance.to_world(mesh.positions[i]).to_array())
@@ -161,7 +161,7 @@ fn standing(scene: &Scene) -> [[f64; 3]; 3] {
 fn a_skin_stands_where_its_joints_are_and_not_its_node() {
     let Loaded { scene, report, .. } =
         skinned([[0., 0., 5.], [0., 0., 6.], [0., 0., 7.]]).load().unwrap();
-    assert_eq!(standing(&scene), [[0., 0., 5.], [1., 0., 6.], [0., 1., 7.]]);
+    assert_eq!(deformed_positions(&scene), [[0., 0., 5.], [1., 0., 6.], [0., 1., 7.]]);
     assert!(report.warnings.is_empty() && report.balances(), "{:?}", report.warnings);
 }
 
@@ -172,14 +172,14 @@ fn bind_matrices_bring_vertices_to_their_joints() {
     let binds = model.floats("MAT4", &[down; 3].concat());
     model.accessor_mut(binds)["count"] = 3.into();
     model.json["skins"][0]["inverseBindMatrices"] = binds.into();
-    assert_eq!(standing(&model.load().unwrap().scene)[0], [0., 0., 4.]);
+    assert_eq!(deformed_positions(&model.load().unwrap().scene)[0], [0., 0., 4.]);
 }
 
 #[test]
 fn joints_that_no_scene_shows_are_posed_even_so() {
     let mut model = skinned([[0., 0., 5.]; 3]);
     model.json["scenes"][0]["nodes"] = json!([0]);
-    assert_eq!(standing(&model.load().unwrap().scene)[0], [0., 0., 5.]);
+    assert_eq!(deformed_positions(&model.load().unwrap().scene)[0], [0., 0., 5.]);
 }
 
 fn animate_joint(model: &mut Model) {
@@ -197,7 +197,7 @@ fn a_skin_moves_with_its_joints() {
     let mut model = skinned([[0.; 3]; 3]);
     animate_joint(&mut model);
     let scene = model.load().unwrap().scene;
-    let moved = standing(&scene.at_time(0.5).unwrap());
+    let moved = deformed_positions(&scene.at_time(0.5).unwrap());
     assert_eq!(moved, [[0., 0., 0.], [1., 0., 4.], [0., 1., 0.]]);
 }
 
@@ -223,7 +223,7 @@ fn a_skin_moves_where_a_scene_places_it() {
     let movers = scene.animation.as_ref().unwrap().objects.iter();
     assert_eq!(movers.filter(|m| matches!(m, Animated::Mesh { .. })).count(), 1);
     let posed = scene.at_time(0.5).unwrap();
-    assert_eq!(standing(&posed)[1], [12., 0., 8.]);
+    assert_eq!(deformed_positions(&posed)[1], [12., 0., 8.]);
     let second = &posed.instances[1];
     let corner = posed.meshes[second.mesh.0 as usize].positions[1];
     assert_eq!(second.to_world(corner).to_array(), [1., 0., 7.]);
@@ -236,7 +236,7 @@ fn a_skin_in_a_scene_without_animation_stands_as_its_file_places_it() {
     animate_joint(&mut model);
     folder.write("m.glb", model.glb());
     let scene = folder.load("s.toml", "[[model]]\nfile = \"m.glb\"\n").unwrap().scene;
-    assert_eq!(standing(&scene)[0], [0., 0., 5.]);
+    assert_eq!(deformed_positions(&scene)[0], [0., 0., 5.]);
 }
 
 #[test]

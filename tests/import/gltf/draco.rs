@@ -4,13 +4,13 @@ use draco_core::{DataType, GeometryAttributeType as Kind};
 use envers::{DropReason, Limit, Limits, LoadOptions, Loaded};
 
 use super::*;
-use envers_testing::packed::{DRACO, bytes, draco, packed};
+use envers_testing::compressed::{DRACO, bytes, compressed_model, draco};
 
 const SQUARE: [f32; 12] = [0., 0., 0., 1., 0., 0., 1., 1., 0., 0., 1., 0.];
 const HALVES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 fn square() -> Model {
-    packed(&[("POSITION", Kind::Position, 3, &SQUARE)], &HALVES)
+    compressed_model(&[("POSITION", Kind::Position, 3, &SQUARE)], &HALVES)
 }
 
 /// The corners of a scene's triangles, in the order of their coordinates.
@@ -49,7 +49,7 @@ fn triangles_of_a_strip_are_packed_as_triangles() {
 fn attributes_stay_with_their_vertices() {
     let normals = [1., 0., 0., 0., 1., 0., 0., 0., 1., 0., -1., 0.];
     let uvs = [0., 0., 1., 0., 1., 1., 0., 1.];
-    let model = packed(
+    let model = compressed_model(
         &[
             ("POSITION", Kind::Position, 3, &SQUARE),
             ("NORMAL", Kind::Normal, 3, &normals),
@@ -90,7 +90,7 @@ fn bytes_are_normalised_as_their_accessor_says() {
 fn faces_are_counted_as_those_of_other_meshes() {
     let mut positions = SQUARE;
     positions[9..].copy_from_slice(&SQUARE[..3]);
-    let model = packed(&[("POSITION", Kind::Position, 3, &positions)], &HALVES);
+    let model = compressed_model(&[("POSITION", Kind::Position, 3, &positions)], &HALVES);
     let Loaded { report, .. } = model.load().unwrap();
     assert_eq!((report.read, report.handed_over), (2, 1));
     assert_eq!(report.dropped, [(DropReason::Degenerate, 1)].into());

@@ -46,7 +46,7 @@ fn tinted(loaded: &Loaded, tint: Vec3) -> ShadingParams {
     shading_params(scene, material(scene), &TextureContext { tint, ..TextureContext::default() })
 }
 
-fn finish(loaded: &Loaded) -> ShadingParams {
+fn untinted(loaded: &Loaded) -> ShadingParams {
     tinted(loaded, Vec3::ONE)
 }
 
@@ -58,7 +58,7 @@ fn metal_and_roughness_are_green_and_blue_of_their_texture() {
             "metallicRoughnessTexture": {"index": 0}, "roughnessFactor": 255.0 / 256.0,
         }}),
     );
-    let m = finish(&loaded);
+    let m = untinted(&loaded);
     assert!(close(m.diffuse, [0.8; 3]), "{}", m.diffuse);
     assert!((m.shininess - 30.0).abs() < 1e-3, "{}", m.shininess);
 }
@@ -72,7 +72,7 @@ fn a_metal_is_coloured_by_its_base_colour_texture() {
             "roughnessFactor": 0.0,
         }}),
     );
-    let m = finish(&loaded);
+    let m = untinted(&loaded);
     assert!(close(m.specular, [0.5, 0.0, 0.0]) && close(m.reflect, [0.5, 0.0, 0.0]));
 }
 
@@ -92,7 +92,7 @@ fn specular_factor_and_colour_change_what_is_no_metal() {
             "extensions": {"KHR_materials_specular": specular},
         }),
     );
-    assert!(close(finish(&loaded).specular, [0.02, 0.01, 0.0]));
+    assert!(close(untinted(&loaded).specular, [0.02, 0.01, 0.0]));
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn specular_textures_are_alpha_and_colour() {
             "extensions": {"KHR_materials_specular": specular},
         }),
     );
-    assert!(close(finish(&loaded).specular, [0.008, 0.008, 0.0]));
+    assert!(close(untinted(&loaded).specular, [0.008, 0.008, 0.0]));
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn specular_glossiness_texture_is_colour_and_gloss() {
             },
         }}),
     );
-    let m = finish(&loaded);
+    let m = untinted(&loaded);
     assert!(close(m.specular, [1.0, 0.0, 0.0]) && (m.shininess - 30.0).abs() < 1e-3);
 }
 

@@ -11,10 +11,10 @@ mod geometry;
 mod lights;
 mod materials;
 mod nodes;
-mod optics;
 mod report;
 mod shapes;
 mod textures;
+mod transmission;
 mod validation;
 mod variants;
 

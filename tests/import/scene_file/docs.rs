@@ -51,7 +51,7 @@ fn collect(table: &Value, prefix: &str, keys: &mut BTreeMap<String, Key>) {
 }
 
 /// The rows of `docs/scene.md`: table, key, default.
-fn rows() -> Vec<(String, String, String)> {
+fn table_rows() -> Vec<(String, String, String)> {
     let text = std::fs::read_to_string(docs_folder().join("scene.md")).unwrap();
     let mut table = String::new();
     let mut rows = Vec::new();
@@ -91,7 +91,7 @@ fn the_committed_schema_is_that_of_the_types() {
 
 #[test]
 fn every_key_is_documented_with_its_default() {
-    let rows = rows();
+    let rows = table_rows();
     for (table, keys) in keys() {
         for (key, meaning) in keys {
             let row = rows.iter().find(|(t, k, _)| *t == table && *k == key);
@@ -112,7 +112,7 @@ fn every_key_is_documented_with_its_default() {
 #[test]
 fn nothing_is_documented_that_is_no_key() {
     let keys = keys();
-    for (table, key, _) in rows() {
+    for (table, key, _) in table_rows() {
         assert!(
             keys.get(&table).is_some_and(|keys| keys.contains_key(&key)),
             "docs/scene.md: `{table}` has no key `{key}`"

@@ -7,7 +7,7 @@ mod models;
 mod motion;
 mod random;
 
-use envers::{Error, Loaded, Place, Scene, load};
+use envers::{Error, Loaded, Location, Scene, load};
 use std::path::{Path, PathBuf};
 
 /// A camera in two lines, for scenes that are about something else.
@@ -55,7 +55,7 @@ fn refused(marked: &str) -> Error {
     let file = File::new(marked.replace('¦', ""));
     let error = file.load().expect_err("the text is refused");
     assert_eq!(error.path(), Some(&*file.path()), "{error}");
-    let Some(Place::Text { line, column, quote, .. }) = error.place_in_file() else {
+    let Some(Location::Text { line, column, quote, .. }) = error.location() else {
         panic!("no place: {error}");
     };
     let before = &marked[..at];

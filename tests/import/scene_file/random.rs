@@ -83,7 +83,7 @@ fn loads_or_says_why(bytes: &[u8]) {
     if let Err(error) = file.load() {
         assert_eq!(error.path(), Some(&*file.path()), "{error}");
         // Its own checks find what is wrong before the scene's do, which know of no lines.
-        assert!(error.place_in_file().is_some(), "no place: {error}");
+        assert!(error.location().is_some(), "no place: {error}");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The files that envers is tested with, and random numbers that are the same every time. It does not
 //! depend on envers, so that nothing of envers is compiled for it.
 
-pub mod packed;
+pub mod compressed;
 mod random;
 pub mod whole;
 

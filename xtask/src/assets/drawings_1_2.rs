@@ -21,7 +21,7 @@ pub fn all() -> Vec<(&'static str, Drawing)> {
 }
 
 /// Returns the point where a line from `from` along `along`, of length 1, first meets a circle.
-fn meet(from: DVec2, along: DVec2, center: DVec2, radius: f64) -> Option<DVec2> {
+fn intersect_circle(from: DVec2, along: DVec2, center: DVec2, radius: f64) -> Option<DVec2> {
     let middle = (center - from).dot(along);
     let nearest = from + along * middle;
     let half = radius * radius - (center - nearest).length_squared();
@@ -36,7 +36,9 @@ fn forwards() -> Drawing {
     // Up and to the left stands the label.
     for i in (0..36).filter(|i| !(22..=24).contains(i)) {
         let along = circle(f64::from(i) / 36.0);
-        match meet(light, along, center, radius).filter(|m| (*m - light).dot(along) > 0.0) {
+        match intersect_circle(light, along, center, radius)
+            .filter(|m| (*m - light).dot(along) > 0.0)
+        {
             Some(lit) => {
                 d.line(light, lit, FINE);
                 let normal = (lit - center).normalize();
@@ -69,7 +71,7 @@ fn backwards() -> Drawing {
     for i in -4..=3 {
         let through = dvec2(screen, eye.y + (f64::from(i) + 0.5) * pixel);
         let along = (through - eye).normalize();
-        let (end, pen) = match meet(eye, along, center, radius) {
+        let (end, pen) = match intersect_circle(eye, along, center, radius) {
             Some(met) => (met, SIGHT),
             None => (eye + along * ((600.0 - eye.x) / along.x), FINE),
         };
@@ -80,7 +82,7 @@ fn backwards() -> Drawing {
             d.label(end + dvec2(12.0, -2.0), "M", Start);
             d.label(through + dvec2(7.0, -10.0), "P", Start);
         }
-        let met = meet(eye, along, center, radius).is_some();
+        let met = intersect_circle(eye, along, center, radius).is_some();
         let (top, side) = (through.y - pixel / 2.0, dvec2(0.0, pixel));
         let corner = dvec2(screen - 5.0, top);
         let wide = dvec2(10.0, 0.0);
@@ -119,7 +121,7 @@ fn frame() -> Drawing {
     let (center, radius) = (at(80.0, -60.0, 400.0), 52.0);
     let pixel = at(30.0, -30.0, z);
     let along = (pixel - eye).normalize();
-    let hit = meet(eye, along, center, radius).expect("ok: the drawing is made so");
+    let hit = intersect_circle(eye, along, center, radius).expect("ok: the drawing is made so");
     d.circle(center, radius, BODY, INK);
     d.line(eye, pixel, SIGHT);
     d.line(pixel, hit, SIGHT);

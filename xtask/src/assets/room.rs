@@ -86,9 +86,9 @@ fn garden(glb: &mut Glb, hedge: usize, cypress: usize) {
     let row = Shape::default().cuboid([-7.0, 0.0, -0.4], [7.0, 1.9, 0.4], 1.0);
     let row = glb.mesh("hedge", &[(&row, hedge)]);
     let (left, back) = (-11.0, -14.0);
-    glb.place("back hedge", Some(garden), row, at(left + 6.6, 0.0, back));
+    glb.add_node("back hedge", Some(garden), row, at(left + 6.6, 0.0, back));
     let turn = turned([left, 0.0, back + 6.6], DVec3::X, DVec3::NEG_Z);
-    glb.place("left hedge", Some(garden), row, turn);
+    glb.add_node("left hedge", Some(garden), row, turn);
     let flame =
         profile(&[(0.16, 0.0), (0.17, 0.35), (0.5, 0.6), (0.68, 1.3), (0.62, 2.6), (0.36, 4.3)]);
     let flame: Vec<_> = flame.iter().map(|p| DVec3::new(p.x, p.y, 0.0)).collect();
@@ -108,7 +108,7 @@ fn garden(glb: &mut Glb, hedge: usize, cypress: usize) {
     for (i, (x, z, size)) in trees.into_iter().enumerate() {
         let mut place = at(x, 0.0, z);
         place["scale"] = json!([size, size, size]);
-        glb.place(&format!("cypress {i}"), Some(garden), tree, place);
+        glb.add_node(&format!("cypress {i}"), Some(garden), tree, place);
     }
 }
 
@@ -141,9 +141,9 @@ pub fn glb() -> Vec<u8> {
         let parent = glb.node(name, None, place);
         for i in 0..columns {
             let x = f64::from(i) * BAY;
-            glb.place(&format!("{name} column {i}"), Some(parent), column, at(x, 0.0, 0.0));
+            glb.add_node(&format!("{name} column {i}"), Some(parent), column, at(x, 0.0, 0.0));
             if i < count {
-                glb.place(
+                glb.add_node(
                     &format!("{name} bay {i}"),
                     Some(parent),
                     bay,
@@ -186,14 +186,14 @@ pub fn glb() -> Vec<u8> {
         "walls",
         &[(&walls, plaster), (&boards, wood), (&niches, red), (&dado, tile), (&cornice, stone)],
     );
-    glb.place("walls", None, walls, at(0.0, 0.0, 0.0));
+    glb.add_node("walls", None, walls, at(0.0, 0.0, 0.0));
 
     let beam = Shape::default().cuboid([-HALF, TOP - 0.2, -0.09], [inner, TOP, 0.09], 0.6);
     let beam = glb.mesh("beam", &[(&beam, wood)]);
     let ceiling = glb.node("ceiling", None, at(0.0, 0.0, BACK));
     for i in 1..16 {
         let z = f64::from(i) * 0.8;
-        glb.place(&format!("beam {i}"), Some(ceiling), beam, at(0.0, 0.0, z));
+        glb.add_node(&format!("beam {i}"), Some(ceiling), beam, at(0.0, 0.0, z));
     }
 
     // What stands in the niches, each on a plinth.
@@ -204,10 +204,10 @@ pub fn glb() -> Vec<u8> {
     let plinth = glb.mesh("plinth", &[(&plinth, stone)]);
     let knot = glb.mesh("knot", &[(&knot(), bronze)]);
     let urn = glb.mesh("urn", &[(&vase::body(), ivory), (&vase::fittings(), ivory)]);
-    let left = glb.place("left plinth", None, plinth, at(-BAY, 0.0, BACK - 0.62));
-    glb.place("knot", Some(left), knot, at(0.0, 1.46, 0.0));
-    let right = glb.place("right plinth", None, plinth, at(BAY, 0.0, BACK - 0.62));
-    glb.place("urn", Some(right), urn, at(0.0, 0.96, 0.0));
+    let left = glb.add_node("left plinth", None, plinth, at(-BAY, 0.0, BACK - 0.62));
+    glb.add_node("knot", Some(left), knot, at(0.0, 1.46, 0.0));
+    let right = glb.add_node("right plinth", None, plinth, at(BAY, 0.0, BACK - 0.62));
+    glb.add_node("urn", Some(right), urn, at(0.0, 0.96, 0.0));
 
     // A bench and a picture along the right wall; both are made facing the viewer and turned.
     let bench = Shape::default()
@@ -216,7 +216,7 @@ pub fn glb() -> Vec<u8> {
         .cuboid([0.7, 0.0, -0.18], [0.78, 0.42, 0.18], 0.5)
         .cuboid([-0.7, 0.14, -0.03], [0.7, 0.22, 0.03], 0.5);
     let bench = glb.mesh("bench", &[(&bench, wood)]);
-    glb.place("bench", None, bench, turned([inner - 0.42, 0.0, -3.9], DVec3::Z, DVec3::NEG_X));
+    glb.add_node("bench", None, bench, turned([inner - 0.42, 0.0, -3.9], DVec3::Z, DVec3::NEG_X));
     let (w, h, rim) = (0.96, 0.64, 0.09);
     let mut canvas = Shape::default();
     let corners = [(-w, -h), (w, -h), (w, h), (-w, h)].map(|(x, y)| DVec3::new(x, y, 0.03));
@@ -227,7 +227,7 @@ pub fn glb() -> Vec<u8> {
         .cuboid([-w - rim, -h, 0.0], [-w, h, 0.07], 0.5)
         .cuboid([w, -h, 0.0], [w + rim, h, 0.07], 0.5);
     let picture = glb.mesh("picture", &[(&canvas, landscape), (&frame, wood)]);
-    glb.place("picture", None, picture, turned([inner, 2.15, -3.9], DVec3::Z, DVec3::NEG_X));
+    glb.add_node("picture", None, picture, turned([inner, 2.15, -3.9], DVec3::Z, DVec3::NEG_X));
 
     // A lamp that hangs from the ceiling: its light is below the bulb, which would keep it.
     let shade = profile(&[(0.36, 0.0), (0.33, 0.07), (0.22, 0.17), (0.06, 0.24), (0.03, 0.3)]);
@@ -242,7 +242,7 @@ pub fn glb() -> Vec<u8> {
         .collect();
     let globe = Shape::default().lathe(&globe, 24, [0.0, 1.0]);
     let lamp = glb.mesh("lamp", &[(&shade, iron), (&globe, bulb)]);
-    let lamp = glb.place("lamp", None, lamp, at(2.4, TOP - 1.3, -2.4));
+    let lamp = glb.add_node("lamp", None, lamp, at(2.4, TOP - 1.3, -2.4));
     let light = glb.node("lamp light", Some(lamp), at(0.0, -0.02, 0.0));
     glb.light(
         light,

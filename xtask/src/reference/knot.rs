@@ -62,7 +62,7 @@ pub fn mesh([rings, sides]: [u32; 2]) -> Mesh {
 pub fn glb(mesh: &Mesh) -> Vec<u8> {
     let mut glb = Glb::default();
     let id = glb.triangles("knot", &mesh.positions, &mesh.triangles);
-    glb.place("knot", None, id, at(0.0, 0.0, 0.0));
+    glb.add_node("knot", None, id, at(0.0, 0.0, 0.0));
     glb.finish("envers xtask make-reference")
 }
 

@@ -82,7 +82,7 @@ pub fn import(
     for index in shown {
         importer.add_node(&nodes[&index])?;
     }
-    Ok(importer.finish(path))
+    Ok(importer.into_loaded(path))
 }
 
 /// A primitive that is imported.
@@ -201,7 +201,7 @@ impl Importer<'_> {
     }
 
     /// Returns the scene and the load report, once all nodes are added.
-    fn finish(mut self, path: &Path) -> Loaded {
+    fn into_loaded(mut self, path: &Path) -> Loaded {
         self.scene.animation = self.clip.into_animation();
         self.materials.decode_images(&mut self.scene, &mut self.diagnostics);
         let Scene { instances, spheres, planes, .. } = &self.scene;

@@ -7,7 +7,7 @@ use std::fmt;
 
 use gltf::json::Value;
 
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Location, Result};
 
 pub use parse::{Document, as_natural, estimated_memory, parse};
 
@@ -69,7 +69,7 @@ pub fn error_at(path: impl fmt::Display, message: impl Into<String>) -> Error {
 
 /// Returns a function that adds a JSON path to an error that has no place yet.
 pub fn at_path(path: impl fmt::Display) -> impl FnOnce(Error) -> Error {
-    move |error| error.place(Place::Json(path.to_string()))
+    move |error| error.with_location(Location::Json(path.to_string()))
 }
 
 /// Returns an element of one of the root's lists, of a `kind` that messages name.

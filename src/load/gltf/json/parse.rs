@@ -7,7 +7,7 @@ use gltf::json::Value;
 use super::super::container::wrong_version;
 use super::super::validate;
 use super::{JsonPath, error_at, large_indices, list};
-use crate::error::{Error, Place, Result};
+use crate::error::{Error, Location, Result};
 
 /// The estimated memory, in bytes, of the values of a JSON text once it is parsed: many times its
 /// length, if they are lists in lists. See [`crate::load::Limit::Json`].
@@ -70,7 +70,7 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
 }
 
 fn unsupported_version(version: &str) -> Error {
-    wrong_version(version).place(Place::Json("asset.version".to_owned()))
+    wrong_version(version).with_location(Location::Json("asset.version".to_owned()))
 }
 
 /// Parses a file that the crate's types refuse. They demand more than the standard does, also of
@@ -171,7 +171,7 @@ fn syntax_error(bytes: &[u8], error: &json::Error) -> Error {
     let message = text.split(" at line ").next().unwrap_or(&text);
     let problem = if error.is_data() { "not what glTF has here" } else { "the JSON is broken" };
     let found = Error::input(format!("{problem}: {message} (column {})", error.column()));
-    if error.line() == 0 { found } else { found.place(Place::Line(error.line())) }
+    if error.line() == 0 { found } else { found.with_location(Location::Line(error.line())) }
 }
 
 #[cfg(test)]

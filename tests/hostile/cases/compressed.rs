@@ -4,7 +4,7 @@ use draco_core::GeometryAttributeType as Kind;
 use serde_json::{Value, json};
 
 use super::{Case, Error, Expect, Warning};
-use envers_testing::packed::{DRACO, ktx, packed};
+use envers_testing::compressed::{DRACO, compressed_model, ktx};
 
 const OBJ: &str = "mtllib a.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
 
@@ -16,14 +16,14 @@ fn mesh(name: &str, expect: Expect, side: u32, change: impl FnOnce(&mut Value)) 
     let corners = (0..row * row).filter(|i| i % row < side && i / row < side);
     let halves = corners.flat_map(|i| [[i, i + 1, i + row], [i + 1, i + row + 1, i + row]]);
     let faces: Vec<[u32; 3]> = halves.collect();
-    let mut model = packed(&[("POSITION", Kind::Position, 3, &positions)], &faces);
+    let mut model = compressed_model(&[("POSITION", Kind::Position, 3, &positions)], &faces);
     change(model.primitive());
     Case::new(format!("draco {name}"), "a.glb", model.glb(), expect)
 }
 
 /// The bytes of a file with some of those of its stream others.
 fn stream(name: &str, change: impl FnOnce(&mut Vec<u8>)) -> Case {
-    let model = packed(
+    let model = compressed_model(
         &[("POSITION", Kind::Position, 3, &[0., 0., 0., 1., 0., 0., 0., 1., 0.])],
         &[[0, 1, 2]],
     );

@@ -226,7 +226,7 @@ fn transmission_and_volume_can_be_required() {
 }
 
 /// Returns the shading parameters of the material.
-fn finish(scene: &Scene) -> ShadingParams {
+fn shading(scene: &Scene) -> ShadingParams {
     envers::internals::shading_params(scene, material(scene), &TextureContext::default())
 }
 
@@ -239,7 +239,7 @@ fn a_transmission_texture_counts_point_by_point() {
         "transmissionFactor": 0.5, "transmissionTexture": {"index": 0},
     }});
     model.material(glass([1.0; 4], extension));
-    assert!(close(finish(&model.load().unwrap().scene).transmit, [0.1; 3]));
+    assert!(close(shading(&model.load().unwrap().scene).transmit, [0.1; 3]));
 }
 
 #[test]
@@ -250,7 +250,7 @@ fn blended_alpha_is_seen_straight_through() {
     let mut model = Model::triangle();
     model.material(source);
     let scene = model.load().unwrap().scene;
-    let (m, f) = (material(&scene), finish(&scene));
+    let (m, f) = (material(&scene), shading(&scene));
     assert_eq!((f.transmit, m.thin, m.ior), (Vec3::splat(0.75), true, 1.0));
     assert!(close(f.diffuse, [1.0, 0.5, 0.25]) && close(f.emission, [0.25; 3]));
 }
@@ -258,7 +258,7 @@ fn blended_alpha_is_seen_straight_through() {
 #[test]
 fn the_alpha_of_a_picture_is_blended() {
     let scene = pictured([255, 255, 255, 51], json!({"alphaMode": "BLEND"}));
-    assert!(close(finish(&scene).transmit, [0.8; 3]));
+    assert!(close(shading(&scene).transmit, [0.8; 3]));
 }
 
 #[test]

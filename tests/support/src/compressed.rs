@@ -42,7 +42,7 @@ pub fn bytes(values: &[f32]) -> Vec<u8> {
 }
 
 /// A model whose only primitive is packed: these attributes, by their names.
-pub fn packed(
+pub fn compressed_model(
     attributes: &[(&str, GeometryAttributeType, u8, &[f32])],
     faces: &[[u32; 3]],
 ) -> Model {
