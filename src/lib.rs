@@ -89,7 +89,7 @@ pub use geometry::{
 #[cfg(feature = "embree")]
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
-pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, load};
+pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_ground, load};
 pub use render::{RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
@@ -111,7 +111,7 @@ pub mod internals {
     pub use crate::intersect::{BuildStats, IntersectorBuilder};
     pub use crate::load::schema;
     pub use crate::render::Traced;
-    pub use crate::scene::{Feature, IncidentLight, ShadingParams};
+    pub use crate::scene::{IncidentLight, ShadingParams};
     pub use crate::surface::{TextureContext, occlusion, shading_params};
     pub use crate::write::{Settings, png_bytes, write};
 }

@@ -5,9 +5,10 @@ use std::time::Duration;
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::View;
 use crate::intersect::{Backend, BuildQuality, Precision};
+use crate::load::Limit;
 use crate::measure::stress::Goal;
 use crate::scene::Tone;
 use crate::scene::check::{check_samples, check_size};
@@ -125,6 +126,29 @@ pub fn sample_range(text: &str) -> Result<SampleRange, String> {
     Ok(range)
 }
 
+/// A limit and its maximum, written as `NAME=NUMBER`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NamedLimit(pub Limit, pub u64);
+
+impl FromStr for NamedLimit {
+    type Err = Error;
+
+    /// # Errors
+    /// When the name is that of no limit, or the number is none from 0 to 2⁶⁴ − 1.
+    fn from_str(text: &str) -> Result<Self> {
+        let (name, number) =
+            text.split_once('=').ok_or_else(|| Error::input("not of the form NAME=NUMBER"))?;
+        let limit = Limit::ALL.into_iter().find(|limit| limit.name() == name).ok_or_else(|| {
+            let names = Limit::ALL.map(Limit::name).join(", ");
+            Error::input(format!("no limit is called `{name}`; they are {names}"))
+        })?;
+        match number.parse() {
+            Ok(number) => Ok(Self(limit, number)),
+            Err(_) => Err(Error::input(format!("`{number}` is no whole number below 2^64"))),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,5 +167,21 @@ mod tests {
         for bad in ["640", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
             assert!(size(bad).is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_named_limit_reads_as_it_is_written() {
+        for limit in Limit::ALL {
+            let text = format!("{}=123", limit.name());
+            assert_eq!(text.parse::<NamedLimit>().unwrap(), NamedLimit(limit, 123));
+        }
+    }
+
+    #[test]
+    fn what_is_no_limit_is_told_from_what_is_no_number() {
+        let error = |text: &str| text.parse::<NamedLimit>().unwrap_err().to_string();
+        assert!(error("pixel=3").contains("they are bytes, json"));
+        assert!(error("pixels=-3").contains("no whole number"));
+        assert!(error("pixels").contains("NAME=NUMBER"));
     }
 }

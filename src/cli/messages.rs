@@ -6,7 +6,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::error::{Error, Location, Remedy};
 use crate::load::LoadReport;
-use crate::scene::{Scene, precision_warnings};
+use crate::scene::{self, Scene};
 
 /// Prints an error: file, place and message, the line of the file, and the help.
 pub fn error(error: &Error) {
@@ -20,7 +20,7 @@ pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec
 
 /// Returns the warnings about lost precision, with the flag that avoids them.
 fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
-    precision_warnings::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
+    scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
         let certified = "; --precision certified has no such limit";
         warning.message + if warning.is_of_fast_only { certified } else { "" }
     })

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::flag_values::{PRECISIONS, choice, seconds, size};
+use crate::cli::flag_values::{NamedLimit, PRECISIONS, choice, seconds, size};
 use crate::cli::{load_report, paths};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
-use crate::load::{Limits, LoadOptions, LoadReport, Loaded, NamedLimit};
+use crate::load::{Limits, LoadOptions, LoadReport, Loaded};
 use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 

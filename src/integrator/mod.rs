@@ -39,7 +39,9 @@ pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
 use sample_pattern::SamplePattern;
-pub use sample_pattern::{sample_positions, sample_steps};
+#[cfg(all(feature = "measure", feature = "embree"))]
+pub use sample_pattern::sample_positions;
+pub use sample_pattern::sample_steps;
 use texture_lod::TextureLod;
 pub use tile_loop::{RefineStrip, Scratch};
 pub use tiling::Tiling;

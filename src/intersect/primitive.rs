@@ -137,6 +137,7 @@ impl Primitives<'_> {
     }
 
     /// The hit of `ray` on the primitive `id`.
+    #[cfg(any(feature = "measure", feature = "embree"))]
     pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
         match id.geometry {
             Geometry::Spheres => {

@@ -1,7 +1,5 @@
 //! The limits on what a load may read, unpack and build: files from strangers can ask for anything.
 
-use std::str::FromStr;
-
 use crate::error::{Error, Remedy, Result};
 
 /// A quantity that is limited, over all files of a load.
@@ -135,29 +133,6 @@ impl Limits {
     }
 }
 
-/// A limit and its maximum, written as `NAME=NUMBER`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct NamedLimit(pub Limit, pub u64);
-
-impl FromStr for NamedLimit {
-    type Err = Error;
-
-    /// # Errors
-    /// When the name is that of no limit, or the number is none from 0 to 2⁶⁴ − 1.
-    fn from_str(text: &str) -> Result<Self> {
-        let (name, number) =
-            text.split_once('=').ok_or_else(|| Error::input("not of the form NAME=NUMBER"))?;
-        let limit = Limit::ALL.into_iter().find(|limit| limit.name() == name).ok_or_else(|| {
-            let names = Limit::ALL.map(Limit::name).join(", ");
-            Error::input(format!("no limit is called `{name}`; they are {names}"))
-        })?;
-        match number.parse() {
-            Ok(number) => Ok(Self(limit, number)),
-            Err(_) => Err(Error::input(format!("`{number}` is no whole number below 2^64"))),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -181,21 +156,5 @@ mod tests {
         for limit in Limit::ALL.into_iter().filter(|limit| *limit != Limit::Nodes) {
             assert_eq!(limits.get(limit), limit.default());
         }
-    }
-
-    #[test]
-    fn a_named_limit_reads_as_it_is_written() {
-        for limit in Limit::ALL {
-            let text = format!("{}=123", limit.name());
-            assert_eq!(text.parse::<NamedLimit>().unwrap(), NamedLimit(limit, 123));
-        }
-    }
-
-    #[test]
-    fn what_is_no_limit_is_told_from_what_is_no_number() {
-        let error = |text: &str| text.parse::<NamedLimit>().unwrap_err().to_string();
-        assert!(error("pixel=3").contains("they are bytes, json"));
-        assert!(error("pixels=-3").contains("no whole number"));
-        assert!(error("pixels").contains("NAME=NUMBER"));
     }
 }

@@ -24,7 +24,7 @@ use crate::error::{Error, Result};
 use crate::scene::watertight;
 
 pub use defaults::ground::add_ground;
-pub use limits::{Limit, Limits, NamedLimit};
+pub use limits::{Limit, Limits};
 pub use report::{DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;

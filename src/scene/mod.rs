@@ -28,7 +28,7 @@ mod material;
 mod mesh;
 mod metallic_roughness;
 mod mipmap;
-pub(crate) mod precision_warnings;
+mod precision_warnings;
 mod shading_params;
 mod shapes;
 mod texels;
@@ -40,9 +40,7 @@ pub(crate) mod watertight;
 pub(crate) use camera::RayGenerator;
 pub use camera::{Camera, Projection};
 pub use coverage::{AlphaMode, Coverage};
-#[doc(hidden)]
-pub use features::Feature;
-pub(crate) use features::SceneFeatures;
+pub use features::{Feature, SceneFeatures};
 pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
 #[doc(hidden)]
@@ -53,6 +51,7 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
 pub(crate) use metallic_roughness::{mirror_share, shininess};
+pub use precision_warnings::{PrecisionWarning, precision_warnings};
 #[doc(hidden)]
 pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};

@@ -49,6 +49,7 @@ fn resolve(path: &Path) -> PathBuf {
 ///
 /// # Errors
 /// When it could not.
+#[cfg(feature = "cli")]
 pub fn check(path: &Path) -> Result<()> {
     let target = resolve(path);
     match fs::metadata(&target) {

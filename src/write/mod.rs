@@ -21,7 +21,9 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-pub use atomic::{check as check_file, write_atomically};
+#[cfg(feature = "cli")]
+pub use atomic::check as check_file;
+pub use atomic::write_atomically;
 pub use movie::Movie;
 pub use png::encode as png_bytes;
 
@@ -90,6 +92,7 @@ impl Format {
     }
 
     /// True if it can hold several frames.
+    #[cfg(feature = "cli")]
     pub fn is_animated(self) -> bool {
         matches!(self, Format::Gif | Format::Apng)
     }
@@ -100,6 +103,7 @@ impl Format {
 ///
 /// # Errors
 /// When it could not be written.
+#[cfg(feature = "cli")]
 pub fn check(path: &Path) -> Result<()> {
     Format::from_path(path)?;
     atomic::check(path)

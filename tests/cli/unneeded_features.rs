@@ -2,7 +2,7 @@
 //! feature that the scene does not have costs nothing.
 
 use super::*;
-use envers::internals::Feature;
+use envers::scene::Feature;
 
 /// A mesh that stands once, and a material with a picture that nothing is made of.
 const PLAIN: &str = r##"

@@ -1,7 +1,7 @@
 //! The counters of the work for each scene feature: exactly 0 where nothing needs it.
 
 use super::*;
-use envers::internals::Feature;
+use envers::scene::Feature;
 
 /// A triangle that needs none of the work that is counted.
 const BARE: &str = r##"
