@@ -45,9 +45,9 @@ pub enum Format {
 pub struct Settings {
     /// The exposure in stops: radiance is multiplied by 2 to the power of this.
     pub exposure: f64,
-    /// The tone curve, which then maps it to \[0, 1\].
+    /// The tone curve, which maps the exposed radiance to \[0, 1\].
     pub tone: Tone,
-    /// The transfer function that encodes the result.
+    /// The transfer function, which encodes the toned value.
     pub transfer: Transfer,
     /// True if an EXR stores 16-bit floats rather than 32-bit ones.
     pub half: bool,
@@ -89,7 +89,7 @@ impl Format {
         .map_err(|e| e.help("name it .png (8 bits), .exr (floats), .gif or .apng (animated)"))
     }
 
-    /// True if it can hold several frames.
+    /// True if a file of this format can hold several frames.
     pub fn is_animated(self) -> bool {
         matches!(self, Format::Gif | Format::Apng)
     }
