@@ -23,7 +23,7 @@ pub enum ErrorKind {
     Failed,
 }
 
-/// A way out of an [`Error`] that is an option of the library, for which a command has a flag.
+/// An option of the library that avoids an [`Error`]; a command has a flag for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Remedy {
@@ -34,7 +34,7 @@ pub enum Remedy {
     RaiseLimit {
         /// The limit's name, as `load::Limit::name` gives it.
         name: &'static str,
-        /// The lowest limit that allows what was found, where that is known.
+        /// The lowest limit that allows what was found, if that is known.
         least: Option<u64>,
     },
     /// Tracing with the pure-Rust BVH, by `intersect::Backend::Rust`.
@@ -124,9 +124,9 @@ impl Error {
         Self::new(ErrorKind::Failed, message)
     }
 
-    /// An error of reading or writing a file; `doing` is "read", "write", "create" …
-    pub fn io(doing: &str, path: &Path, error: &std::io::Error) -> Self {
-        Self::input(format!("cannot {doing} it: {error}")).at(path)
+    /// An error of reading or writing a file; `verb` is "read", "write", "create" …
+    pub fn io(verb: &str, path: &Path, error: &std::io::Error) -> Self {
+        Self::input(format!("cannot {verb} it: {error}")).at(path)
     }
 
     fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
@@ -161,7 +161,7 @@ impl Error {
         self
     }
 
-    /// Adds the option that is a way out.
+    /// Adds the option that avoids the error.
     #[must_use]
     pub fn remedied_by(mut self, remedy: Remedy) -> Self {
         self.0.remedy.get_or_insert(remedy);
@@ -193,7 +193,7 @@ impl Error {
         self.0.help.as_deref()
     }
 
-    /// The option that is a way out, where there is one.
+    /// The option that avoids the error, if there is one.
     pub fn remedy(&self) -> Option<Remedy> {
         self.0.remedy
     }

@@ -30,7 +30,7 @@ impl View {
     }
 }
 
-/// A pixel: three values, whose meaning the [`View`] tells.
+/// The three values of a pixel; the [`View`] tells their meaning.
 pub type Pixel = [f32; 3];
 
 /// A picture in linear f32, row by row from the upper left.
@@ -45,7 +45,7 @@ pub struct Film {
 }
 
 impl Film {
-    /// Creates a black picture.
+    /// Creates a film whose pixels are 0.
     pub fn new(size: [u32; 2], view: View) -> Self {
         let count = size[0] as usize * size[1] as usize;
         // The system maps memory when it is first written, which takes a while for a large picture: all
@@ -61,7 +61,7 @@ impl Film {
     /// Returns the pixel in column `x` and row `y`.
     ///
     /// # Panics
-    /// When there is none.
+    /// When there is no such pixel.
     pub fn pixel(&self, x: u32, y: u32) -> Pixel {
         assert!(x < self.size[0], "column {x} of {}", self.size[0]);
         self.pixels[y as usize * self.size[0] as usize + x as usize]

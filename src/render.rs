@@ -76,7 +76,7 @@ pub struct Statistics {
     pub threads: usize,
     /// Rays and other counts.
     pub counts: Counts,
-    /// Counts of what was built for the intersector, and of what was kept.
+    /// Counts of what was built for the intersector, and of what was reused.
     pub built: BuildStats,
     /// The time to build the intersector.
     pub build: Duration,
@@ -113,7 +113,7 @@ impl Statistics {
     }
 }
 
-/// A callback that is told the share of the work that is done, in (0, 1], by any thread.
+/// A callback that is told the share of the work that is done, in (0, 1]; any thread may call it.
 type Progress<'s> = dyn Fn(f32) + Sync + 's;
 
 /// A renderer of one scene.
@@ -200,13 +200,13 @@ impl<'s> Renderer<'s> {
         self
     }
 
-    /// Sets a callback that is told the share of the work that is done, in (0, 1], from whichever
-    /// thread finished a part.
+    /// Sets a callback that is told the share of the work that is done, in (0, 1]. Any thread may call
+    /// it.
     pub fn on_progress(self, progress: impl Fn(f32) + Sync + 's) -> Self {
         Self { progress: Box::new(progress), ..self }
     }
 
-    /// Renders the scene; of an animated one, the first moment.
+    /// Renders the scene; an animated one at time 0.
     ///
     /// # Errors
     /// When the scene is not valid, has no such camera, or the intersector cannot be built.
@@ -223,12 +223,12 @@ impl<'s> Renderer<'s> {
             let start = Instant::now();
             let intersector = builder.build(scene)?;
             let built = BuildRecord::new(start, &builder, builder.stats());
-            Ok(picture(scene, options, &*intersector, built, &*self.progress))
+            Ok(render_scene(scene, options, &*intersector, built, &*self.progress))
         })
     }
 
     /// Renders the scene at each of several times, in seconds, and hands each picture to `each`
-    /// with its index before the next is begun. Of the intersector only what moves is updated.
+    /// with its index before the next is begun. The intersector is updated only for what moves.
     ///
     /// The progress callback is told the share of the whole that is done.
     ///
@@ -248,13 +248,13 @@ impl<'s> Renderer<'s> {
             let threads = rayon::current_num_threads();
             let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
             let builder = if moves {
-                let stage = scene.bounds_over_time();
-                IntersectorBuilder::for_frames(backend, precision, threads, stage)
+                let bounds = scene.bounds_over_time();
+                IntersectorBuilder::for_frames(backend, precision, threads, bounds)
             } else {
                 IntersectorBuilder::new(backend, precision, threads)
             };
             let mut builder = builder.with_quality(quality(scene, options));
-            // Where only lights and cameras move, one intersector serves all frames.
+            // One intersector serves all frames if only lights and cameras move.
             let mut shared: Option<Box<dyn Intersector + '_>> = None;
             let mut poses = PosedScene::new(scene);
             for (i, &time) in times.iter().enumerate() {
@@ -275,15 +275,15 @@ impl<'s> Renderer<'s> {
                 let rendering = if moves {
                     let intersector = builder.build(posed)?;
                     let built = BuildRecord::new(start, &builder, builder.stats() - before);
-                    picture(posed, options, &*intersector, built, &share)
+                    render_scene(posed, options, &*intersector, built, &share)
                 } else if let Some(intersector) = &shared {
-                    let kept = BuildStats::reused(before.meshes_built);
-                    let built = BuildRecord::new(start, &builder, kept);
-                    picture(posed, options, &**intersector, built, &share)
+                    let reused = BuildStats::reused(before.meshes_built);
+                    let built = BuildRecord::new(start, &builder, reused);
+                    render_scene(posed, options, &**intersector, built, &share)
                 } else {
                     let intersector = shared.insert(builder.build(scene)?);
                     let built = BuildRecord::new(start, &builder, builder.stats());
-                    picture(posed, options, &**intersector, built, &share)
+                    render_scene(posed, options, &**intersector, built, &share)
                 };
                 each(i, rendering)?;
             }
@@ -291,8 +291,8 @@ impl<'s> Renderer<'s> {
         })
     }
 
-    /// Renders the scene, which must be valid, with an intersector of its own, on the current rayon
-    /// pool; of an animated scene, as its files place it.
+    /// Renders the scene, which must be valid, with an intersector that was built for it, on the current
+    /// rayon pool. An animated scene is rendered as it is stored, without a pose.
     ///
     /// # Panics
     /// When the scene has no such camera.
@@ -332,9 +332,9 @@ impl BuildRecord {
     }
 }
 
-/// The quality of a scene's trees, where the options leave it open: by the number of its primary rays
-/// and their shadow rays, which is known beforehand. All frames of an animation count, also when
-/// only some are rendered: a frame must not depend on which others are.
+/// Chooses the quality of a scene's trees, unless the options set it, by the number of its primary rays
+/// and their shadow rays. All frames of an animation count, also when only some are rendered: a frame
+/// must not depend on which others are.
 fn quality(scene: &Scene, options: &RenderOptions) -> BuildQuality {
     let (spp, lights) = match options.view {
         View::Beauty => {
@@ -349,8 +349,8 @@ fn quality(scene: &Scene, options: &RenderOptions) -> BuildQuality {
     options.quality.unwrap_or(BuildQuality::for_rays(rays, scene.primitive_count()))
 }
 
-/// Renders a checked scene with an intersector that is built, and puts the statistics together.
-fn picture(
+/// Renders a checked scene with an intersector that is built, and assembles the statistics.
+fn render_scene(
     scene: &Scene,
     options: &RenderOptions,
     intersector: &dyn Intersector,

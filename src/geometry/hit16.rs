@@ -22,7 +22,7 @@ impl PrimitiveId16 {
     pub const SPHERES: u32 = 1;
     /// The geometry code of a plane.
     pub const PLANES: u32 = 2;
-    /// The geometry code of a triangle of the first mesh; later meshes follow.
+    /// The geometry code of a triangle of mesh 0; that of mesh i is greater by i.
     pub const MESHES: u32 = 3;
 
     /// The id in lane `i`, if there is one.

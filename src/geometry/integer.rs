@@ -120,8 +120,8 @@ impl Rounded {
         let exponent = exponent + cut as i64;
 
         // The exponent of the last place: of 53 bits, or of the subnormals.
-        let place = (exponent + 11).max(-1074);
-        let drop = (place - exponent).min(100) as u32;
+        let last_place = (exponent + 11).max(-1074);
+        let drop = (last_place - exponent).min(100) as u32;
         let (lead, half) = (u128::from(lead), 1u128 << (drop - 1));
         let (kept, rest) = (lead >> drop, lead & ((half << 1) - 1));
 
@@ -141,12 +141,12 @@ impl Rounded {
         if mantissa == 0 {
             return Self { nearest: f64::from_bits(1), exact: Ordering::Less };
         }
-        if place > 971 || (place == 971 && mantissa == 1 << 53) {
+        if last_place > 971 || (last_place == 971 && mantissa == 1 << 53) {
             return Self { nearest: f64::MAX, exact: Ordering::Greater };
         }
-        let unit = match place {
-            -1074..-1022 => f64::from_bits(1 << (place + 1074)),
-            _ => f64::from_bits(((place + 1023) as u64) << 52),
+        let unit = match last_place {
+            -1074..-1022 => f64::from_bits(1 << (last_place + 1074)),
+            _ => f64::from_bits(((last_place + 1023) as u64) << 52),
         };
         Self { nearest: mantissa as f64 * unit, exact }
     }

@@ -1,10 +1,9 @@
 //! The intersection mathematics: rays, hits, bounding boxes, and pure functions in f64 that
 //! intersect a ray with a sphere, a plane or a triangle.
 //!
-//! All backends call these functions, so that a hit has the same distance whichever of them found
-//! its primitive. None uses a fused multiply-add: results must not depend on whether the compiler
-//! vectorised the caller. The `certified` submodules hold the same intersections in exact
-//! arithmetic.
+//! All backends call these functions, so that they find hits at the same distances. No function
+//! uses a fused multiply-add: results must not depend on whether the compiler vectorised the caller.
+//! The `certified` submodules hold the same intersections in exact arithmetic.
 //!
 //! ```
 //! use envers::Ray;

@@ -51,8 +51,8 @@ pub struct Continuation {
 }
 
 impl Continuation {
-    /// True if a crossing at `t` is already behind the ray, in the order in which hits count: by
-    /// `t`, then by id. Of a sphere that the ray entered, only the far side is ahead.
+    /// True if the ray has passed a crossing at `t` with primitive `id`, in the order of hits: by `t`,
+    /// then by id. Only the far side of a sphere that the ray entered lies ahead.
     #[inline]
     pub fn excludes(&self, t: f64, id: PrimitiveId) -> bool {
         t < self.t || (t == self.t && id <= self.crossed.id)
@@ -94,7 +94,7 @@ impl Ray {
         Self { continuation: Some(Continuation { t: hit.t, crossed }), ..*self }
     }
 
-    /// The `t` beyond which hits count: 0, or that of the last surface it went through.
+    /// The `t` beyond which the ray hits: 0, or that of the last surface that it went through.
     pub fn start_t(&self) -> f64 {
         self.continuation.map_or(0.0, |continuation| continuation.t)
     }

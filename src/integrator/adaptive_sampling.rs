@@ -19,7 +19,7 @@ use crate::surface::Surface16;
 /// The least cosine of the angle between two normals that agree: 30°.
 const MIN_COSINE: f32 = 0.866;
 
-/// The number that stands for no hit among objects.
+/// The object number of a ray that hits nothing.
 const NO_OBJECT: u32 = 0;
 
 /// A record of what the samples of a pixel saw: the first one, and whether any other disagrees with

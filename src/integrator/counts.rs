@@ -80,8 +80,7 @@ pub struct Counts {
 /// first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct NotFinite {
-    /// The light that reaches the surface: a light that weakens with the square of the distance
-    /// stands very near it.
+    /// The light that arrives at the surface: a light with inverse-square falloff is very near it.
     pub light: u64,
     /// The surface itself: its position, or the colour that its material, textures and vertex
     /// colours give it.

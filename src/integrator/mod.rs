@@ -74,9 +74,9 @@ struct ShadingFeatures {
     smooth_normals: bool,
     /// True if materials have highlights.
     highlights: bool,
-    /// True if surfaces send light on.
+    /// True if materials reflect as mirrors or transmit light.
     secondary_rays: bool,
-    /// True if surfaces let light through.
+    /// True if materials transmit light.
     transmission: bool,
 }
 
@@ -87,9 +87,9 @@ struct TransparentMedia {
     camera_interior: Option<InteriorList>,
     /// True if rays may be absorbed on their way, or hit null interfaces.
     may_alter_rays: bool,
-    /// True if camera rays may.
+    /// True if camera rays may be absorbed on their way, or hit null interfaces.
     may_alter_camera_rays: bool,
-    /// The boxes of what lets light through.
+    /// The bounding boxes of the transmissive objects.
     bounds: TransmissiveBounds,
 }
 
@@ -118,7 +118,7 @@ impl TransparentMedia {
 }
 
 impl<'a> Integrator<'a> {
-    /// Builds an integrator for the scene's film settings that looks through `camera`.
+    /// Builds an integrator for the rays of `camera`, with the scene's film settings.
     pub fn new(
         scene: &'a Scene,
         intersector: &'a dyn Intersector,

@@ -1,7 +1,7 @@
 //! Null interfaces: surfaces that light passes as if nothing were there.
 //!
-//! They are hidden in another body, or clear and with the same index of refraction on both sides. A
-//! ray that hits one goes straight on in the same wave.
+//! They are hidden in another dielectric, or clear and with the same index of refraction on both
+//! sides. A ray that hits one goes straight on in the same wave.
 
 use glam::Vec3;
 
@@ -15,14 +15,14 @@ use crate::intersect::Coherence;
 use crate::scene::{Material, Scene, ShadingParams};
 use crate::surface::Surface;
 
-/// True if a scene may have null interfaces that are not hidden: between equal indices of refraction.
+/// True if a scene may have clear surfaces with the same index of refraction on both sides.
 pub(super) fn may_match_indices(scene: &Scene) -> bool {
     let indices = || {
-        let bodies = scene.materials_in_use().filter(|material| material.is_dielectric());
-        std::iter::once(1.0).chain(bodies.map(|material| material.ior))
+        let dielectrics = scene.materials_in_use().filter(|material| material.is_dielectric());
+        std::iter::once(1.0).chain(dielectrics.map(|material| material.ior))
     };
     scene.materials_in_use().any(|material| {
-        // Its own index is among them once, and counts where another one is the same.
+        // The material's own index is among them once, and counts where another one is the same.
         let matches = indices().filter(|&ior| material.is_clear_in(ior)).count();
         matches > usize::from(material.is_dielectric())
     })
@@ -41,7 +41,7 @@ pub(super) fn is_null_interface(
     media.is_hidden || (is_clear && ior(&media.incident) == ior_behind)
 }
 
-/// Gives each camera ray of a wave its path, and clears its sample.
+/// Gives each camera ray of a wave a path, and sets its sample to black.
 pub(super) fn begin_paths(
     integrator: &Integrator<'_>,
     wave: &mut Wave,
@@ -52,21 +52,22 @@ pub(super) fn begin_paths(
     samples.resize(wave.rays.blocks().len(), DARK);
 }
 
-/// Takes the rays of a wave through null interfaces, and multiplies their throughput with what is
-/// left of the light on their way. They stay in the wave, so that nothing tells that something was
-/// there.
-pub(super) fn pass(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut Counts) {
-    // Camera rays without paths start in empty space, where they hit none.
+/// Takes the rays of a wave through null interfaces, and multiplies their throughput by the
+/// transmittance of the media on their way.
+///
+/// The rays stay in the wave, with the hits beyond: later stages cannot tell that there was anything.
+pub(super) fn cross(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut Counts) {
+    // Camera rays without paths start in empty space, and hit no null interfaces.
     if wave.paths.is_empty() {
         return;
     }
     let (scene, dielectrics) = (integrator.scene, &integrator.media.dielectrics);
     let Wave { rays, hits, paths } = wave;
     let (mut continued, mut continued_hits) = (RayBatch::default(), HitBatch::default());
-    let mut passed = Vec::new();
+    let mut crossed = Vec::new();
     let mut active: Vec<usize> = (0..rays.len()).collect();
     while !active.is_empty() {
-        passed.clear();
+        crossed.clear();
         continued.clear();
         for &i in &active {
             // The medium before the surface absorbs.
@@ -86,16 +87,16 @@ pub(super) fn pass(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut Co
                 let continuation = ray.continue_past(hit, surface.side.opposite());
                 rays.set(i, &continuation);
                 path.interior = media.transmitted;
-                passed.push(i);
+                crossed.push(i);
                 continued.push(&continuation);
             }
         }
-        // These rays find their next hits, and may pass again.
+        // These rays find their next hits, which may be null interfaces again.
         integrator.closest_hits(&continued, Coherence::Incoherent, &mut continued_hits, counts);
         counts.rays.refraction += continued.len() as u64;
-        for (&i, hit) in passed.iter().zip(continued_hits.iter()) {
+        for (&i, hit) in crossed.iter().zip(continued_hits.iter()) {
             hits.set(i, hit);
         }
-        std::mem::swap(&mut active, &mut passed);
+        std::mem::swap(&mut active, &mut crossed);
     }
 }

@@ -23,14 +23,14 @@ struct LightPath {
     throughput: DVec3,
     position: DVec3,
     direction: DVec3,
-    /// The bodies at its end.
+    /// The dielectrics that contain its end.
     interior: InteriorList,
     /// A point farther on, with nothing in between.
     end: DVec3,
 }
 
 /// Traces light from `origin` along `direction` over as many surfaces as there are choices: to be
-/// refracted, or to be reflected. Where there is only one way, it takes that.
+/// refracted, or to be reflected. Where only one is possible, that one is taken.
 fn trace_path(
     integrator: &Integrator<'_>,
     origin: DVec3,
@@ -64,7 +64,7 @@ fn trace_path(
             ray = ray.continue_past(&hit, surface.side.opposite());
             path.interior = media.transmitted;
         };
-        // Of two rays at most, the one that goes the chosen way.
+        // The chosen one of at most two secondary rays.
         let params = shading_params_at(integrator, &ray, &hit, &surface, &path.cone);
         let specular = SpecularHit { ray: 0, surface, params };
         let [reflected, refracted] = spawn_at_hit(integrator, &ray, &hit, &specular, &path);
@@ -166,7 +166,7 @@ proptest! {
         // are 8e-13.
         let there_by = condition(&integrator, &there, origin, to);
         prop_assume!(there_by.is_some_and(|c| c < 100.0));
-        // Back from a point beyond the last surface, within the same bodies.
+        // Back from a point beyond the last surface, within the same dielectrics.
         let end = there.end;
         prop_assume!(interior_at(end) == there.interior);
         let beyond = dielectrics.transmittance(&Ray::segment(there.position, end), 1.0, &there.interior);

@@ -100,8 +100,8 @@ fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
 
 /// Returns samples that begin with `min` regular ones and end as `max` regular ones.
 ///
-/// Where the regular ones of `max` begin with those of `min`, it is exactly these. Otherwise, of
-/// `max` regular ones, those nearest to the `min` are replaced by them, and the next to be taken are
+/// If the `max` regular samples begin with the `min` ones, the pattern is the `max` samples. Otherwise
+/// the `min` samples replace those of the `max` that are nearest to them, and the next to be taken are
 /// four around each, far from it.
 fn progressive(min: u32, max: u32) -> SamplePattern {
     let (first, full) = (regular(min).offsets, regular(max));

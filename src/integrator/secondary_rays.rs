@@ -122,7 +122,7 @@ fn scatter(
         let interface = if params.transmit == Vec3::ZERO {
             DielectricInterface::new(cosine, 1.0, 1.0)
         } else if material.thin {
-            DielectricInterface::sheet(cosine, ior(&media.incident), material.ior)
+            DielectricInterface::thin_sheet(cosine, ior(&media.incident), material.ior)
         } else {
             DielectricInterface::new(cosine, ior(&media.incident), ior(&media.transmitted))
         };

@@ -204,7 +204,7 @@ fn evaluate_block<const TEXTURES: bool>(
         let cached = cache.get(lit.surface.material[i]);
         let (mut params, mut reflectance) = (cached.params, cached.reflectance);
         let (mut is_finite, mut spawns_rays) = (cached.is_finite, cached.spawns_rays);
-        // Where textures, a checker or vertex colours count, the parameters are looked up.
+        // Textures, a checker and vertex colours are evaluated at the point, where they count.
         if TEXTURES && cache.varies_on(cached, &hit) {
             let material = &scene.materials[lit.surface.material[i].0 as usize];
             let surface = lit.surface.surface(i, hit.id);
@@ -214,7 +214,7 @@ fn evaluate_block<const TEXTURES: bool>(
             reflectance = scattered_reflectance(&params);
             is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
             spawns_rays &= params.spawns_rays() || !material.spawns_rays();
-            lit.ambient[i] = surface::occlusion(scene, material, &context);
+            lit.ambient[i] = surface::ambient_occlusion(scene, material, &context);
             if cached.has_normal_map {
                 let normal = surface::mapped_normal(scene, &surface, &hit, &context.point);
                 lit.has_mapped_normals |= normal != surface.normal;

@@ -123,14 +123,14 @@ impl Integrator<'_> {
         if self.is_adaptive() {
             records.record_hits(self.arch, self.scene, wave);
         }
-        // Camera rays may start in a transparent body.
+        // Camera rays may start in a dielectric.
         if self.media.may_alter_camera_rays {
             null_interfaces::begin_paths(self, wave, samples);
         }
         loop {
             // Rays may go straight on through null interfaces, and be absorbed on their way.
             if self.media.may_alter_rays {
-                null_interfaces::pass(self, wave, counts);
+                null_interfaces::cross(self, wave, counts);
             }
             // Surfaces, with what they emit.
             surface_evaluation::evaluate(self, wave, surfaces, radiance, &mut counts.work);

@@ -1,4 +1,4 @@
-//! The bounding boxes of transmissive objects: shadow rays outside them need not look for glass.
+//! The bounding boxes of transmissive objects: shadow rays that miss them hit no glass.
 
 use crate::geometry::{Bounds, LANES, Lanes, Ray16, RayBatch};
 use crate::integrator::simd;
@@ -7,11 +7,11 @@ use crate::scene::{MaterialId, Scene};
 /// The greatest number of boxes; more are united into one.
 const MAX_BOXES: usize = 64;
 
-/// The boxes of the objects that let light through.
+/// The bounding boxes of the transmissive objects of a scene.
 #[derive(Debug)]
 pub(super) struct TransmissiveBounds {
     boxes: Vec<Bounds>,
-    /// True if a plane lets light through: planes have no box.
+    /// True if a plane is transmissive: planes have no box.
     is_unbounded: bool,
 }
 
@@ -33,28 +33,28 @@ impl TransmissiveBounds {
         Self { boxes, is_unbounded: scene.planes.iter().any(|plane| transmits(plane.material)) }
     }
 
-    /// Finds the rays that certainly end before they enter any box. There is an answer, any, also for
-    /// the lanes beyond the end of the batch.
-    pub fn find_clear(&self, arch: pulp::Arch, rays: &RayBatch, is_clear: &mut Vec<bool>) {
-        is_clear.clear();
+    /// Sets `misses` to true for each ray that certainly ends before it enters any box. The lanes beyond
+    /// the end of the batch get a value too, of no meaning.
+    pub fn find_misses(&self, arch: pulp::Arch, rays: &RayBatch, misses: &mut Vec<bool>) {
+        misses.clear();
         simd::dispatch(
             arch,
             #[inline(always)]
             || {
                 for block in rays.blocks() {
-                    is_clear.extend_from_slice(&self.clear_lanes(block));
+                    misses.extend_from_slice(&self.missing_lanes(block));
                 }
             },
         );
     }
 
-    /// Returns which of sixteen rays enter no box.
+    /// Returns true for each of sixteen rays that enters no box.
     ///
     /// Each quotient is right to a few ulp, and so, along the ray, is the point where it enters or
     /// leaves: the boxes are widened by a thousand times that.
     #[inline(always)]
-    fn clear_lanes(&self, rays: &Ray16) -> Lanes<bool> {
-        let mut is_clear = [!self.is_unbounded; LANES];
+    fn missing_lanes(&self, rays: &Ray16) -> Lanes<bool> {
+        let mut misses = [!self.is_unbounded; LANES];
         for bounds in &self.boxes {
             let extent = bounds.max_abs();
             for i in 0..LANES {
@@ -65,10 +65,10 @@ impl TransmissiveBounds {
                 // `min` and `max` pass over the NaN of 0/0.
                 let enters = a.min(b).max_element().max(0.0);
                 let leaves = a.max(b).min_element().min(rays.tmax[i]);
-                is_clear[i] &= enters > leaves;
+                misses[i] &= enters > leaves;
             }
         }
-        is_clear
+        misses
     }
 }
 
@@ -80,11 +80,11 @@ mod tests {
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
 
-    fn is_clear(bounds: &TransmissiveBounds, ray: &Ray) -> bool {
-        let (mut rays, mut is_clear) = (RayBatch::default(), Vec::new());
+    fn misses_glass(bounds: &TransmissiveBounds, ray: &Ray) -> bool {
+        let (mut rays, mut misses) = (RayBatch::default(), Vec::new());
         rays.push(ray);
-        bounds.find_clear(pulp::Arch::new(), &rays, &mut is_clear);
-        is_clear[0]
+        bounds.find_misses(pulp::Arch::new(), &rays, &mut misses);
+        misses[0]
     }
 
     fn glass(scene: &mut Scene) -> MaterialId {
@@ -93,7 +93,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn no_ray_that_hits_glass_is_clear(
+        fn no_ray_that_hits_glass_is_a_miss(
             centers in prop::collection::vec(prop::array::uniform3(-9.0..9.0f64), 1..90),
             origin in prop::array::uniform3(-20.0..20.0f64),
             inside in prop::array::uniform3(-0.5..0.5f64),
@@ -106,28 +106,28 @@ mod tests {
             let target = scene.spheres[0].center + DVec3::from(inside);
             let ray = Ray::segment(DVec3::from(origin), target);
             let ray = Ray { direction: ray.direction * ends, ..ray };
-            prop_assert!(!is_clear(&TransmissiveBounds::new(&scene), &ray));
+            prop_assert!(!misses_glass(&TransmissiveBounds::new(&scene), &ray));
         }
     }
 
     #[test]
-    fn a_ray_beside_glass_or_that_ends_before_it_is_clear() {
+    fn a_ray_beside_glass_or_that_ends_before_it_is_a_miss() {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, glass));
         let bounds = TransmissiveBounds::new(&scene);
-        let clear = |from: DVec3, to: DVec3| is_clear(&bounds, &Ray::segment(from, to));
-        assert!(clear(DVec3::new(2.0, -5.0, 0.0), DVec3::new(2.0, 5.0, 0.0)));
-        assert!(clear(DVec3::Y * 5.0, DVec3::Y * 1.5));
-        assert!(!clear(DVec3::Y * 5.0, DVec3::Y * 0.5));
+        let misses = |from: DVec3, to: DVec3| misses_glass(&bounds, &Ray::segment(from, to));
+        assert!(misses(DVec3::new(2.0, -5.0, 0.0), DVec3::new(2.0, 5.0, 0.0)));
+        assert!(misses(DVec3::Y * 5.0, DVec3::Y * 1.5));
+        assert!(!misses(DVec3::Y * 5.0, DVec3::Y * 0.5));
     }
 
     #[test]
-    fn no_ray_is_clear_of_a_plane_of_glass() {
+    fn no_ray_misses_a_plane_of_glass() {
         let mut scene = Scene::default();
         let glass = glass(&mut scene);
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, glass));
         let ray = Ray::segment(DVec3::Y, DVec3::Y * 2.0);
-        assert!(!is_clear(&TransmissiveBounds::new(&scene), &ray));
+        assert!(!misses_glass(&TransmissiveBounds::new(&scene), &ray));
     }
 }

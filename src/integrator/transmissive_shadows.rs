@@ -1,8 +1,8 @@
-//! Shadow rays through glass: light on its way to a surface.
+//! Shadow rays through glass, which dims and tints light on its way to a surface.
 //!
-//! It goes straight on, since a path that bends would have to be searched for: each surface takes
-//! off what Fresnel's law reflects, at the angle in the thinner of the two media, and tints the
-//! rest by its share of transmission; each body absorbs along the way.
+//! The light goes straight on, since a refracted path would have to be searched for: each surface
+//! takes off what Fresnel's law reflects, at the angle in the optically thinner of the two media, and
+//! tints the rest by its share of transmission; each dielectric absorbs along the way.
 
 use glam::DVec3;
 
@@ -20,14 +20,14 @@ use crate::surface::{RayCone, Surface};
 /// Memory for tracing shadow rays through glass.
 #[derive(Default)]
 pub(super) struct TransmissiveShadows {
-    /// True for each shadow ray that certainly meets no glass.
-    is_clear: Vec<bool>,
-    /// The paths of the rays that may.
+    /// True for each shadow ray that certainly hits no glass.
+    misses_glass: Vec<bool>,
+    /// The paths of the shadow rays that may hit glass.
     paths: Vec<ShadowPath>,
     /// The rays of these paths that are traced, and their hits.
     rays: RayBatch,
     hits: HitBatch,
-    /// The rays that go on from there.
+    /// The continuation rays beyond these hits, which are traced next.
     continued: RayBatch,
 }
 
@@ -35,14 +35,16 @@ pub(super) struct TransmissiveShadows {
 struct ShadowPath {
     /// The number of the shadow ray.
     ray: usize,
-    /// The transparent bodies that it is in.
+    /// The dielectrics that it is in.
     interior: InteriorList,
     /// The share of the light that is left.
     transmittance: DVec3,
 }
 
-/// Works out the transmittance along the shadow rays of a queue that nothing occludes. Those that may
-/// meet glass become occluded, and, if any light is left, attenuated rays.
+/// Works out the transmittance along the shadow rays of a queue that nothing opaque occludes.
+///
+/// A ray that may hit glass is marked as occluded, and, if any light is left, listed among the
+/// attenuated rays instead.
 pub(super) fn attenuate(
     integrator: &Integrator<'_>,
     shadow: Shadow,
@@ -52,13 +54,13 @@ pub(super) fn attenuate(
     counts: &mut Counts,
 ) {
     let ShadowQueue { rays: shadow_rays, pending, occluded, attenuated } = queue;
-    let TransmissiveShadows { is_clear, paths, rays, hits, continued } = memory;
-    // Rays outside the boxes of all glass stay as they are.
-    integrator.media.bounds.find_clear(integrator.arch, shadow_rays, is_clear);
+    let TransmissiveShadows { misses_glass, paths, rays, hits, continued } = memory;
+    // Rays that miss the boxes of all glass stay as they are.
+    integrator.media.bounds.find_misses(integrator.arch, shadow_rays, misses_glass);
     paths.clear();
     continued.clear();
     for (i, occluded) in occluded.iter_mut().enumerate() {
-        if *occluded || is_clear[i] {
+        if *occluded || misses_glass[i] {
             continue;
         }
         let ray = shadow_rays.ray(i);
@@ -85,7 +87,7 @@ pub(super) fn attenuate(
             let dielectrics = &integrator.media.dielectrics;
             path.transmittance *= dielectrics.transmittance(&ray, end, &path.interior);
             let Some(hit) = hit else {
-                // It arrives at the light, which an opaque shadow shows only undimmed.
+                // The ray arrives at the light. With opaque shadows, dimmed light counts as none.
                 let &mut ShadowPath { ray, transmittance, .. } = path;
                 if shadow != Shadow::Opaque || transmittance == DVec3::ONE {
                     attenuated.push(AttenuatedRay { ray, transmittance });
@@ -128,8 +130,8 @@ fn cross_surface(integrator: &Integrator<'_>, ray: &Ray, hit: &Hit, path: &mut S
     let media = dielectrics.interface(surface.id, surface.side, &path.interior);
     let opposite = surface.side.opposite();
     if !scene.casts_shadow(hit.id) {
-        // It is not there for the light; only a ray that was in it must get out.
-        if dielectrics.outer_side(hit.id, surface.side) == Side::Back {
+        // The object is not there for the light; only a ray that was in it must get out.
+        if dielectrics.oriented_side(hit.id, surface.side) == Side::Back {
             path.interior = media.transmitted;
         }
         return opposite;
@@ -138,7 +140,7 @@ fn cross_surface(integrator: &Integrator<'_>, ray: &Ray, hit: &Hit, path: &mut S
         let cosine = surface.normal.dot(ray.direction).abs() / ray.direction.length();
         let interface = if material.thin {
             let ior = dielectrics.medium(&path.interior).ior;
-            DielectricInterface::sheet(cosine, ior.min(material.ior), ior.max(material.ior))
+            DielectricInterface::thin_sheet(cosine, ior.min(material.ior), ior.max(material.ior))
         } else {
             let sides = [&media.incident, &media.transmitted];
             let [a, b] = sides.map(|interior| dielectrics.medium(interior).ior);

@@ -30,7 +30,7 @@ pub(super) struct PathState {
     pub depth: u32,
     /// The share that the light of the ray has in the sample.
     pub throughput: DVec3,
-    /// The transparent bodies that the ray is in.
+    /// The dielectrics that the ray is in.
     pub interior: InteriorList,
     /// The cone of the ray, for the level of detail of textures.
     pub cone: RayCone,

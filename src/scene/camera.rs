@@ -79,9 +79,9 @@ impl Camera {
         Ok(Self { name: String::new(), position, forward, right, up, projection })
     }
 
-    /// The camera transformed, so that it sees the transformed scene as it saw the scene before; it does
-    /// not follow reflections and shears. `None` when the transform is too uneven to leave it an upward
-    /// direction.
+    /// The camera transformed, so that it sees the transformed scene as it saw the scene before; its
+    /// axes stay right-handed and orthogonal also under reflections and shears. `None` when the
+    /// transform is too uneven to leave it an upward direction.
     pub fn transformed(&self, transform: &DAffine3) -> Option<Self> {
         let forward = transform.transform_vector3(self.forward).try_normalize()?;
         let up = transform.transform_vector3(self.up);

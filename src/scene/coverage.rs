@@ -79,7 +79,7 @@ mod tests {
     use crate::scene::{Channel, Filter, Image, Instance, Material, Mesh};
     use glam::DAffine3;
 
-    /// A triangle whose picture is solid on its left half only.
+    /// A triangle whose texture is opaque on its left half only.
     fn half() -> Scene {
         let mut scene = Scene::default();
         let image = Image::from_bytes("", [2, 1], vec![[255; 4], [255, 255, 255, 100]]);

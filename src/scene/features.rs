@@ -36,7 +36,7 @@ pub enum Feature {
     Shadows,
     /// Reflected rays.
     Reflection,
-    /// Refracted rays, and the transparent bodies that they are in.
+    /// Refracted rays, and the dielectrics that they are in.
     Refraction,
 }
 
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn each_feature_has_its_own_place_and_name() {
+    fn each_feature_has_its_own_index_and_name() {
         let mut names = std::collections::BTreeSet::new();
         for (i, work) in Feature::ALL.into_iter().enumerate() {
             assert_eq!(work as usize, i);

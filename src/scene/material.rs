@@ -44,8 +44,8 @@ pub struct Material {
     pub absorption: Vec3,
     /// True for a thin sheet without an inside: light goes straight through.
     pub thin: bool,
-    /// The priority where transparent bodies overlap: the body with the greater priority fills the
-    /// point; of two equal ones, the smaller body.
+    /// The priority where dielectrics overlap: the one with the greater priority fills the point; of two
+    /// equal ones, the smaller.
     pub priority: i32,
     /// True if a sphere is lit on its inside too. Planes and meshes always are, on the side that the
     /// viewer sees.
@@ -81,7 +81,7 @@ pub struct NormalMap {
     pub scale: f32,
 }
 
-/// A texture of ambient occlusion: the share 1 + strength · (channel − 1) of ambient light arrives. Other
+/// A texture of ambient occlusion: ambient light is multiplied by 1 + strength · (channel − 1). Other
 /// light is not affected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OcclusionMap {
@@ -225,7 +225,7 @@ impl Material {
         self.may_reflect() || self.may_transmit()
     }
 
-    /// True if its object is a transparent body with an inside.
+    /// True if its object is a dielectric: transmissive, with an inside.
     pub fn is_dielectric(&self) -> bool {
         self.may_transmit() && !self.thin
     }
@@ -271,7 +271,7 @@ mod tests {
     use super::*;
     use crate::scene::MetallicRoughness;
 
-    /// A material with a different texture in each place.
+    /// A material with a different texture for each map.
     fn full() -> Material {
         let mut next = 0;
         let mut id = || {

@@ -31,15 +31,15 @@ pub struct MetallicRoughness {
 }
 
 impl MetallicRoughness {
-    /// The Lambert and Phong parameters that look most like it.
+    /// The Lambert and Phong parameters that approximate it.
     pub fn shading_params(&self) -> ShadingParams {
         // A dielectric's reflectance, the mirror-like part of a metal's, and what is transmitted.
         let head_on = (self.specular_color * reflectance_at_normal_incidence(self.ior))
             .min(Vec3::ONE)
             * self.specular;
-        let tint = self.base.min(Vec3::ONE);
-        let mut reflect = tint * (self.metallic * mirror_share(self.roughness));
-        let mut transmit = tint * ((1.0 - self.metallic) * self.transmission);
+        let base = self.base.min(Vec3::ONE);
+        let mut reflect = base * (self.metallic * mirror_share(self.roughness));
+        let mut transmit = base * ((1.0 - self.metallic) * self.transmission);
         if self.ior == 0.0 {
             reflect += transmit;
             transmit = Vec3::ZERO;

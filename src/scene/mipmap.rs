@@ -13,17 +13,17 @@ pub(crate) struct Mipmap(Vec<MipLevel>);
 /// One level of a mipmap.
 #[derive(Clone, Debug)]
 pub(super) struct MipLevel {
-    /// The width and height in pixels.
+    /// The width and height in texels.
     pub size: [u32; 2],
-    /// The pixels.
+    /// The texels.
     pub texels: Texels,
 }
 
 impl Mipmap {
     /// Builds the levels of an image.
     ///
-    /// A pixel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
-    /// what cannot be seen adds no colour.
+    /// A texel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
+    /// transparent texels add no colour.
     pub(super) fn new(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Self {
         let mut levels = Vec::new();
         let base = |i: usize| texels.linear(i, transfer);
@@ -39,7 +39,7 @@ impl Mipmap {
         Self(levels)
     }
 
-    /// The levels from the largest on; the first has half the image's size.
+    /// The levels, largest first; the first has half the size of the image, which is not among them.
     pub(super) fn levels(&self) -> &[MipLevel] {
         &self.0
     }
@@ -48,10 +48,10 @@ impl Mipmap {
 /// Returns an image at half its size, rounded down but at least 1.
 fn downsampled(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<Vec4>, [u32; 2]) {
     let half = size.map(|n| (n / 2).max(1));
-    let columns: Vec<_> = (0..half[0]).map(|x| Span::new(x, half[0], size[0])).collect();
+    let columns: Vec<_> = (0..half[0]).map(|x| BoxFilter::new(x, half[0], size[0])).collect();
     let row = |y: u32| {
-        let rows = Span::new(y, half[1], size[1]);
-        let mean = move |columns: &Span| {
+        let rows = BoxFilter::new(y, half[1], size[1]);
+        let mean = move |columns: &BoxFilter| {
             let (mut premultiplied, mut plain) = (Vec4::ZERO, Vec4::ZERO);
             for (y, wy) in rows.weights() {
                 for (x, wx) in columns.weights() {
@@ -67,15 +67,15 @@ fn downsampled(texel: &(dyn Fn(usize) -> Vec4 + Sync), size: [u32; 2]) -> (Vec<V
     ((0..half[1]).into_par_iter().flat_map_iter(row).collect(), half)
 }
 
-/// The box filter of one pixel of a shorter row: the 1 to 4 pixels of the longer row that it covers.
+/// The box filter of one texel of the shorter row: the 1 to 4 texels of the longer row that it covers.
 #[derive(Clone, Copy)]
-struct Span {
+struct BoxFilter {
     first: usize,
     weights: [f32; 4],
 }
 
-impl Span {
-    /// The filter of pixel `index` of `to` over a row of `from` pixels.
+impl BoxFilter {
+    /// The filter of texel `index` of a row of `to` texels over a row of `from` texels.
     fn new(index: u32, to: u32, from: u32) -> Self {
         let ratio = f64::from(from) / f64::from(to);
         let (start, end) = (f64::from(index) * ratio, f64::from(index + 1) * ratio);
@@ -83,13 +83,13 @@ impl Span {
         let weights = std::array::from_fn(|i| {
             let left = first + i as f64;
             let covered = (end.min(left + 1.0) - start.max(left)).max(0.0);
-            // Rounding may reach beyond the last pixel.
+            // Rounding may go beyond the last texel.
             if left >= f64::from(from) { 0.0 } else { (covered / ratio) as f32 }
         });
         Self { first: first as usize, weights }
     }
 
-    /// The indices and weights of the covered pixels.
+    /// The indices and weights of the covered texels.
     fn weights(self) -> impl Iterator<Item = (usize, f32)> + Clone {
         (self.first..).zip(self.weights).filter(|(_, weight)| *weight > 1e-6)
     }
@@ -105,11 +105,11 @@ mod tests {
 
     #[test]
     fn each_level_has_half_the_size_down_to_one_pixel() {
-        let pyramid = Mipmap::new(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
-        let sizes: Vec<_> = pyramid.levels().iter().map(|level| level.size).collect();
+        let mipmap = Mipmap::new(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
+        let sizes: Vec<_> = mipmap.levels().iter().map(|level| level.size).collect();
         assert_eq!(sizes, [[3, 2], [1, 1]]);
         assert!(
-            pyramid
+            mipmap
                 .levels()
                 .iter()
                 .all(|level| level.texels.linear(0, Transfer::None).x == 7.0 / 255.0)
@@ -118,25 +118,25 @@ mod tests {
 
     #[test]
     fn the_mean_is_that_of_linear_colours() {
-        let pyramid = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
+        let mipmap = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
         // Half the light is 188 of 255 in sRGB.
-        assert_eq!(pyramid.levels()[0].texels, grey(&[188]));
+        assert_eq!(mipmap.levels()[0].texels, grey(&[188]));
         let plain = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::None);
         assert_eq!(plain.levels()[0].texels, grey(&[128]));
     }
 
     #[test]
-    fn a_pixel_between_two_gives_half_to_each() {
-        let pyramid = Mipmap::new(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
+    fn a_texel_between_two_gives_half_to_each() {
+        let mipmap = Mipmap::new(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
         // (0 + 0 + 30/2) / 2.5 and (30/2 + 90 + 90) / 2.5.
-        assert_eq!(pyramid.levels()[0].texels, grey(&[6, 78]));
+        assert_eq!(mipmap.levels()[0].texels, grey(&[6, 78]));
     }
 
     #[test]
-    fn what_cannot_be_seen_adds_no_colour() {
+    fn transparent_texels_add_no_colour() {
         let texels = Texels::Bytes(vec![[200, 0, 0, 255], [0, 200, 0, 0]]);
-        let pyramid = Mipmap::new(&texels, [2, 1], Transfer::None);
-        assert_eq!(pyramid.levels()[0].texels, Texels::Bytes(vec![[200, 0, 0, 128]]));
+        let mipmap = Mipmap::new(&texels, [2, 1], Transfer::None);
+        assert_eq!(mipmap.levels()[0].texels, Texels::Bytes(vec![[200, 0, 0, 128]]));
     }
 
     #[test]

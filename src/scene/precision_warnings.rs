@@ -20,9 +20,9 @@ use crate::scene::{GRAIN, Instance, Mesh, Scene};
 /// `fast` supports on Embree.
 ///
 /// Its f32 rays may be off by 40 · 2⁻²⁴ = 1 / 420,000 of that side (`intersect/embree/f32_space.rs`
-/// derives it), so that finer detail could not be told apart at all; but already where triangles
-/// are larger some rays meet a neighbour instead. Measured on a ball at the end of its scene, the
-/// share of rays that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at
+/// derives it), so that finer detail could not be told apart at all; but some rays hit a neighbour
+/// already where triangles are larger. Measured on a ball at the end of its scene, the share of rays
+/// that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at
 /// 1e6; `fast` promises 1e-4.
 pub const FAST_RATIO: f64 = 1e4;
 /// The relative spacing of f32 numbers, in which meshes are stored.
@@ -33,7 +33,7 @@ const F32_SPACING: f64 = f32::EPSILON as f64;
 pub struct PrecisionWarning {
     /// The warning, in one sentence.
     pub message: String,
-    /// True if precision `certified` keeps the detail, which only f32 rays lose.
+    /// True if precision `certified` preserves the detail, which only f32 rays lose.
     pub is_of_fast_only: bool,
 }
 

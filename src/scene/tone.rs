@@ -13,7 +13,7 @@ pub enum Tone {
     /// The clamp min(x, 1).
     #[default]
     None,
-    /// The curve x / (1 + x), which never reaches 1. Reinhard et al., "Photographic Tone Reproduction
+    /// The curve x / (1 + x), which is always below 1. Reinhard et al., "Photographic Tone Reproduction
     /// for Digital Images" (SIGGRAPH 2002), equation 3, for each channel.
     Reinhard,
     /// The curve min(x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), 1): Narkowicz, "ACES Filmic Tone

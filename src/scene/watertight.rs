@@ -1,4 +1,4 @@
-//! The test for watertight meshes, which transparent bodies must be, and the volume of a mesh.
+//! The test for watertight meshes, as those of dielectrics must be, and the volume of a mesh.
 //!
 //! ```
 //! use envers::scene::Mesh;
@@ -84,18 +84,18 @@ impl Mesh {
     }
 }
 
-/// Warns of each mesh that has a transparent material with an inside, and is not closed.
+/// Warns of each dielectric mesh that is not closed.
 pub fn open_dielectric_warnings(scene: &Scene) -> Vec<String> {
-    let mut bodies: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
+    let mut dielectrics: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
     for instance in &scene.instances {
         let material = &scene.materials[instance.material.0 as usize];
         if material.is_dielectric() {
-            bodies[instance.mesh.0 as usize].get_or_insert(material);
+            dielectrics[instance.mesh.0 as usize].get_or_insert(material);
         }
     }
     let mut found = Vec::new();
-    for (i, (mesh, body)) in scene.meshes.iter().zip(bodies).enumerate() {
-        let Some(material) = body else { continue };
+    for (i, (mesh, material)) in scene.meshes.iter().zip(dielectrics).enumerate() {
+        let Some(material) = material else { continue };
         let edges = mesh.open_edges();
         if edges > 0 {
             let named = |name: &str, before: &str, after: &str| match name {
@@ -130,7 +130,7 @@ mod tests {
         }
     }
 
-    fn placed(mesh: Mesh, material: Material) -> Scene {
+    fn two_instances(mesh: Mesh, material: Material) -> Scene {
         let mut scene = Scene::default();
         let material = scene.add_material(material);
         let mesh = scene.add_mesh(mesh);
@@ -181,10 +181,10 @@ mod tests {
     }
 
     #[test]
-    fn an_open_body_is_told_once_however_often_it_stands() {
+    fn an_open_dielectric_is_warned_of_once_for_all_its_instances() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
-        let found = open_dielectric_warnings(&placed(mesh, glass()));
+        let found = open_dielectric_warnings(&two_instances(mesh, glass()));
         assert!(found.len() == 1 && found[0].starts_with("mesh 0 (`gem`)"), "{found:?}");
         assert!(found[0].contains("3 edges") && found[0].contains("`glass` thin"), "{found:?}");
     }
@@ -195,8 +195,8 @@ mod tests {
         mesh.triangles.pop();
         let thin = Material { thin: true, ..glass() };
         for material in [Material::default(), thin] {
-            assert_eq!(open_dielectric_warnings(&placed(mesh.clone(), material)), [""; 0]);
+            assert_eq!(open_dielectric_warnings(&two_instances(mesh.clone(), material)), [""; 0]);
         }
-        assert_eq!(open_dielectric_warnings(&placed(tetrahedron(), glass())), [""; 0]);
+        assert_eq!(open_dielectric_warnings(&two_instances(tetrahedron(), glass())), [""; 0]);
     }
 }

@@ -7,9 +7,9 @@ use glam::{DVec3, Vec3};
 pub struct DielectricInterface {
     /// The share of light that is reflected, in \[0, 1\]; the rest is refracted.
     pub reflected: f64,
-    /// The relative index of refraction η = n₁/n₂.
+    /// The relative index of refraction η = n₁/n₂, with n₁ on the side of the incident light.
     ratio: f64,
-    /// The cosines of the incident and the refracted angle to the normal; 0 for the latter where all is
+    /// The cosines of the incident and the refracted angle to the normal; the second is 0 where all is
     /// reflected.
     cosines: [f64; 2],
 }
@@ -46,13 +46,13 @@ impl DielectricInterface {
     /// Light goes to and fro within it, and each of its faces reflects F: in all
     /// F + (1−F)²F(1 + F² + F⁴ + …) = 2F/(1+F) comes back (Stokes, 1862), and what goes through goes
     /// on in its direction.
-    pub fn sheet(cosine: f64, around: f64, sheet: f64) -> Self {
+    pub fn thin_sheet(cosine: f64, around: f64, sheet: f64) -> Self {
         let face = Self::new(cosine, around, sheet).reflected;
         let cosines = [cosine.clamp(0.0, 1.0); 2];
         Self { reflected: 2.0 * face / (1.0 + face), ratio: 1.0, cosines }
     }
 
-    /// True if refracted light keeps its direction.
+    /// True if refracted light goes on in the same direction.
     pub fn is_straight(&self) -> bool {
         self.ratio == 1.0
     }
@@ -141,7 +141,9 @@ mod tests {
     fn a_sheet_reflects_what_its_two_faces_do() {
         // 4% at either face: 0.04 + 0.96²·0.04/(1 − 0.04²).
         let expected = 0.04 + 0.96 * 0.96 * 0.04 / (1.0 - 0.04 * 0.04);
-        assert!((DielectricInterface::sheet(1.0, 1.0, GLASS).reflected - expected).abs() < 1e-15);
+        assert!(
+            (DielectricInterface::thin_sheet(1.0, 1.0, GLASS).reflected - expected).abs() < 1e-15
+        );
     }
 
     #[test]
@@ -168,7 +170,7 @@ mod tests {
         fn shares_lie_between_nothing_and_all(
             cosine in 0.0..=1.0f64, from in 0.01..100.0f64, to in 0.01..100.0f64,
         ) {
-            for interface in [DielectricInterface::new(cosine, from, to), DielectricInterface::sheet(cosine, from, to)] {
+            for interface in [DielectricInterface::new(cosine, from, to), DielectricInterface::thin_sheet(cosine, from, to)] {
                 prop_assert!((0.0..=1.0).contains(&interface.reflected), "{interface:?}");
             }
         }

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 pub use dielectric::{DielectricInterface, transmittance};
 
-/// The greatest exponent that is computed by products.
+/// The greatest exponent for which a power is computed by products.
 const MAX_EXPONENT: f32 = 1024.0;
 
 /// The range of squared lengths in which normalization in f32 keeps its digits.
@@ -44,15 +44,15 @@ pub fn reflect(incoming: DVec3, normal: DVec3) -> DVec3 {
     incoming - normal * (2.0 * incoming.dot(normal))
 }
 
-/// Normalizes vectors that are stored side by side, axis by axis: the result has length 1 to within
-/// 1e-13. Vectors that are zero or not active may become anything.
+/// Normalizes vectors that are stored side by side, axis by axis, to length 1 to within 1e-13. The
+/// result for a vector that is zero or not active is undefined.
 ///
-/// It takes no square roots and divisions of f64, which take as long as the rest of direct lighting,
+/// This takes no square roots and divisions of f64, which cost as much as the rest of direct lighting,
 /// but one step of Newton's method for 1/√x from a first guess y in f32, y (3 − x y²) / 2: a guess
 /// with a relative error e becomes one with 3 e²/2, and three roundings in f32 make e less than
 /// 1.8e-7.
 #[inline(always)]
-pub fn normalize16<const N: usize>(v: &[[f64; N]; 3], is_active: &[bool; N]) -> [[f64; N]; 3] {
+pub fn normalize_lanes<const N: usize>(v: &[[f64; N]; 3], is_active: &[bool; N]) -> [[f64; N]; 3] {
     let is_in_range = |square: f64| (MIN_SQUARE < square) & (square < MAX_SQUARE);
     let (mut square, mut factor, mut out_of_range) = ([0.0; N], [0.0; N], [0u64; N]);
     for i in 0..N {
@@ -83,7 +83,7 @@ pub fn normalize16<const N: usize>(v: &[[f64; N]; 3], is_active: &[bool; N]) -> 
 #[inline]
 pub fn power(x: f64, exponent: f32) -> f64 {
     match integer_exponent(exponent) {
-        Some(exponent) => power16([x], exponent)[0],
+        Some(exponent) => power_lanes([x], exponent)[0],
         None => x.powf(f64::from(exponent)),
     }
 }
@@ -94,9 +94,9 @@ pub fn integer_exponent(exponent: f32) -> Option<u32> {
     ((0.0..=MAX_EXPONENT).contains(&exponent) && exponent.fract() == 0.0).then_some(exponent as u32)
 }
 
-/// Raises several numbers to the same integer power.
+/// Raises the numbers of several lanes to the same integer power.
 #[inline(always)]
-pub fn power16<const N: usize>(mut x: [f64; N], mut exponent: u32) -> [f64; N] {
+pub fn power_lanes<const N: usize>(mut x: [f64; N], mut exponent: u32) -> [f64; N] {
     let mut product = [1.0; N];
     loop {
         if exponent & 1 != 0 {
@@ -120,7 +120,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn normalize(v: DVec3) -> DVec3 {
-        normalize16(&v.to_array().map(|x| [x]), &[true]).map(|[x]| x).into()
+        normalize_lanes(&v.to_array().map(|x| [x]), &[true]).map(|[x]| x).into()
     }
 
     proptest! {
@@ -143,7 +143,7 @@ mod tests {
         ) {
             let v: Vec<_> = v.iter().zip(scale).map(|(v, s)| DVec3::from(*v) * 2f64.powi(s)).collect();
             let side_by_side = std::array::from_fn(|axis| std::array::from_fn(|i| v[i][axis]));
-            let all = normalize16::<16>(&side_by_side, &[true; 16]);
+            let all = normalize_lanes::<16>(&side_by_side, &[true; 16]);
             for (i, &v) in v.iter().enumerate() {
                 prop_assert_eq!(DVec3::new(all[0][i], all[1][i], all[2][i]), normalize(v));
             }
@@ -158,7 +158,7 @@ mod tests {
         }
 
         #[test]
-        fn other_powers_are_the_librarys(x in 0.0..=1.0f64, exponent in 0.0f32..2000.0) {
+        fn other_powers_are_those_of_the_library(x in 0.0..=1.0f64, exponent in 0.0f32..2000.0) {
             prop_assume!(integer_exponent(exponent).is_none());
             prop_assert_eq!(power(x, exponent), x.powf(f64::from(exponent)));
         }

@@ -32,13 +32,13 @@ impl RayCone {
     }
 }
 
-/// The ellipse in which a cone meets a surface: the vectors along its greatest and its least extent,
+/// The ellipse in which a ray cone cuts a surface: the vectors along its greatest and its least extent,
 /// from end to end, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint([DVec3; 2]);
 
 impl Footprint {
-    /// Computes the ellipse in which a cone of a `width` around `direction`, of length 1, meets a
+    /// Computes the ellipse in which a cone of a `width` around `direction`, of length 1, cuts a
     /// surface of this normal (T. Akenine-Möller et al., *Improved Shader and Texture Level of Detail Using Ray Cones*, JCGT
     /// 2021, listing 1): the greater extent runs as the ray does, and is longer by the cosine.
     pub fn new(direction: DVec3, normal: DVec3, width: f32) -> Self {

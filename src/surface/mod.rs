@@ -14,7 +14,7 @@ use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle
 use crate::scene::{IncidentLight, MaterialId, Scene};
 pub use footprint::{Footprint, RayCone, curvature};
 pub use normal_map::mapped_normal;
-pub use shading_params::{occlusion, shading_params};
+pub use shading_params::{ambient_occlusion, shading_params};
 pub use surface16::Surface16;
 pub use texture_context::TextureContext;
 
@@ -23,7 +23,7 @@ pub use texture_context::TextureContext;
 pub struct Surface {
     /// The position in world space, as near to the surface as f64 can say.
     pub position: DVec3,
-    /// The geometric normal, of length 1, from whichever side it is seen: outward for a sphere, by the
+    /// The geometric normal, of length 1, not turned to the viewer: outward for a sphere, by the
     /// right-hand rule for a triangle.
     pub geometric_normal: DVec3,
     /// The shading normal, of length 1: interpolated where the mesh has normals, and turned to the

@@ -1,4 +1,4 @@
-//! Normal maps.
+//! Normal mapping: shading normals that a texture perturbs.
 
 use glam::{DVec3, Vec2, Vec3};
 
@@ -7,11 +7,11 @@ use super::{Surface, cofactor};
 use crate::geometry::{Geometry, Hit};
 use crate::scene::{Scene, Texture, TexturePoint};
 
-/// Returns the shading normal of a surface, as the normal map of its material, if it has one, bends
-/// it.
+/// Returns the shading normal of a surface, perturbed by the normal map of its material, if there is
+/// one.
 ///
-/// It stays the surface's own, to the bit, where the map is flat, and where the surface has no tangent
-/// space.
+/// Where the map is flat or the surface has no tangent space, this is the surface's own normal, to the
+/// bit.
 pub fn mapped_normal(scene: &Scene, surface: &Surface, hit: &Hit, point: &TexturePoint) -> DVec3 {
     let Some(map) = &scene.materials[surface.material.0 as usize].normal_map else {
         return surface.normal;
@@ -28,12 +28,12 @@ pub fn mapped_normal(scene: &Scene, surface: &Surface, hit: &Hit, point: &Textur
         return surface.normal;
     };
     let mapped = (tangent * x + bitangent * y + normal * z).normalize_or(surface.normal);
-    // Turned to the viewer as the surface's own is.
+    // Turned to the viewer if the surface's own normal is.
     if normal.dot(surface.normal) < 0.0 { -mapped } else { mapped }
 }
 
-/// Decodes a colour to a vector in tangent space. In 8 bits neither 127 nor 128 is exactly 0; either
-/// stands for it.
+/// Decodes a colour to a vector in tangent space. In 8 bits neither 127 nor 128 is exactly 0; both count
+/// as 0.
 fn decode_normal(color: Vec3, scale: f32) -> Vec3 {
     let v = color * 2.0 - 1.0;
     const FLAT: f32 = 1.01 / 255.0;
@@ -41,8 +41,8 @@ fn decode_normal(color: Vec3, scale: f32) -> Vec3 {
     Vec3::new(flat(v.x), flat(v.y), v.z)
 }
 
-/// The tangent space of a normal map on a surface: unit vectors. The normal is that of the surface as
-/// modelled, from whichever side it is seen.
+/// The tangent space of a normal map on a surface: three vectors of length 1. The normal is that of the
+/// surface as modelled, not turned to the viewer.
 struct TangentSpace {
     tangent: DVec3,
     bitangent: DVec3,
@@ -65,8 +65,8 @@ impl TangentSpace {
         }
     }
 
-    /// Returns the tangent space for texture coordinates that are a linear map of this one's, with
-    /// these columns; v runs down, and the bitangent up.
+    /// Returns the tangent space after the matrix with these columns has transformed the texture
+    /// coordinates; v runs down, and the bitangent up.
     fn transformed(self, x: Vec2, y: Vec2) -> Option<Self> {
         let [a, c, b, d] = [x.x, x.y, y.x, y.y].map(f64::from);
         let determinant = a * d - b * c;

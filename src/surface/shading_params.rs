@@ -17,15 +17,15 @@ pub fn shading_params(
     material: &Material,
     context: &TextureContext,
 ) -> ShadingParams {
-    let maps = Maps { scene, context };
+    let lookup = TextureLookup { scene, context };
     let mut params = match &material.metallic {
-        Some(metallic) => maps.metallic(metallic).shading_params(),
-        None => maps.phong(material),
+        Some(metallic) => lookup.metallic(metallic).shading_params(),
+        None => lookup.phong(material),
     };
     if material.emission != Vec3::ZERO {
-        params.emission = material.emission * maps.color(material.emission_map);
+        params.emission = material.emission * lookup.color(material.emission_map);
         if material.unlit {
-            params.emission *= context.tint;
+            params.emission *= context.vertex_color;
         }
     }
     match &material.coverage {
@@ -36,21 +36,22 @@ pub fn shading_params(
     }
 }
 
-/// Evaluates the share of the ambient light that arrives at a point with this texture context.
-pub fn occlusion(scene: &Scene, material: &Material, context: &TextureContext) -> f32 {
-    let maps = Maps { scene, context };
+/// Evaluates ambient occlusion: the share of ambient light that arrives at a point with this texture
+/// context.
+pub fn ambient_occlusion(scene: &Scene, material: &Material, context: &TextureContext) -> f32 {
+    let lookup = TextureLookup { scene, context };
     material.occlusion_map.map_or(1.0, |occlusion| {
-        1.0 + occlusion.strength * (maps.channel(Some(occlusion.map)) - 1.0)
+        1.0 + occlusion.strength * (lookup.channel(Some(occlusion.map)) - 1.0)
     })
 }
 
-/// The maps of a material at a point.
-struct Maps<'a> {
+/// A lookup of the textures of a scene at one point.
+struct TextureLookup<'a> {
     scene: &'a Scene,
     context: &'a TextureContext,
 }
 
-impl Maps<'_> {
+impl TextureLookup<'_> {
     /// Looks up a colour; white without a map.
     fn color(&self, map: Option<TextureId>) -> Vec3 {
         map.map_or(Vec3::ONE, |id| {
@@ -71,7 +72,7 @@ impl Maps<'_> {
         let factors = material.shading_params();
         let diffuse = self.context.checker.unwrap_or(factors.diffuse);
         ShadingParams {
-            diffuse: diffuse * self.color(material.diffuse_map) * self.context.tint,
+            diffuse: diffuse * self.color(material.diffuse_map) * self.context.vertex_color,
             specular: factors.specular * self.color(material.specular_map),
             shininess: match material.shininess_map {
                 None => factors.shininess,
@@ -93,7 +94,7 @@ impl Maps<'_> {
         let factors = &maps.factors;
         let base = self.context.checker.unwrap_or(factors.base);
         MetallicRoughness {
-            base: base * self.color(maps.base) * self.context.tint,
+            base: base * self.color(maps.base) * self.context.vertex_color,
             metallic: share(factors.metallic, maps.metallic),
             roughness: share(factors.roughness, maps.roughness),
             specular: share(factors.specular, maps.specular),

@@ -102,7 +102,7 @@ fn attributes_are_interpolated_by_the_weights() {
     let surface = Surface::new(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
     let context = context(&scene, &ray, &hit(1.0, 0.25, 0.5, id));
     assert_eq!(context.point.uv[0], [0.25, 0.5]);
-    assert_eq!(context.tint, Vec3::new(0.25, 0.25, 0.5));
+    assert_eq!(context.vertex_color, Vec3::new(0.25, 0.25, 0.5));
     let expected = DVec3::new(0.25, 0.5, 1.0).normalize();
     assert!((surface.normal - expected).length() < 1e-15);
 }
@@ -140,7 +140,7 @@ fn sixteen_surfaces_equal_those_of_one_at_a_time() {
         Some(PrimitiveId::triangle(0, 0, 0)),
         Some(PrimitiveId::sphere(1)),
     ];
-    // Of the sixteens the first three have one kind each, and the last a part only.
+    // The first three batches have hits of one kind each; the last has a mixture.
     for of in [[0; 5], [1; 5], [3; 5], [0, 1, 2, 3, 4]] {
         let (mut rays, mut hits) = (crate::geometry::RayBatch::default(), Default::default());
         let count = 13;

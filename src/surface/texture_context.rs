@@ -12,17 +12,17 @@ pub struct TextureContext {
     /// The texture coordinates, v running down, and their change across the footprint.
     pub point: TexturePoint,
     /// The factor of the material's diffuse colour: a mesh's vertex colour, or white.
-    pub tint: Vec3,
-    /// The factor of the material's alpha: that of a mesh's vertices, or 1.
+    pub vertex_color: Vec3,
+    /// The factor of the material's alpha: a mesh's vertex alpha, or 1.
     pub alpha: f32,
-    /// The diffuse colour of a plane's checker, in place of the material's.
+    /// The colour of a plane's checker, which replaces the material's diffuse colour.
     pub checker: Option<Vec3>,
 }
 
 impl Default for TextureContext {
     /// Returns the context of a surface without texture coordinates, vertex colours and checker.
     fn default() -> Self {
-        Self { point: TexturePoint::default(), tint: Vec3::ONE, alpha: 1.0, checker: None }
+        Self { point: TexturePoint::default(), vertex_color: Vec3::ONE, alpha: 1.0, checker: None }
     }
 }
 
@@ -61,6 +61,7 @@ impl TextureContext {
         context
     }
 
+    /// Sets the values at a position on a plane.
     fn set_plane(&mut self, plane: &Plane, position: DVec3, is_textured: bool) {
         if !is_textured && plane.checker.is_none() {
             return;
@@ -85,13 +86,14 @@ impl TextureContext {
         });
     }
 
+    /// Sets the values at a hit on a mesh.
     fn set_triangle(&mut self, mesh: &Mesh, hit: &Hit, is_textured: bool) {
         let (triangle, weights) = (hit.id.primitive, [1.0 - hit.u - hit.v, hit.u, hit.v]);
         if is_textured {
             self.point.uv = mesh.uv(triangle, weights);
         }
         if !mesh.colors.is_empty() {
-            self.tint = mesh.interpolate(&mesh.colors, triangle, weights).into();
+            self.vertex_color = mesh.interpolate(&mesh.colors, triangle, weights).into();
         }
         self.alpha = mesh.alpha(triangle, weights);
     }

@@ -47,9 +47,9 @@ pub enum Format {
 pub struct Settings {
     /// The exposure in stops: radiance is multiplied by 2 to the power of this.
     pub exposure: f64,
-    /// The tone curve, which then maps it to \[0, 1\].
+    /// The tone curve, which maps the exposed radiance to \[0, 1\].
     pub tone: Tone,
-    /// The transfer function that encodes the result.
+    /// The transfer function, which encodes the toned value.
     pub transfer: Transfer,
     /// True if an EXR stores 16-bit floats rather than 32-bit ones.
     pub half: bool,

@@ -1,7 +1,7 @@
 //! The writer of animations, as GIF or animated PNG, frame by frame.
 //!
-//! Of each frame only the rectangle that differs from the frame before is stored, so that static
-//! parts keep their colours and take no space.
+//! Only the rectangle of a frame that differs from the frame before is stored, so that static parts do
+//! not change their colours and take no space.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -16,10 +16,10 @@ use crate::write::{Format, Settings, png_bytes};
 
 /// The sampling factor of NeuQuant, which chooses a GIF's colours: from 1 (all pixels) to 30.
 const GIF_SAMPLING: i32 = 10;
-/// The shortest frame of a GIF in hundredths of a second: browsers show shorter ones for a tenth.
-const GIF_SHORTEST: u16 = 2;
+/// The least delay of a GIF's frame, in hundredths of a second: browsers turn a shorter one into 10.
+const GIF_MIN_DELAY: u16 = 2;
 /// The longest side of a GIF, in pixels.
-const GIF_SIDE: u32 = u16::MAX as u32;
+const GIF_MAX_SIDE: u32 = u16::MAX as u32;
 
 /// An animation that is being written; the file appears when it is finished.
 pub struct Movie {
@@ -29,11 +29,11 @@ pub struct Movie {
     /// The frame rate in frames per second.
     fps: f64,
     frames: u32,
-    /// The bytes of the frame before; none before the first.
+    /// The bytes of the frame before; `None` for the first.
     previous: Option<Vec<u8>>,
 }
 
-/// The encoder of either format.
+/// The encoder of one of the two formats.
 enum Encoder {
     Gif(Box<gif::Encoder<BufWriter<File>>>),
     /// Unbuffered, since an error of flushing a buffer at the end would be lost; PNG writes large pieces.
@@ -63,10 +63,12 @@ impl Movie {
         let [width, height] = size;
         let encoder = match format {
             Format::Gif => {
-                if width.max(height) > GIF_SIDE {
+                if width.max(height) > GIF_MAX_SIDE {
                     return Err(Error::input(format!("a GIF cannot have {width}x{height} pixels"))
                         .at(path)
-                        .help(format!("at most {GIF_SIDE} on a side; an .apng can have more")));
+                        .help(format!(
+                            "at most {GIF_MAX_SIDE} on a side; an .apng can have more"
+                        )));
                 }
                 let encoder =
                     gif::Encoder::new(BufWriter::new(handle), width as u16, height as u16, &[]);
@@ -144,7 +146,7 @@ fn gif_error(error: gif::EncodingError) -> io::Error {
 fn gif_delay(index: u32, fps: f64) -> u16 {
     let due = |index: f64| (100.0 * index / fps).round();
     let delay = due(f64::from(index) + 1.0) - due(f64::from(index));
-    (delay as u16).max(GIF_SHORTEST)
+    (delay as u16).max(GIF_MIN_DELAY)
 }
 
 /// The delay after each frame as a fraction of a second: the simplest fraction that is exact, or else
@@ -208,8 +210,8 @@ fn write_gif(
     encoder.write_frame(&frame).map_err(gif_error)
 }
 
-/// The smallest rectangle outside of which two pictures of this width are equal; one pixel for equal
-/// pictures, since no frame can be empty.
+/// The smallest rectangle around all pixels in which two pictures of this width differ; one pixel for
+/// equal pictures, since no frame can be empty.
 fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
     let mut columns = width..0;
     let mut rows: Option<std::ops::RangeInclusive<usize>> = None;

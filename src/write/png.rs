@@ -57,19 +57,20 @@ const GRAIN: usize = 1 << 14;
 
 /// A lookup table for [`Settings::byte`].
 struct ByteTable {
-    /// For each byte the least radiance that gives a greater one; see [`byte_thresholds`].
+    /// The thresholds between bytes; see [`byte_thresholds`].
     thresholds: [f32; 256],
-    /// The byte of the least radiance whose first 16 bits are the index.
-    least: Vec<u8>,
+    /// The bytes of the least radiances with the same first 16 bits, by these bits.
+    by_high_bits: Vec<u8>,
 }
 
 impl ByteTable {
     /// Builds the table.
     fn new(settings: &Settings) -> Self {
-        let steps = byte_thresholds(settings);
+        let thresholds = byte_thresholds(settings);
         let infinity = f32::INFINITY.to_bits() >> 16;
-        let least = (0..=infinity).map(|bits| search_byte(&steps, f32::from_bits(bits << 16)));
-        Self { least: least.collect(), thresholds: steps }
+        let by_high_bits =
+            (0..=infinity).map(|bits| search_byte(&thresholds, f32::from_bits(bits << 16)));
+        Self { by_high_bits: by_high_bits.collect(), thresholds }
     }
 
     /// The byte for the radiance of one channel.
@@ -77,7 +78,7 @@ impl ByteTable {
     fn byte(&self, radiance: f32) -> u8 {
         // Negative numbers and NaN give the byte of 0.
         let radiance = if radiance > 0.0 { radiance } else { 0.0 };
-        let mut byte = self.least[(radiance.to_bits() >> 16) as usize];
+        let mut byte = self.by_high_bits[(radiance.to_bits() >> 16) as usize];
         while self.thresholds[usize::from(byte)] <= radiance {
             byte += 1;
         }
@@ -85,8 +86,8 @@ impl ByteTable {
     }
 }
 
-/// For each byte the least radiance that gives a greater one by [`Settings::byte`], which never
-/// decreases; NaN where none does. Looking a byte up is several times faster than computing it.
+/// The least radiances for which [`Settings::byte`], which never decreases, exceeds 0, 1, …, 255; NaN
+/// where it never does. Looking a byte up is several times faster than computing it.
 fn byte_thresholds(settings: &Settings) -> [f32; 256] {
     std::array::from_fn(|byte| {
         // Positive floats are in the order of their bits.
@@ -114,7 +115,7 @@ fn search_byte(thresholds: &[f32; 256], radiance: f32) -> u8 {
 }
 
 /// The colour of an id, by a multiplicative hash, and bright enough to see. All triangles of an
-/// instance have the same.
+/// instance have the same colour.
 fn id_color([geometry, primitive, instance]: [u32; 3]) -> [u8; 3] {
     let key = if geometry < 3 { primitive } else { instance };
     let hash = (geometry.wrapping_mul(0x85eb_ca6b) ^ key.wrapping_add(1))

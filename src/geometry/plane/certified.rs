@@ -131,33 +131,33 @@ mod tests {
         if numerator.sign() == Equal || numerator.sign() != divisor.sign() {
             return None;
         }
-        let beside = |x: &Dyadic| -> Ordering {
+        let compare_quotient = |x: &Dyadic| -> Ordering {
             let order = numerator.cmp(&(divisor.clone() * x.clone()));
             if divisor.sign() == Less { order.reverse() } else { order }
         };
-        let below = tmax == f64::INFINITY || beside(&Dyadic::new(tmax)) == Less;
-        (below && tmax > 0.0).then(|| dyadic::round(beside))
+        let below = tmax == f64::INFINITY || compare_quotient(&Dyadic::new(tmax)) == Less;
+        (below && tmax > 0.0).then(|| dyadic::round(compare_quotient))
     }
 
     #[test]
     fn both_ends_of_the_ray_are_left_out() {
-        let meet = |origin, tmax| crossing(DVec3::ZERO, DVec3::Y, origin, -DVec3::Y, tmax);
-        assert_eq!(meet(DVec3::Y, f64::INFINITY), Some(1.0));
-        assert_eq!(meet(DVec3::Y, 1.0), None);
-        assert_eq!(meet(DVec3::ZERO, f64::INFINITY), None);
+        let t = |origin, tmax| crossing(DVec3::ZERO, DVec3::Y, origin, -DVec3::Y, tmax);
+        assert_eq!(t(DVec3::Y, f64::INFINITY), Some(1.0));
+        assert_eq!(t(DVec3::Y, 1.0), None);
+        assert_eq!(t(DVec3::ZERO, f64::INFINITY), None);
     }
 
     #[test]
     fn parallel_ray_misses() {
-        let meet = |origin| crossing(DVec3::ZERO, DVec3::Y, origin, DVec3::X, f64::INFINITY);
-        assert_eq!((meet(DVec3::Y), meet(DVec3::ZERO)), (None, None));
+        let t = |origin| crossing(DVec3::ZERO, DVec3::Y, origin, DVec3::X, f64::INFINITY);
+        assert_eq!((t(DVec3::Y), t(DVec3::ZERO)), (None, None));
     }
 
     #[test]
-    fn ray_that_is_not_finite_meets_nothing() {
-        let meet = |direction| crossing(DVec3::ZERO, DVec3::Y, DVec3::Y, direction, f64::INFINITY);
-        assert_eq!((meet(DVec3::ZERO), meet(DVec3::NAN)), (None, None));
-        assert_eq!(meet(DVec3::NEG_INFINITY), None);
+    fn ray_that_is_not_finite_hits_nothing() {
+        let t = |direction| crossing(DVec3::ZERO, DVec3::Y, DVec3::Y, direction, f64::INFINITY);
+        assert_eq!((t(DVec3::ZERO), t(DVec3::NAN)), (None, None));
+        assert_eq!(t(DVec3::NEG_INFINITY), None);
     }
 
     fn any_float() -> impl Strategy<Value = f64> {

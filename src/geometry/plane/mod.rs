@@ -33,7 +33,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn meets_the_plane_below() {
+    fn hits_the_plane_below() {
         let t = intersect(DVec3::ZERO, DVec3::Y, DVec3::new(1.0, 3.0, 0.0), -DVec3::Y * 2.0);
         assert_eq!(t, Some(1.5));
     }

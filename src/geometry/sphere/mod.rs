@@ -135,12 +135,12 @@ mod tests {
     }
 
     #[test]
-    fn meets_the_near_side_from_outside() {
+    fn hits_the_near_side_from_outside() {
         assert_eq!(first(DVec3::Z * 10.0, 1.0, DVec3::ZERO, DVec3::Z), Some(9.0));
     }
 
     #[test]
-    fn meets_the_far_side_from_inside() {
+    fn hits_the_far_side_from_inside() {
         assert_eq!(first(DVec3::ZERO, 2.0, DVec3::ZERO, DVec3::X), Some(2.0));
     }
 

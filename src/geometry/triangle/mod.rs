@@ -150,7 +150,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn a_ray_near_a_shared_edge_meets_one_of_the_two(
+        fn a_ray_near_a_shared_edge_hits_one_of_the_two(
             corners in prop::array::uniform4(prop::array::uniform2(-1.0..1.0f64)),
             along in 0.01..0.99f64,
             origin in prop::array::uniform3(-5.0..5.0f64),

@@ -107,7 +107,7 @@ fn reflect_blocks<const HIGHLIGHTS: bool>(
         } else if !any(&is_lit) {
             continue;
         }
-        // What may be in shadow waits for its shadow ray.
+        // Light that may be blocked waits for its shadow ray.
         if casts_shadow {
             let block = lit.block;
             shadows.pending.push(PendingLight { block, radiance: contribution, is_active: is_lit });
@@ -181,7 +181,7 @@ struct Reflected16 {
 }
 
 impl Reflected16 {
-    /// Sets it to what surfaces, seen along `directions`, reflect of the incident light: Lambert's
+    /// Computes what surfaces, seen along `directions`, reflect of the incident light: Lambert's
     /// n·l, without 1/π, and Phong's max(0, r·l)^α with r = u − 2(u·n)n, both as in the tutorial
     /// (III.2, III.3; Bui Tuong Phong, *Illumination for Computer Generated Pictures*, 1975).
     /// A surface that faces away from the light reflects nothing.
@@ -196,13 +196,13 @@ impl Reflected16 {
         // The cosines of Lambert and Phong.
         let surface = &lit.surface;
         let (mut diffuse, mut mirrored) = ([0.0; LANES], [0.0; LANES]);
-        let unit = shading::normalize16(&incident.toward, &incident.arrives);
+        let unit = shading::normalize_lanes(&incident.toward, &incident.arrives);
         let light = |i: usize| DVec3::new(unit[0][i], unit[1][i], unit[2][i]);
         for i in 0..LANES {
             diffuse[i] = shading::lambert(surface.normal(i), light(i));
         }
         if HIGHLIGHTS && lit.has_highlights {
-            let view = shading::normalize16(directions, &incident.arrives);
+            let view = shading::normalize_lanes(directions, &incident.arrives);
             for i in 0..LANES {
                 let view = DVec3::new(view[0][i], view[1][i], view[2][i]);
                 mirrored[i] = shading::phong(surface.normal(i), view, light(i));
@@ -252,7 +252,7 @@ impl Reflected16 {
             }
         }
         if lit.has_mapped_normals {
-            // So may a normal that a normal map bends on anything else.
+            // On anything else a normal from a normal map may see such a light.
             for i in 0..LANES {
                 let facing = if surface.is_back[i] { -geometric[i] } else { geometric[i] };
                 let is_inside_sphere =
@@ -266,7 +266,7 @@ impl Reflected16 {
     #[inline(always)]
     fn add_highlights(&mut self, lit: &LitSurface16, mirrored: Lanes<f64>) {
         let highlight = match lit.common_exponent {
-            Some(exponent) => shading::power16(mirrored, exponent),
+            Some(exponent) => shading::power_lanes(mirrored, exponent),
             None => {
                 let mut highlight = [0.0; LANES];
                 for i in (0..LANES).filter(|&i| self.faces_light[i]) {

@@ -1,5 +1,5 @@
-//! Nested dielectrics: the transparent bodies of a scene, and which of them fills a point (C. Schmidt
-//! and B. Budge, *Simple Nested Dielectrics in Ray Traced Images*, Journal of Graphics Tools, 2002).
+//! Nested dielectrics: which of several overlapping dielectrics fills a point (C. Schmidt and B. Budge,
+//! *Simple Nested Dielectrics in Ray Traced Images*, Journal of Graphics Tools, 2002).
 
 #[cfg(test)]
 mod tests;
@@ -22,18 +22,18 @@ pub struct Medium {
     pub absorption: Vec3,
 }
 
-/// The medium outside all bodies.
+/// The medium outside all dielectrics.
 const EMPTY_SPACE: Medium = Medium { ior: 1.0, absorption: Vec3::ZERO };
 
-/// The place of a body in the order of priority. Where bodies overlap, the one with the least rank
-/// fills the point.
+/// The rank of a dielectric in the order of priority. Where dielectrics overlap, the one with the
+/// least rank fills the point.
 type PriorityRank = u32;
 
-/// The rank of what is no transparent body.
-const NO_BODY: PriorityRank = PriorityRank::MAX;
+/// The rank of an object that is not a dielectric.
+const NO_DIELECTRIC: PriorityRank = PriorityRank::MAX;
 
-/// The transparent bodies that contain a point, by rank. A body is listed twice where two parts of
-/// its mesh overlap. The first one fills the point.
+/// The dielectrics that contain a point, by rank. The first one fills the point. A dielectric is listed
+/// twice where two parts of its mesh overlap.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct InteriorList(SmallVec<[PriorityRank; 4]>);
 
@@ -45,20 +45,20 @@ impl Clone for InteriorList {
 }
 
 impl InteriorList {
-    /// Returns the rank of the body that fills the point.
+    /// Returns the rank of the dielectric that fills the point.
     #[inline]
     fn first(&self) -> Option<PriorityRank> {
         self.0.first().copied()
     }
 
-    /// Returns the list with another body.
+    /// Returns the list with another dielectric.
     fn inserted(&self, rank: PriorityRank) -> Self {
         let mut list = self.clone();
         list.0.insert(self.0.partition_point(|&r| r <= rank), rank);
         list
     }
 
-    /// Returns the list without one mention of a body, if there is one.
+    /// Returns the list without one entry of a dielectric, if it has any.
     fn removed(&self, rank: PriorityRank) -> Self {
         let mut list = self.clone();
         if let Some(i) = self.0.iter().position(|&r| r == rank) {
@@ -68,16 +68,16 @@ impl InteriorList {
     }
 }
 
-/// The transparent bodies of a scene: spheres, half-spaces behind planes and closed meshes whose
-/// material lets light through.
+/// The dielectrics of a scene: spheres, half-spaces behind planes and closed meshes of a transmissive
+/// material that is not thin.
 ///
-/// What fills a point depends on which bodies contain it, and not on how a ray came there: so a path
-/// of light is the same both ways. Of several the one with the greatest priority fills it; of
-/// equal ones the one with the smallest bounding box, so that a bubble is in its glass and the
-/// glass in the water; then the first in the scene.
+/// The medium at a point depends on which dielectrics contain it, and not on how a ray came there: so a
+/// path of light is the same both ways. If there are several, the one with the greatest priority fills
+/// the point; among equal ones the one with the smallest bounding box, so that a bubble is in its glass
+/// and the glass in the water; then the first in the scene.
 #[derive(Debug, Default)]
 pub struct NestedDielectrics {
-    /// The medium of each body, by rank.
+    /// The medium of each dielectric, by rank.
     media: Vec<Medium>,
     /// The rank of each sphere.
     spheres: Vec<PriorityRank>,
@@ -91,7 +91,7 @@ pub struct NestedDielectrics {
 }
 
 impl NestedDielectrics {
-    /// Ranks the bodies of a checked scene.
+    /// Ranks the dielectrics of a checked scene.
     pub fn new(scene: &Scene) -> Self {
         // All objects with their material and the volume of their box.
         let material = |id: MaterialId| &scene.materials[id.0 as usize];
@@ -105,7 +105,7 @@ impl NestedDielectrics {
             (i.material, volume(bounds.upper - bounds.lower))
         });
         let objects: Vec<(MaterialId, f64)> = spheres.chain(planes).chain(instances).collect();
-        // The bodies among them in their order.
+        // The dielectrics among them, by rank.
         let mut order: Vec<usize> =
             (0..objects.len()).filter(|&i| material(objects[i].0).is_dielectric()).collect();
         if order.is_empty() {
@@ -116,18 +116,18 @@ impl NestedDielectrics {
             let priority = material(b).priority.cmp(&material(a).priority);
             priority.then(volume_of_a.total_cmp(&volume_of_b))
         });
-        let mut ranks = vec![NO_BODY; objects.len()];
+        let mut ranks = vec![NO_DIELECTRIC; objects.len()];
         let mut media = Vec::with_capacity(order.len());
         for (rank, i) in order.into_iter().enumerate() {
             ranks[i] = rank as PriorityRank;
-            let body = material(objects[i].0);
-            media.push(Medium { ior: body.ior, absorption: body.absorption });
+            let material = material(objects[i].0);
+            media.push(Medium { ior: material.ior, absorption: material.absorption });
         }
         // The ranks by kind of object.
         let instances = ranks.split_off(scene.spheres.len() + scene.planes.len());
         let planes = ranks.split_off(scene.spheres.len());
         let is_inverted = |(&rank, instance): (&PriorityRank, &Instance)| {
-            if rank == NO_BODY {
+            if rank == NO_DIELECTRIC {
                 return false;
             }
             let winds_inward = scene.meshes[instance.mesh.0 as usize].volume() < 0.0;
@@ -137,16 +137,16 @@ impl NestedDielectrics {
         Self { media, spheres: ranks, planes, instances, is_inverted }
     }
 
-    /// True if the scene has no transparent bodies.
+    /// True if the scene has no dielectrics.
     pub fn is_empty(&self) -> bool {
         self.media.is_empty()
     }
 
-    /// True if a medium may absorb light, or a surface be hidden in a body: in another one, or in
+    /// True if a medium may absorb light, or a surface be hidden in a dielectric: in another one, or in
     /// its own mesh where that intersects itself. A single sphere or plane hides nothing.
     pub fn may_absorb_or_hide(&self) -> bool {
         let absorbs = self.media.iter().any(|medium| medium.absorption != Vec3::ZERO);
-        absorbs || self.media.len() > 1 || self.instances.iter().any(|&rank| rank != NO_BODY)
+        absorbs || self.media.len() > 1 || self.instances.iter().any(|&rank| rank != NO_DIELECTRIC)
     }
 
     /// Returns the medium at a point with an interior list.
@@ -155,8 +155,7 @@ impl NestedDielectrics {
         interior.first().map_or(EMPTY_SPACE, |rank| self.media[rank as usize])
     }
 
-    /// Returns the share of light that is left after the way of a ray through a medium, from where
-    /// it starts to `end`.
+    /// Returns the share of light that the medium lets pass along a ray, from its start to `end`.
     pub fn transmittance(&self, ray: &Ray, end: f64, interior: &InteriorList) -> DVec3 {
         let absorption = self.medium(interior).absorption;
         if absorption == Vec3::ZERO {
@@ -171,20 +170,20 @@ impl NestedDielectrics {
             Geometry::Planes => self.planes.get(id.primitive as usize),
             Geometry::Mesh(_) => self.instances.get(id.instance as usize),
         };
-        ranks.copied().filter(|&rank| rank != NO_BODY)
+        ranks.copied().filter(|&rank| rank != NO_DIELECTRIC)
     }
 
-    /// Returns the side of its body from which a surface is seen that is seen from `side` of its
-    /// geometric normal: the other one where the fronts of the triangles are inside.
-    pub fn outer_side(&self, id: PrimitiveId, side: Side) -> Side {
+    /// Converts a side of a surface to the side of the outward normal of its object: `Front` is outside,
+    /// `Back` inside. The two differ where the triangles of a mesh have their fronts inside.
+    pub fn oriented_side(&self, id: PrimitiveId, side: Side) -> Side {
         let is_mesh = matches!(id.geometry, Geometry::Mesh(_));
         if is_mesh && self.is_inverted[id.instance as usize] { side.opposite() } else { side }
     }
 
-    /// Returns the bodies on both sides of a surface that a ray in `interior` hits from `side`.
+    /// Returns the dielectrics on both sides of a surface that a ray in `interior` hits from `side`.
     ///
-    /// A ray that comes out of a body that it never went into, through a hole in its mesh or from
-    /// the very surface of another, was in it.
+    /// A ray that comes out of a dielectric without having gone into it, through a hole in its mesh or
+    /// from the very surface of another, counts as having been in it.
     pub fn interface(
         &self,
         id: PrimitiveId,
@@ -195,7 +194,7 @@ impl NestedDielectrics {
             let [incident, transmitted] = [interior.clone(), interior.clone()];
             return InterfaceMedia { incident, transmitted, is_hidden: false };
         };
-        let (incident, transmitted) = match self.outer_side(id, side) {
+        let (incident, transmitted) = match self.oriented_side(id, side) {
             Side::Front => (interior.clone(), interior.inserted(rank)),
             Side::Back if interior.0.contains(&rank) => (interior.clone(), interior.removed(rank)),
             Side::Back => (interior.inserted(rank), interior.clone()),
@@ -204,10 +203,10 @@ impl NestedDielectrics {
         InterfaceMedia { incident, transmitted, is_hidden }
     }
 
-    /// Returns the bodies that contain a point.
+    /// Returns the dielectrics that contain a point.
     ///
-    /// Spheres and half-spaces are known by their equations; of meshes, those that a ray from the
-    /// point leaves more often than it enters.
+    /// Spheres and half-spaces are found by their equations; a mesh contains the point if a ray from
+    /// there leaves it more often than it enters.
     pub fn interior_at(
         &self,
         point: DVec3,
@@ -216,18 +215,18 @@ impl NestedDielectrics {
     ) -> InteriorList {
         let mut interior = InteriorList::default();
         for (sphere, &rank) in scene.spheres.iter().zip(&self.spheres) {
-            if rank != NO_BODY
+            if rank != NO_DIELECTRIC
                 && (point - sphere.center).length_squared() < sphere.radius * sphere.radius
             {
                 interior = interior.inserted(rank);
             }
         }
         for (plane, &rank) in scene.planes.iter().zip(&self.planes) {
-            if rank != NO_BODY && plane.normal.dot(point - plane.point) < 0.0 {
+            if rank != NO_DIELECTRIC && plane.normal.dot(point - plane.point) < 0.0 {
                 interior = interior.inserted(rank);
             }
         }
-        if self.instances.iter().all(|&rank| rank == NO_BODY) {
+        if self.instances.iter().all(|&rank| rank == NO_DIELECTRIC) {
             return interior;
         }
         // Along no axis, so that the ray seldom runs along a face; any direction would do.
@@ -239,7 +238,7 @@ impl NestedDielectrics {
             let Some(hit) = &hit[0] else { break };
             let surface = Surface::new(scene, &ray, hit);
             if let Geometry::Mesh(_) = hit.id.geometry {
-                exits[hit.id.instance as usize] += match self.outer_side(hit.id, surface.side) {
+                exits[hit.id.instance as usize] += match self.oriented_side(hit.id, surface.side) {
                     Side::Front => -1,
                     Side::Back => 1,
                 };
@@ -248,7 +247,7 @@ impl NestedDielectrics {
         }
         for (&rank, exits) in self.instances.iter().zip(exits) {
             for _ in 0..exits.max(0) {
-                if rank != NO_BODY {
+                if rank != NO_DIELECTRIC {
                     interior = interior.inserted(rank);
                 }
             }
@@ -257,14 +256,14 @@ impl NestedDielectrics {
     }
 }
 
-/// The bodies on the two sides of a surface.
+/// The dielectrics on the two sides of a surface.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InterfaceMedia {
-    /// The bodies on the side that the ray comes from.
+    /// The dielectrics on the side that the ray comes from.
     pub incident: InteriorList,
-    /// The bodies on the other side.
+    /// The dielectrics on the other side.
     pub transmitted: InteriorList,
-    /// True if the same body fills both sides: the surface lies within a body of higher priority
-    /// than its own, and is none for light.
+    /// True if the same dielectric fills both sides: the surface lies within one of higher priority, and
+    /// light passes it as if nothing were there.
     pub is_hidden: bool,
 }

@@ -1,4 +1,4 @@
-//! Tests of which body fills which point.
+//! Tests of which dielectric fills which point.
 
 use super::*;
 use crate::intersect::{BruteForce, Precision};
@@ -9,7 +9,8 @@ fn glass(ior: f64, priority: i32) -> Material {
     Material { transmit: Vec3::ONE, ior, priority, ..Material::default() }
 }
 
-/// Returns water below y = 0, a glass ball across its surface, a bubble in the ball, an opaque ball.
+/// Returns a scene of water below y = 0, a glass ball across its surface, a bubble in the ball, and an
+/// opaque ball.
 fn pond(priority_of_water: i32) -> Scene {
     let mut scene = Scene::default();
     let water = scene.add_material(glass(1.33, priority_of_water));
@@ -30,7 +31,7 @@ fn ior_at(scene: &Scene, point: DVec3) -> f64 {
 }
 
 #[test]
-fn the_smaller_of_two_bodies_fills_their_overlap() {
+fn the_smaller_of_two_dielectrics_fills_their_overlap() {
     let scene = pond(0);
     let at = |x, y| ior_at(&scene, DVec3::new(x, y, 0.0));
     assert_eq!([at(0.0, 9.0), at(0.0, -9.0)], [1.0, 1.33]);
@@ -45,7 +46,7 @@ fn priority_goes_before_size() {
 }
 
 #[test]
-fn a_surface_within_a_body_of_higher_priority_is_hidden() {
+fn a_surface_within_a_dielectric_of_higher_priority_is_hidden() {
     let scene = pond(0);
     let dielectrics = NestedDielectrics::new(&scene);
     let ball = dielectrics.interface(PrimitiveId::sphere(0), Side::Front, &InteriorList::default());
@@ -68,7 +69,7 @@ fn an_opaque_object_changes_no_interior_list() {
 }
 
 #[test]
-fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
+fn a_ray_out_of_a_dielectric_that_it_never_entered_was_in_it() {
     let scene = pond(0);
     let dielectrics = NestedDielectrics::new(&scene);
     let media = dielectrics.interface(PrimitiveId::sphere(0), Side::Back, &InteriorList::default());
@@ -78,7 +79,7 @@ fn a_ray_out_of_a_body_that_it_never_entered_was_in_it() {
     );
 }
 
-/// Returns a corner of a cube, of glass.
+/// Returns a glass tetrahedron, the corner of a cube.
 fn corner(transform: DAffine3) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(glass(1.5, 0));
@@ -114,7 +115,7 @@ fn ior_behind(scene: &Scene, origin: DVec3) -> f64 {
 }
 
 #[test]
-fn a_mirrored_mesh_is_the_same_body() {
+fn a_mirrored_mesh_is_the_same_dielectric() {
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     let scene = corner(DAffine3::from_translation(DVec3::X) * mirror);
     assert_eq!([ior_at(&scene, DVec3::splat(0.5)), ior_at(&scene, DVec3::splat(-1.0))], [1.5, 1.0]);
@@ -122,7 +123,7 @@ fn a_mirrored_mesh_is_the_same_body() {
 }
 
 #[test]
-fn a_mesh_that_winds_inward_is_the_same_body() {
+fn a_mesh_that_winds_inward_is_the_same_dielectric() {
     let mut scene = corner(DAffine3::IDENTITY);
     let mesh = std::sync::Arc::make_mut(&mut scene.meshes[0]);
     mesh.triangles.iter_mut().for_each(|triangle| triangle.reverse());

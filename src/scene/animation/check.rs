@@ -85,8 +85,8 @@ fn check_deformation(
 
 /// Checks the indices and the curves of an animated object.
 fn check_object(object: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
-    let check_index = |what: &str, index: usize, count: usize| {
-        require(index < count, || format!("the animation moves {what} {index}, of {count}"))
+    let check_index = |kind: &str, index: usize, count: usize| {
+        require(index < count, || format!("the animation moves {kind} {index}, of {count}"))
     };
     let check_node_id =
         |id: &Option<NodeId>| id.map_or(Ok(()), |id| check_index("node", id.0 as usize, nodes));

@@ -64,8 +64,8 @@ pub struct Influences {
     pub per_vertex: usize,
     /// The indices of the joints, vertex by vertex.
     pub joints: Vec<u16>,
-    /// The weights of the joints, vertex by vertex, of any sum; where that is 0 the vertex follows its
-    /// first joint.
+    /// The weights of the joints, vertex by vertex, of any sum; where that is 0 the vertex moves with
+    /// its first joint.
     pub weights: Vec<f32>,
 }
 
@@ -78,7 +78,7 @@ pub(super) struct Pose {
 }
 
 impl Joint {
-    /// The transform of the bound mesh, when it follows this joint, to world space.
+    /// The transform to world space of a mesh that moves with this joint alone.
     fn bound_to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
         self.world_transform(worlds) * self.inverse_bind
     }
@@ -151,10 +151,11 @@ impl Influences {
         named.filter(|(joint, w)| **w != 0.0 && usize::from(**joint) >= count).count() as u64
     }
 
-    /// Keeps only the influences of some vertices, in the order given.
-    pub(crate) fn retain_vertices(&mut self, kept: &[usize]) {
-        self.joints = kept.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
-        self.weights = kept.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
+    /// Reduces the influences to those of some vertices, in the order given.
+    pub(crate) fn retain_vertices(&mut self, vertices: &[usize]) {
+        self.joints = vertices.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
+        self.weights =
+            vertices.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
     }
 
     /// The range of a vertex's influences.

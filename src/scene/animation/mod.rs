@@ -113,7 +113,7 @@ pub enum Animated {
         node: Option<NodeId>,
         /// The camera in the node's space.
         rest: Camera,
-        /// Its aim, unless it looks as `rest` does.
+        /// Its aim; `None` leaves it the direction of `rest`.
         aim: Option<Aim>,
         /// The value of its projection (angle, focal length or height), if that changes.
         lens: Option<Curve<f64>>,
@@ -227,8 +227,8 @@ impl Scene {
 }
 
 /// Puts the object that an error is about before its message.
-fn prefixed(what: &str, error: &Error) -> Error {
-    let named = Error::input(format!("{what}: {}", error.message()));
+fn prefixed(label: &str, error: &Error) -> Error {
+    let named = Error::input(format!("{label}: {}", error.message()));
     match error.advice() {
         Some(help) => named.help(help),
         None => named,

@@ -75,7 +75,7 @@ pub struct Orbit {
     pub center: DVec3,
     /// The position at time 0 of the point that orbits, in world space.
     pub start: DVec3,
-    /// The axis, of length 1; the rotation follows the right-hand rule, counterclockwise seen against
+    /// The axis, of length 1; the rotation is by the right-hand rule: counterclockwise, seen against
     /// the axis.
     pub axis: DVec3,
     /// The time of one turn in seconds, not 0; infinite for what only moves along with its centre.

@@ -6,11 +6,11 @@ use crate::scene::{Camera, Projection};
 
 /// Checks camera `i`.
 pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
-    let what = format!("camera {i} (`{}`)", camera.name);
-    require_position(|| format!("{what}: position"), camera.position)?;
-    require_unit_length(|| format!("{what}: forward"), camera.forward)?;
-    require_unit_length(|| format!("{what}: right"), camera.right)?;
-    require_unit_length(|| format!("{what}: up"), camera.up)?;
+    let label = format!("camera {i} (`{}`)", camera.name);
+    require_position(|| format!("{label}: position"), camera.position)?;
+    require_unit_length(|| format!("{label}: forward"), camera.forward)?;
+    require_unit_length(|| format!("{label}: right"), camera.right)?;
+    require_unit_length(|| format!("{label}: up"), camera.up)?;
     let (value, in_range) = match camera.projection {
         Projection::FovY(a) | Projection::FovX(a) => {
             (a.to_degrees(), a > 0.0 && a < std::f64::consts::PI)
@@ -21,6 +21,6 @@ pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
         Projection::OrthoHeight(h) => (h, h > 0.0 && h.is_finite()),
     };
     require(in_range, || {
-        format!("{what}: its field of view, focal length or height is out of range: {value}")
+        format!("{label}: its field of view, focal length or height is out of range: {value}")
     })
 }

@@ -6,26 +6,26 @@ use crate::scene::{Light, LightKind};
 
 /// Checks light `i`.
 pub(super) fn check(i: usize, light: &Light) -> Result<()> {
-    let what = format!("light {i}");
-    require_color(|| format!("{what}: intensity"), light.intensity)?;
+    let label = format!("light {i}");
+    require_color(|| format!("{label}: intensity"), light.intensity)?;
     match light.kind {
         LightKind::Ambient => Ok(()),
         LightKind::Directional { direction } => {
-            require_unit_length(|| format!("{what}: direction"), direction)
+            require_unit_length(|| format!("{label}: direction"), direction)
         }
         LightKind::Point { position: p, range, .. } => {
-            require_position(|| format!("{what}: position"), p)?;
-            require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))
+            require_position(|| format!("{label}: position"), p)?;
+            require(range > 0.0, || format!("{label}: range must be above 0, found {range}"))
         }
         LightKind::Spot { position: p, direction, range, inner_angle, outer_angle, .. } => {
-            require_position(|| format!("{what}: position"), p)?;
-            require_unit_length(|| format!("{what}: direction"), direction)?;
-            require(range > 0.0, || format!("{what}: range must be above 0, found {range}"))?;
+            require_position(|| format!("{label}: position"), p)?;
+            require_unit_length(|| format!("{label}: direction"), direction)?;
+            require(range > 0.0, || format!("{label}: range must be above 0, found {range}"))?;
             let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
             let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;
             require(ordered && outer_angle <= right_angle, || {
                 format!(
-                    "{what}: 0 <= inner_angle < outer_angle <= 90 degrees, found {} and {}",
+                    "{label}: 0 <= inner_angle < outer_angle <= 90 degrees, found {} and {}",
                     inner_angle.to_degrees(),
                     outer_angle.to_degrees()
                 )

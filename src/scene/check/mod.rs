@@ -30,8 +30,8 @@ use crate::scene::{Material, Scene};
 pub const MAX_COORDINATE: f64 = 1e15;
 
 impl Scene {
-    /// Checks that all numbers are finite and in range, and all indices valid, on which everything else
-    /// relies.
+    /// Checks that all numbers are finite and in range, and all indices valid; everything else relies on
+    /// this.
     ///
     /// # Errors
     /// The first condition that does not hold, with the object's index.
@@ -55,13 +55,13 @@ impl Scene {
         self.animation.iter().try_for_each(|animation| animation.check(self))
     }
 
-    /// Checks the textures; an image that no material in use shows need not have been read.
+    /// Checks the textures; an image need not have been read if no material in use has it as a texture.
     fn check_textures(&self) -> Result<()> {
-        let mut shown = vec![false; self.textures.len()];
+        let mut in_use = vec![false; self.textures.len()];
         let maps = self.materials_in_use().flat_map(Material::textures);
-        maps.for_each(|map| shown[map.0 as usize] = true);
-        let mut textures = self.textures.iter().zip(shown).enumerate();
-        textures.try_for_each(|(i, (texture, shown))| texture::check(i, texture, shown))
+        maps.for_each(|map| in_use[map.0 as usize] = true);
+        let mut textures = self.textures.iter().zip(in_use).enumerate();
+        textures.try_for_each(|(i, (texture, is_in_use))| texture::check(i, texture, is_in_use))
     }
 
     /// Checks lights and cameras, which are cheap to check.

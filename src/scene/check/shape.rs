@@ -22,10 +22,10 @@ impl Scene {
     /// Checks plane `i`.
     pub(super) fn check_plane(&self, i: usize) -> Result<()> {
         let plane = &self.planes[i];
-        let what = || format!("plane {i}");
+        let label = || format!("plane {i}");
         require_position(|| format!("plane {i}: point"), plane.point)?;
         require_unit_length(|| format!("plane {i}: normal"), plane.normal)?;
-        self.check_unmasked(what, plane.material)?;
+        self.check_unmasked(label, plane.material)?;
         require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
             format!("plane {i}: texture_size must be above 0, found {}", plane.texture_size)
         })?;
@@ -40,10 +40,10 @@ impl Scene {
     }
 
     /// Checks that the material of a sphere or plane exists and has no mask.
-    fn check_unmasked(&self, what: impl Fn() -> String, material: MaterialId) -> Result<()> {
-        require_index(&what, "material", material.0, self.materials.len())?;
+    fn check_unmasked(&self, label: impl Fn() -> String, material: MaterialId) -> Result<()> {
+        require_index(&label, "material", material.0, self.materials.len())?;
         require(!self.materials[material.0 as usize].is_masked(), || {
-            format!("{}: only meshes can have a mask", what())
+            format!("{}: only meshes can have a mask", label())
         })
         .map_err(|e| e.help("blend its alpha instead"))
     }
@@ -51,11 +51,11 @@ impl Scene {
     /// Checks mesh `i`.
     pub(in crate::scene) fn check_mesh(&self, i: usize) -> Result<()> {
         let mesh = &self.meshes[i];
-        let what = format!("mesh {i} (`{}`)", mesh.name);
+        let label = format!("mesh {i} (`{}`)", mesh.name);
         let count = mesh.positions.len();
-        require(mesh.is_finite(), || format!("{what}: a vertex is not finite"))?;
+        require(mesh.is_finite(), || format!("{label}: a vertex is not finite"))?;
         require(mesh.has_all_vertices(), || {
-            format!("{what}: a triangle names a vertex that is not there ({count} vertices)")
+            format!("{label}: a triangle names a vertex that is not there ({count} vertices)")
         })?;
         for (name, length) in [
             ("normals", mesh.normals.len()),
@@ -66,7 +66,7 @@ impl Scene {
             ("tangents", mesh.tangents.len()),
         ] {
             require(length == 0 || length == count, || {
-                format!("{what}: {length} {name} for {count} vertices")
+                format!("{label}: {length} {name} for {count} vertices")
             })?;
         }
         Ok(())
@@ -75,12 +75,12 @@ impl Scene {
     /// Checks instance `i`.
     pub(in crate::scene) fn check_instance(&self, i: usize, may_be_flat: bool) -> Result<()> {
         let instance = &self.instances[i];
-        let what = || format!("instance {i}");
-        require_index(what, "mesh", instance.mesh.0, self.meshes.len())?;
-        require_index(what, "material", instance.material.0, self.materials.len())?;
+        let label = || format!("instance {i}");
+        require_index(label, "mesh", instance.mesh.0, self.meshes.len())?;
+        require_index(label, "material", instance.material.0, self.materials.len())?;
         let is_sound = instance.transform.is_finite() && (may_be_flat || !instance.is_flat());
         require(is_sound, || {
-            format!("{}: its transform cannot be inverted (a scale of 0?)", what())
+            format!("{}: its transform cannot be inverted (a scale of 0?)", label())
         })
     }
 }

@@ -4,11 +4,11 @@ use super::require::require;
 use crate::error::Result;
 use crate::scene::Texture;
 
-/// Checks texture `i`, whose picture must have been read if it is `shown`.
-pub(super) fn check(i: usize, texture: &Texture, shown: bool) -> Result<()> {
+/// Checks texture `i`, whose image must have been read if a material in use has the texture.
+pub(super) fn check(i: usize, texture: &Texture, is_in_use: bool) -> Result<()> {
     let image = &texture.image;
     if !image.is_read() && image.texels.is_empty() {
-        return require(!shown, || {
+        return require(!is_in_use, || {
             format!(
                 "texture {i} (`{}`): the picture was not read, and a material in use shows it",
                 image.name

@@ -2,7 +2,7 @@
 
 use super::*;
 use envers::Loaded;
-use envers::internals::{ShadingParams, TextureContext, occlusion, shading_params};
+use envers::internals::{ShadingParams, TextureContext, ambient_occlusion, shading_params};
 use envers::scene::Transfer;
 
 #[test]
@@ -43,7 +43,11 @@ fn pictured(pixels: &[[u8; 4]], material: serde_json::Value) -> Loaded {
 fn tinted(loaded: &Loaded, tint: Vec3) -> ShadingParams {
     let Loaded { scene, report, .. } = loaded;
     assert_eq!(report.warnings, [""; 0]);
-    shading_params(scene, material(scene), &TextureContext { tint, ..TextureContext::default() })
+    shading_params(
+        scene,
+        material(scene),
+        &TextureContext { vertex_color: tint, ..TextureContext::default() },
+    )
 }
 
 fn untinted(loaded: &Loaded) -> ShadingParams {
@@ -119,7 +123,7 @@ fn occlusion_is_red_by_its_strength() {
         }),
     )
     .scene;
-    let share = occlusion(&scene, material(&scene), &TextureContext::default());
+    let share = ambient_occlusion(&scene, material(&scene), &TextureContext::default());
     // 1 + 0.5 · (0.2 − 1).
     assert!((share - 0.6).abs() < 1e-6, "{share}");
 }

@@ -116,14 +116,14 @@ fn radius_one_ulp_below_a_tangent_misses() {
 }
 
 #[test]
-fn radius_one_ulp_above_a_tangent_is_met_before_it() {
+fn radius_one_ulp_above_a_tangent_is_hit_before_it() {
     let case = Case::new(DVec3::X * 5.0, 3f64.next_up(), DVec3::ZERO, DVec3::new(4., 3., 0.));
     assert!(case.certified().unwrap() < 0.8);
     case.check();
 }
 
 #[test]
-fn origin_on_the_surface_meets_the_far_side_only() {
+fn origin_on_the_surface_hits_the_far_side_only() {
     let case = Case::new(DVec3::ZERO, 1.0, DVec3::X, DVec3::NEG_X);
     assert_eq!(case.certified(), Some(2.0));
     assert_eq!(Case { direction: DVec3::X, ..case }.certified(), None);
@@ -139,7 +139,7 @@ fn subnormal_sphere_is_met() {
 }
 
 #[test]
-fn sphere_of_no_radius_is_met_at_its_centre() {
+fn sphere_of_no_radius_is_hit_at_its_centre() {
     let case = Case::new(DVec3::new(1.0, 2.0, 3.0), 0.0, DVec3::ZERO, DVec3::new(1.0, 2.0, 3.0));
     assert_eq!(case.certified(), Some(1.0));
 }
@@ -180,7 +180,7 @@ fn end_is_compared_with_the_exact_distance() {
 }
 
 #[test]
-fn ray_that_is_not_finite_meets_nothing() {
+fn ray_that_is_not_finite_hits_nothing() {
     let case = Case::new(DVec3::ZERO, 1.0, DVec3::X * 3.0, DVec3::NEG_X);
     assert_eq!(Case { direction: DVec3::ZERO, ..case }.certified(), None);
     assert_eq!(Case { direction: DVec3::NAN, ..case }.certified(), None);

@@ -27,8 +27,8 @@ impl Case {
         crossing(self.triangle, self.origin, self.direction, self.tmax)
     }
 
-    /// True if the line crosses when moved by (2⁻⁸⁰⁰⁰, 2⁻¹⁶⁰⁰⁰, 2⁻²⁴⁰⁰⁰): by less than any sum of
-    /// products of floats can tell, and in the order that the tie rule wants.
+    /// True if the line crosses the triangle when moved by (ε, ε², ε³) with ε = 2⁻⁸⁰⁰⁰: as in the tie
+    /// rule, and by less than any edge function of floats that is not 0.
     fn moved_line_crosses(&self) -> bool {
         let step = |k: i64| Dyadic::power_of_two(-8000 * k);
         let origin = zip(&vector(self.origin), &[step(1), step(2), step(3)], |o, x| o + x);
@@ -38,7 +38,7 @@ impl Case {
         edges[0] != Equal && edges[0] == edges[1] && edges[1] == edges[2]
     }
 
-    /// The crossing by bisection of exact quotients.
+    /// The crossing in exact arithmetic: quotients of dyadic numbers, rounded by bisection.
     fn exact(&self) -> Option<TriangleHit> {
         let [a, b, c] = self.triangle.map(vector);
         let (first, second) = (minus(&b, &a), minus(&c, &a));
@@ -51,11 +51,11 @@ impl Case {
         if numerator.sign() != divisor.sign() {
             return None;
         }
-        let quotient = |x: &Dyadic| beside(&numerator, &divisor, x);
+        let quotient = |x: &Dyadic| compare_quotient(&numerator, &divisor, x);
         let below = self.tmax == f64::INFINITY || quotient(&Dyadic::new(self.tmax)) == Less;
         let weight = |x: Dyadic| match x.sign() {
             Equal => 0.0,
-            _ => dyadic::round(|y| beside(&x, &divisor, y)),
+            _ => dyadic::round(|y| compare_quotient(&x, &divisor, y)),
         };
         (self.tmax > 0.0 && below).then(|| TriangleHit {
             t: dyadic::round(quotient),
@@ -64,7 +64,7 @@ impl Case {
         })
     }
 
-    /// Checks every stage against the exact answer.
+    /// Checks every stage of the intersection against the exact answer.
     fn check(&self) {
         let exact = self.exact();
         let found = self.certified();
@@ -92,12 +92,13 @@ impl Case {
 }
 
 /// Compares the quotient n/d with x, for n and d of one sign.
-fn beside(n: &Dyadic, d: &Dyadic, x: &Dyadic) -> Ordering {
+fn compare_quotient(n: &Dyadic, d: &Dyadic, x: &Dyadic) -> Ordering {
     let order = n.cmp(&(d.clone() * x.clone()));
     if d.sign() == Less { order.reverse() } else { order }
 }
 
-fn meets(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> usize {
+/// Returns 1 if the ray hits the triangle, otherwise 0.
+fn hit_count(triangle: [DVec3; 3], origin: DVec3, direction: DVec3) -> usize {
     usize::from(crossing(triangle, origin, direction, f64::INFINITY).is_some())
 }
 
@@ -125,19 +126,22 @@ fn both_ends_of_the_ray_are_left_out() {
 
 #[test]
 fn parallel_line_and_degenerate_triangle_miss() {
-    assert_eq!(meets(UNIT, DVec3::new(-1.0, 0.25, 0.0), DVec3::X), 0);
-    assert_eq!(meets(UNIT, DVec3::new(-1.0, 0.0, 0.0), DVec3::X), 0);
-    assert_eq!(meets([DVec3::ZERO, DVec3::X, DVec3::X * 2.0], DVec3::X + DVec3::Z, -DVec3::Z), 0);
-    assert_eq!(meets([DVec3::X; 3], DVec3::X + DVec3::Z, -DVec3::Z), 0);
+    assert_eq!(hit_count(UNIT, DVec3::new(-1.0, 0.25, 0.0), DVec3::X), 0);
+    assert_eq!(hit_count(UNIT, DVec3::new(-1.0, 0.0, 0.0), DVec3::X), 0);
+    assert_eq!(
+        hit_count([DVec3::ZERO, DVec3::X, DVec3::X * 2.0], DVec3::X + DVec3::Z, -DVec3::Z),
+        0
+    );
+    assert_eq!(hit_count([DVec3::X; 3], DVec3::X + DVec3::Z, -DVec3::Z), 0);
 }
 
 #[test]
 fn estimate_decides_what_is_not_nearly_an_edge() {
-    let of = |x: f64, way: DVec3| estimate(UNIT, DVec3::new(x, 0.25, 1.0), way);
-    assert!((of(0.25, -DVec3::Z).t - 1.0).abs() < 1e-14 && of(0.25, -DVec3::Z).error < 1e-13);
-    assert!(of(0.25, DVec3::Z).upper() < 0.0);
-    assert_eq!(of(0.76, -DVec3::Z), Estimate::MISS);
-    assert_eq!(of(-0.01, -DVec3::Z), Estimate::MISS);
+    let at = |x: f64, direction: DVec3| estimate(UNIT, DVec3::new(x, 0.25, 1.0), direction);
+    assert!((at(0.25, -DVec3::Z).t - 1.0).abs() < 1e-14 && at(0.25, -DVec3::Z).error < 1e-13);
+    assert!(at(0.25, DVec3::Z).upper() < 0.0);
+    assert_eq!(at(0.76, -DVec3::Z), Estimate::MISS);
+    assert_eq!(at(-0.01, -DVec3::Z), Estimate::MISS);
 }
 
 #[test]
@@ -146,11 +150,11 @@ fn round_is_certain_of_what_is_not_edge_on() {
 }
 
 #[test]
-fn ray_that_is_not_finite_meets_nothing() {
+fn ray_that_is_not_finite_hits_nothing() {
     let origin = DVec3::new(0.25, 0.25, 1.0);
-    assert_eq!(meets(UNIT, origin, DVec3::ZERO), 0);
-    assert_eq!(meets(UNIT, origin, DVec3::NAN), 0);
-    assert_eq!(meets(UNIT, origin, DVec3::NEG_INFINITY), 0);
+    assert_eq!(hit_count(UNIT, origin, DVec3::ZERO), 0);
+    assert_eq!(hit_count(UNIT, origin, DVec3::NAN), 0);
+    assert_eq!(hit_count(UNIT, origin, DVec3::NEG_INFINITY), 0);
 }
 
 #[test]
@@ -159,7 +163,7 @@ fn negative_zero_is_zero() {
     let origin = DVec3::new(0.0, 0.25, 1.0);
     let direction = DVec3::new(-0.0, -0.0, -1.0);
     let mirrored = [DVec3::new(-0.0, 0.0, -0.0), c, -b];
-    assert_eq!(meets([a, b, c], origin, direction) + meets(mirrored, origin, direction), 1);
+    assert_eq!(hit_count([a, b, c], origin, direction) + hit_count(mirrored, origin, direction), 1);
 }
 
 #[test]
@@ -174,7 +178,7 @@ fn fan(hub: DVec3, rim: &[DVec3]) -> Vec<[DVec3; 3]> {
     (0..rim.len()).map(|i| [hub, rim[i], rim[(i + 1) % rim.len()]]).collect()
 }
 
-/// Twelve triangles over the unit cube's corners, each side cut along a diagonal.
+/// The twelve triangles of a cube, two for each face.
 fn cube(side: f64, corner: DVec3) -> Vec<[DVec3; 3]> {
     let at =
         |i: usize| corner + DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) * side;
@@ -186,7 +190,7 @@ fn cube(side: f64, corner: DVec3) -> Vec<[DVec3; 3]> {
 }
 
 #[test]
-fn ray_through_the_hub_of_a_fan_meets_one_triangle() {
+fn ray_through_the_hub_of_a_fan_hits_one_triangle() {
     for spokes in 3..20 {
         let rim: Vec<DVec3> = (0..spokes)
             .map(|i| f64::from(i) / f64::from(spokes) * std::f64::consts::TAU)
@@ -195,8 +199,8 @@ fn ray_through_the_hub_of_a_fan_meets_one_triangle() {
         let hub = DVec3::new(0.1, -0.05, 0.2);
         for origin in [hub + DVec3::Z * 3.0, hub + DVec3::new(0.25, 0.125, 4.0)] {
             let direction = hub - origin;
-            let met: usize = fan(hub, &rim).iter().map(|&t| meets(t, origin, direction)).sum();
-            assert_eq!(met, 1, "{spokes} {origin}");
+            let hits: usize = fan(hub, &rim).iter().map(|&t| hit_count(t, origin, direction)).sum();
+            assert_eq!(hits, 1, "{spokes} {origin}");
         }
     }
 }
@@ -209,13 +213,13 @@ fn ray_along_an_edge_of_a_cube_crosses_it_an_even_number_of_times() {
         for axis in DVec3::AXES {
             for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
                 let (u, v) = (f64::from(i - 1) * 0.5, f64::from(j - 1) * 0.5);
-                let beside = DVec3::new(axis.y + axis.z, axis.x, 0.0) * u
+                let offset = DVec3::new(axis.y + axis.z, axis.x, 0.0) * u
                     + DVec3::new(0.0, axis.z, axis.x + axis.y) * v;
-                for way in [axis, -axis] {
-                    let origin = corner + beside + axis * 0.5 - way * 3.5;
-                    let met: usize = cube.iter().map(|&t| meets(t, origin, way)).sum();
-                    assert!(met == 0 || met == 2, "{met} {origin} {way}");
-                    seen[met] += 1;
+                for direction in [axis, -axis] {
+                    let origin = corner + offset + axis * 0.5 - direction * 3.5;
+                    let hits: usize = cube.iter().map(|&t| hit_count(t, origin, direction)).sum();
+                    assert!(hits == 0 || hits == 2, "{hits} {origin} {direction}");
+                    seen[hits] += 1;
                 }
             }
         }
@@ -303,7 +307,7 @@ proptest! {
     }
 
     #[test]
-    fn ray_at_the_hub_of_a_fan_meets_one_triangle(
+    fn ray_at_the_hub_of_a_fan_hits_one_triangle(
         heights in prop::array::uniform7(-0.5..0.5f64),
         hub in prop::array::uniform2(-0.2..0.2f64),
         origin in prop::array::uniform2(-0.5..0.5f64),
@@ -321,8 +325,8 @@ proptest! {
         // At the hub itself, or at a point of one of the spokes, more or less.
         let aim = if spoke < 7 { hub.lerp(rim[spoke], share) } else { hub };
         let origin = base + DVec3::new(origin[0], origin[1], 9.0);
-        let met: usize = fan(hub, &rim).iter().map(|&t| meets(t, origin, aim - origin)).sum();
-        prop_assert_eq!(met, 1);
+        let hits: usize = fan(hub, &rim).iter().map(|&t| hit_count(t, origin, aim - origin)).sum();
+        prop_assert_eq!(hits, 1);
     }
 }
 
