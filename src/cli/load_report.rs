@@ -8,12 +8,13 @@ use serde::Serialize;
 use crate::error::{Error, Result};
 use crate::load::LoadReport;
 
-/// The load report: `report` in `info --json` and `render --stats`.
+/// The load report as JSON: `report` in `info --json` and `render --stats`.
 #[derive(Serialize)]
 pub struct LoadSummary {
     faces: Faces,
     unsupported: Vec<String>,
     placeholders: Vec<String>,
+    /// The names of the material variants that the files offer.
     pub variants: BTreeSet<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The `envers` command, on the public API alone.
+//! The `envers` command: a module for each subcommand, and what they share.
 
 mod args;
 mod bench;

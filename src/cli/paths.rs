@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// Checks that an input exists and is a file; a pipe could keep the program waiting forever.
+/// Checks that an input exists and is a regular file; a pipe could make the program wait forever.
 ///
 /// # Errors
 /// When it does not exist, cannot be accessed, or is not a file.
@@ -52,7 +52,7 @@ pub fn check_not_a_texture<'a>(
     Ok(())
 }
 
-/// True if two paths lead to the same file, which need not exist yet.
+/// True if two paths name the same file, which need not exist yet.
 pub fn is_same(a: &Path, b: &Path) -> bool {
     a == b || canonical(a) == canonical(b)
 }

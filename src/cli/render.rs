@@ -98,7 +98,7 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
     Ok(())
 }
 
-/// PosedScene every frame and checks its files before any frame is rendered. Returns the scene of the
+/// Poses every frame and checks its files before any frame is rendered. Returns the scene of the
 /// first frame. Numbers that are out of bounds in a pose are only found when it is rendered.
 fn check_frames(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
     let mut poses = PosedScene::new(scene);

@@ -20,7 +20,7 @@ pub struct RenderPlan {
     pub fps: f64,
     /// The number of frames that are skipped because their files exist.
     pub skipped: usize,
-    /// True if existing files are kept.
+    /// True if frames whose files exist are skipped.
     skips_existing: bool,
 }
 

@@ -119,7 +119,7 @@ impl Geometry {
 pub struct Build {
     /// The meshes whose BLAS was built.
     pub meshes: u64,
-    /// The meshes whose BLAS was kept from an earlier frame.
+    /// The meshes whose BLAS was reused from an earlier frame.
     pub reused: u64,
     /// The build quality of Embree's BVH, `low` or `medium`; null without Embree.
     pub bvh: Option<&'static str>,
@@ -143,7 +143,7 @@ impl From<&Statistics> for Build {
             reused: built.meshes_reused,
             bvh: statistics.quality.map(BuildQuality::name),
             top_levels_built: built.tlas_built,
-            top_levels_kept: built.tlas_kept,
+            top_levels_kept: built.tlas_updated,
             instances_placed: built.instances_built,
             instances_moved: built.instances_moved,
             spheres_moved: built.spheres_moved,

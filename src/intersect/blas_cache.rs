@@ -1,4 +1,4 @@
-//! The cache of BLASes, kept from one frame of an animation to the next.
+//! The cache of the BLASes that the frames of an animation share.
 
 use std::sync::Arc;
 
@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::scene::{Mesh, Scene};
 
-/// The BLASes of meshes, by mesh index; the mesh is kept with its BLAS, to tell it from another one with
-/// the same index.
+/// The BLASes of meshes, by mesh index; each has its mesh, to tell it from another one with the
+/// same index.
 pub(in crate::intersect) struct BlasCache<T> {
     entries: Vec<Option<(Arc<Mesh>, Arc<T>)>>,
     built: u64,
@@ -63,7 +63,7 @@ impl<T: Send + Sync> BlasCache<T> {
         }
     }
 
-    /// Counts a mesh that was built and cannot be kept.
+    /// Counts a mesh that was built and is not cached.
     #[cfg(feature = "embree")]
     pub fn count_uncached(&mut self) {
         self.built += 1;

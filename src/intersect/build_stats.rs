@@ -1,21 +1,22 @@
-//! The counts of what building intersectors took.
+//! The statistics of building intersectors.
 
-/// The numbers of BLASes and TLASes that were built, and of those that were kept from a frame before.
+/// The numbers of BLASes and TLASes that were built, and of those that were reused from an earlier
+/// frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BuildStats {
-    /// Meshes whose trees were built.
+    /// Meshes whose BLAS was built.
     pub meshes_built: u64,
-    /// Meshes whose trees were kept from another frame.
+    /// Meshes whose BLAS was reused from an earlier frame.
     pub meshes_reused: u64,
     /// Times that a TLAS was built: the level of spheres and instances above the meshes.
     pub tlas_built: u64,
-    /// Times that a TLAS was kept, with what moved in it updated.
-    pub tlas_kept: u64,
+    /// Times that the TLAS of the frame before was updated with what moved.
+    pub tlas_updated: u64,
     /// Instances in a TLAS that was built.
     pub instances_built: u64,
-    /// Instances that were moved in a TLAS that was kept.
+    /// Instances that moved in a TLAS that was updated.
     pub instances_moved: u64,
-    /// Spheres that were moved in a TLAS that was kept.
+    /// Spheres that moved in a TLAS that was updated.
     pub spheres_moved: u64,
     /// Times that a TLAS that was built has spheres in it: in Embree a user geometry, in Rust a tree.
     pub sphere_geometries: u64,
@@ -32,7 +33,7 @@ impl BuildStats {
             meshes_built: f(self.meshes_built, other.meshes_built),
             meshes_reused: f(self.meshes_reused, other.meshes_reused),
             tlas_built: f(self.tlas_built, other.tlas_built),
-            tlas_kept: f(self.tlas_kept, other.tlas_kept),
+            tlas_updated: f(self.tlas_updated, other.tlas_updated),
             instances_built: f(self.instances_built, other.instances_built),
             instances_moved: f(self.instances_moved, other.instances_moved),
             spheres_moved: f(self.spheres_moved, other.spheres_moved),
@@ -44,7 +45,7 @@ impl BuildStats {
 
     /// The counts of a frame of this many meshes for which nothing is built.
     pub fn reused(meshes: u64) -> Self {
-        Self { meshes_reused: meshes, tlas_kept: 1, ..Self::default() }
+        Self { meshes_reused: meshes, tlas_updated: 1, ..Self::default() }
     }
 }
 

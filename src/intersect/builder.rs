@@ -55,27 +55,26 @@ impl IntersectorBuilder {
         }
     }
 
-    /// Makes a builder for scenes that share meshes, each of which is built once: in object space, in
-    /// which it may stand still or move. The level above, of spheres and instances, is kept for the
-    /// next scene, too, if that is of the same things, and the intersector of the one before is gone by
-    /// then.
+    /// Makes a builder for scenes that share meshes, each of which is built once, in object space,
+    /// whether it moves or not. The TLAS is reused for the next scene, too, if that has the same
+    /// objects, and the intersector of the scene before has been dropped.
     ///
-    /// `stage` is the box in which they mostly take place, such as [`Scene::bounds_over_time`]:
+    /// `animation_bounds` is the box in which they mostly lie, such as [`Scene::bounds_over_time`]:
     /// scenes that stay in it, and fill it, share the space of Embree's f32 numbers. An empty box is
     /// right, too.
     pub fn for_frames(
         backend: Backend,
         precision: Precision,
         threads: usize,
-        stage: Bounds,
+        animation_bounds: Bounds,
     ) -> Self {
         // The BVH is in f64.
-        let _ = stage;
+        let _ = animation_bounds;
         let cache = FrameCache {
             previous: PreviousFrame::default(),
             bvh: bvh::FrameCache::default(),
             #[cfg(feature = "embree")]
-            embree: embree::FrameCache::new(stage),
+            embree: embree::FrameCache::new(animation_bounds),
         };
         Self { cache: Some(cache), ..Self::new(backend, precision, threads) }
     }
@@ -156,7 +155,7 @@ impl IntersectorBuilder {
         let BuildStats { meshes_built, tlas_built, .. } = built;
         self.stats += if tlas_built == 0 {
             BuildStats {
-                tlas_kept: 1,
+                tlas_updated: 1,
                 instances_moved: diff.instances.len() as u64,
                 spheres_moved: diff.spheres.len() as u64,
                 ..built

@@ -2,7 +2,7 @@
 //!
 //! An [`Intersector`] traces batches of rays. Its implementations find the same hits: `Embree` (with the
 //! feature `embree`), [`Bvh`], the pure-Rust fallback and reference, and [`BruteForce`], for tests.
-//! They share the primitives' tests in [`primitive`]; they differ in which primitives they test.
+//! They share the intersection tests in [`primitive`], and differ in which primitives they test.
 
 mod blas_cache;
 mod brute_force;
@@ -34,7 +34,7 @@ use crate::scene::Scene;
 pub enum Coherence {
     /// Neighbours in the batch start and go alike, as primary and shadow rays do.
     Coherent,
-    /// Neighbours do not, such as secondary rays.
+    /// Neighbours in the batch differ, as secondary rays do.
     Incoherent,
 }
 
@@ -90,8 +90,8 @@ pub trait Intersector: Send + Sync {
         indices.into_iter().zip(active_occluded).for_each(|(i, value)| occluded[i] = value);
     }
 
-    /// True if a filter callback tests each hit that is found for these rays, before the search goes on;
-    /// for statistics.
+    /// True if a filter callback accepts or rejects each candidate hit of these rays; for
+    /// statistics.
     fn uses_filter(&self, _: Query, _: &RayBatch) -> bool {
         false
     }
@@ -117,7 +117,7 @@ pub enum Precision {
     /// Hits by formulas in f64, and on Embree triangles found by f32 rays.
     #[default]
     Fast,
-    /// The hits of exact arithmetic on the baked scene, for every ray.
+    /// Hits as exact arithmetic finds them on the scene as it is stored, for every ray.
     Certified,
 }
 
@@ -142,7 +142,7 @@ pub enum Backend {
 }
 
 impl Default for Backend {
-    /// Returns Embree where it is compiled in.
+    /// Returns Embree if it is compiled in, and else the pure-Rust BVH.
     fn default() -> Self {
         #[cfg(feature = "embree")]
         return Backend::Embree;

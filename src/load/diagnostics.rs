@@ -1,5 +1,5 @@
-//! The warnings of an importer, counted by reason, so that nothing is lost in silence and a broken file
-//! doesn't print a million lines.
+//! The warnings of an importer, counted by reason, so that nothing is lost silently and a broken
+//! file does not print a million lines.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -32,10 +32,11 @@ struct CountedWarning {
     first_place: String,
 }
 
-/// The kind of a warning: the list of the load report in which it stands beside the warnings.
+/// The kind of a warning: the list of the load report that it is in, apart from the list of all
+/// warnings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
-    /// None of them.
+    /// A warning that is in no other list.
     Note,
     Unsupported,
     Placeholder,

@@ -14,7 +14,7 @@ pub enum Limit {
     Json,
     /// The nodes of glTF files.
     Nodes,
-    /// The nodes of a glTF file that stand one below the other.
+    /// The depth of a glTF file's node tree: the nodes one below the other.
     Depth,
     /// The objects of the scene: instances of meshes, and the lights, cameras and animated objects of
     /// models.
@@ -41,7 +41,7 @@ pub enum Limit {
 }
 
 impl Limit {
-    /// All limits, in the order in which messages list them.
+    /// The limits, in the order in which messages list them.
     pub const ALL: [Self; 12] = [
         Self::Bytes,
         Self::Json,

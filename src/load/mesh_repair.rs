@@ -64,8 +64,8 @@ fn retain(triangles: &mut Vec<[u32; 3]>, is_retained: impl Fn(&[u32; 3]) -> bool
     (before - triangles.len()) as u64
 }
 
-/// Drops triangles with two corners at one place, and returns their number. Those whose corners are
-/// only collinear are kept: they close the seams between large faces and several small ones.
+/// Drops triangles with two corners at one position, and returns their number. Those whose corners
+/// are only collinear remain: they close the seams between large faces and several small ones.
 fn drop_degenerate(mesh: &mut Mesh) -> u64 {
     let Mesh { positions, triangles, .. } = mesh;
     let is_degenerate = |t: &[u32; 3]| {

@@ -1,7 +1,7 @@
 //! Loading: from a path to a [`Scene`](crate::scene::Scene) and a [`LoadReport`]. The only parsers.
 //!
 //! A model file (`.gltf`, `.glb`, `.obj`) loads as a scene of its own; a scene file (`.toml`)
-//! places such scenes within another one. What leaves this module is resolved and checked:
+//! merges such scenes into another one. What leaves this module is resolved and checked:
 //! nothing downstream parses, guesses or repairs.
 
 mod defaults;
@@ -41,10 +41,10 @@ const BARE_MODEL_SPP: u32 = 16;
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct LoadOptions {
-    /// The size of the picture in pixels, in place of the file's. A camera that frames the scene
-    /// is placed for it.
+    /// The size of the picture in pixels, instead of the file's. A camera that is added to frame
+    /// the scene depends on it.
     pub size: Option<[u32; 2]>,
-    /// The variant of the materials of a glTF file (`KHR_materials_variants`), in place of the
+    /// The variant of the materials of a glTF file (`KHR_materials_variants`), instead of the
     /// default materials; in a scene file, for each model that has a variant of this name and
     /// names none itself.
     pub variant: Option<String>,
@@ -82,8 +82,8 @@ impl LoadOptions {
     /// Loads a scene file or a bare model file, by its extension, as [`load`] does.
     ///
     /// # Errors
-    /// As [`load`]; when a file names another one outside, or asks for more than a limit allows,
-    /// unless the options say otherwise; and when no file has the variant.
+    /// The same as for [`load`]; when a file names another one outside, or asks for more than a
+    /// limit allows, unless the options say otherwise; and when no file has the variant.
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
         let path = path.as_ref();
         let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;

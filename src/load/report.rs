@@ -19,49 +19,49 @@ pub struct Loaded {
 /// ask.
 ///
 /// A face is a triangle; a polygon of n corners counts as the n − 2 triangles that it is cut into,
-/// and each point, line or curve counts as one. A mesh is read once, however often it stands in the
-/// scene. Of what is read, [`LoadReport::balances`] holds.
+/// and each point, line or curve counts as one. A mesh is read once, however many instances it has
+/// in the scene. Of what is read, [`LoadReport::balances`] holds.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadReport {
     /// Faces of all meshes that were read.
     pub read: u64,
-    /// Faces that stand in the scene, for rays to meet.
+    /// Faces that are in the scene, for rays to hit.
     pub handed_over: u64,
-    /// Faces that do not, by reason; no reason has 0.
+    /// Faces that are not in the scene, by reason; no reason has 0.
     pub dropped: BTreeMap<DropReason, u64>,
     /// Warnings: what could not be done as the files ask, or looks odd; one sentence each.
     pub warnings: Vec<String>,
     /// Features that a file uses and that are not supported; one sentence each, also among the
     /// warnings.
     pub unsupported: Vec<String>,
-    /// Pictures and materials in whose place a placeholder stands; one sentence each, also among
+    /// Images and materials that a placeholder replaces; one sentence each, also among
     /// the warnings.
     pub placeholders: Vec<String>,
     /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
     pub variants: BTreeSet<String>,
 }
 
-/// Why a face is not in the scene.
+/// The reason why a face is not in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DropReason {
-    /// Two of its corners are at one place, so that it covers nothing.
+    /// Two corners of the face have the same position, so that it covers nothing.
     Degenerate,
-    /// It has fewer than three corners.
+    /// The face has fewer than three corners.
     Incomplete,
-    /// It names a vertex that is not there.
+    /// The face names a vertex that is not there.
     IndexOutOfRange,
-    /// Its mesh stands only where it is scaled to 0 along some direction.
+    /// The mesh has only instances that are scaled to 0 along some direction.
     Flat,
-    /// Its mesh has no positions.
+    /// The mesh has no positions.
     NoPositions,
     /// A coordinate of a corner is not a finite number.
     NotFinite,
-    /// It is a point, a line, or a curved piece of a line or surface.
+    /// The primitive is a point, a line, or a curve or curved surface.
     UnsupportedMode,
 }
 
 impl DropReason {
-    /// Its name in JSON.
+    /// The name in JSON.
     pub fn name(self) -> &'static str {
         match self {
             Self::Degenerate => "degenerate",
@@ -91,22 +91,22 @@ impl DropReason {
 }
 
 impl LoadReport {
-    /// How many faces were dropped, for any reason.
+    /// The number of faces that were dropped, for any reason.
     pub fn dropped_total(&self) -> u64 {
         self.dropped.values().sum()
     }
 
-    /// Whether every face that was read was either dropped for a reason or handed over.
+    /// True if every face that was read was either dropped for a reason or handed over.
     pub fn balances(&self) -> bool {
         self.read == self.handed_over + self.dropped_total()
     }
 
-    /// Whether nothing was lost: no face dropped, every feature supported, every picture there.
+    /// True if nothing was lost: no face dropped, every feature supported, every image read.
     pub fn is_clean(&self) -> bool {
         self.dropped.is_empty() && self.unsupported.is_empty() && self.placeholders.is_empty()
     }
 
-    /// Adds what became of another file.
+    /// Adds the report of another file.
     pub fn add(&mut self, other: LoadReport) {
         self.read += other.read;
         self.handed_over += other.handed_over;

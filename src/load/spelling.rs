@@ -1,7 +1,7 @@
 //! The suggestions for misspelt names: "did you mean …?"
 
 /// The names of keys and values, each with the words that people write for it. Of several names for a
-/// word the first counts that can stand there.
+/// word the first counts that is possible there.
 const SYNONYMS: &[(&str, &str)] = &[
     ("absorption", "attenuation extinction"),
     ("aces", "filmic"),

@@ -294,7 +294,7 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
         let options = RenderOptions { backend, precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
-        assert_eq!((built.tlas_built, built.tlas_kept), (1, 5), "{backend:?} {precision:?}");
+        assert_eq!((built.tlas_built, built.tlas_updated), (1, 5), "{backend:?} {precision:?}");
         assert_ne!(films[0], films[1]);
     }
 }
@@ -303,7 +303,7 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
 fn tlas_counts(built: BuildStats) -> [u64; 5] {
     [
         built.tlas_built,
-        built.tlas_kept,
+        built.tlas_updated,
         built.instances_built,
         built.instances_moved,
         built.spheres_moved,

@@ -1,4 +1,4 @@
-//! The construction of a tree by the surface-area heuristic, in bins.
+//! The construction of a tree by the binned surface-area heuristic (SAH).
 //!
 //! Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007): the centres are
 //! sorted into bins along the widest axis, and the split between two bins that costs least is
@@ -9,15 +9,16 @@ use glam::DVec3;
 use crate::geometry::Bounds;
 use crate::intersect::bvh::tree::{MAX_DEPTH, Node, Tree};
 
+/// The number of bins along the split axis.
 const BINS: usize = 16;
-/// The size of the largest leaf that is not split when splitting costs more.
-const MAX_LEAF: usize = 8;
-/// The number of items up to which a subtree is built by one thread.
-const SERIAL: usize = 4096;
+/// The most items of a leaf, and fewer where a split costs less.
+const MAX_LEAF_ITEMS: usize = 8;
+/// The most items of a subtree that one thread builds.
+const MAX_SERIAL_ITEMS: usize = 4096;
 /// The cost of visiting a node, in units of testing an item.
 const VISIT_COST: f64 = 1.0;
 
-/// A box to be sorted into the tree.
+/// An item of the tree: a box and its number.
 #[derive(Clone, Copy)]
 struct Item {
     bounds: Bounds,
@@ -57,7 +58,7 @@ fn build_subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
         _ => split_at_median(items),
     };
     // Build both halves.
-    let large = items.len() > SERIAL;
+    let large = items.len() > MAX_SERIAL_ITEMS;
     let (low, high) = items.split_at_mut(middle);
     let after = first + middle as u32;
     let left = |low: &mut [Item]| build_subtree(low, first, depth + 1);
@@ -79,14 +80,17 @@ fn build_subtree(items: &mut [Item], first: u32, depth: usize) -> Vec<Node> {
     nodes
 }
 
-/// A way to split the items of a node.
+/// The best way to split the items of a node.
 enum Split {
+    /// No split: a leaf costs less.
     Leaf,
+    /// At the median of the centres, where no bins tell them apart.
     Middle,
+    /// Before a bin of an axis.
     At { axis: usize, bin: usize, bins: Bins },
 }
 
-/// Equal bins between two coordinates.
+/// Bins of equal width along an axis.
 #[derive(Clone, Copy)]
 struct Bins {
     lower: f64,
@@ -100,7 +104,7 @@ impl Bins {
     }
 }
 
-/// Finds the split that costs least.
+/// Finds the split that costs least, or a leaf.
 fn best_split(items: &[Item], bounds: &Bounds) -> Split {
     let centers = Bounds::from_points(items.iter().map(|i| i.center));
     let size = centers.size();
@@ -108,7 +112,7 @@ fn best_split(items: &[Item], bounds: &Bounds) -> Split {
     let bins = Bins { lower: centers.lower[axis], scale: BINS as f64 / size[axis] };
     // All centres in one point, or too close for the reciprocal: no bins to tell them apart.
     if !bins.scale.is_finite() {
-        return if items.len() <= MAX_LEAF { Split::Leaf } else { Split::Middle };
+        return if items.len() <= MAX_LEAF_ITEMS { Split::Leaf } else { Split::Middle };
     }
     // Sort the items into bins.
     let mut filled = [(Bounds::EMPTY, 0usize); BINS];
@@ -135,7 +139,7 @@ fn best_split(items: &[Item], bounds: &Bounds) -> Split {
     }
     // Compare with the cost of a leaf.
     let area = bounds.half_area();
-    if items.len() <= MAX_LEAF && VISIT_COST * area + best.0 >= items.len() as f64 * area {
+    if items.len() <= MAX_LEAF_ITEMS && VISIT_COST * area + best.0 >= items.len() as f64 * area {
         return Split::Leaf;
     }
     if best.0.is_finite() { Split::At { axis, bin: best.1, bins } } else { Split::Middle }

@@ -40,18 +40,19 @@ struct Instances {
     object_spaces: Vec<ObjectSpace>,
 }
 
-/// The trees that frames share: those of the meshes, and those above them while nothing in these moves.
+/// The trees that frames share: those of the meshes, and those over spheres and over instances as
+/// long as none of these move.
 #[derive(Default)]
 pub struct FrameCache {
     meshes: BlasCache<MeshTree>,
     spheres: Arc<Tree>,
     instances: Arc<Instances>,
-    /// The number of times that one of the trees above the meshes was built, or both.
+    /// The number of frames for which a tree over spheres or instances was built.
     tlas_count: u64,
 }
 
 impl FrameCache {
-    /// The numbers of meshes and of levels above them that were built.
+    /// The numbers of BLASes and TLASes that were built.
     pub fn stats(&self) -> BuildStats {
         let meshes_built = self.meshes.built();
         BuildStats { meshes_built, tlas_built: self.tlas_count, ..BuildStats::default() }
@@ -71,8 +72,8 @@ impl<'s> Bvh<'s> {
         Self { primitives, spheres: sphere_tree(scene).into(), instances, meshes }
     }
 
-    /// Builds the trees of a frame, with those that the cache has from the frame before. Only `diff` moved
-    /// since; it is `None` where the scene is another one.
+    /// Builds the trees of a frame, with those that the cache has from the frame before. `diff` is
+    /// what has moved since then, or `None` if the scene is another one.
     pub(super) fn build_frame(
         scene: &'s Scene,
         precision: Precision,

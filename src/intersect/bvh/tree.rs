@@ -11,7 +11,7 @@ pub const MAX_DEPTH: usize = 96;
 #[derive(Default)]
 pub struct Tree {
     pub(super) nodes: Vec<Node>,
-    /// The items, with those of a leaf in a row.
+    /// The item numbers, sorted so that those of a leaf are contiguous.
     pub(super) items: Vec<u32>,
 }
 
@@ -19,31 +19,32 @@ pub struct Tree {
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
     pub(super) bounds: Bounds,
-    /// The first item of a leaf, or the second child of an inner node (the first one follows the node).
+    /// The first item of a leaf, or the second child of an inner node (the first one is the next
+    /// node).
     pub(super) start: u32,
     /// The number of items in a leaf; 0 for an inner node.
     pub(super) count: u32,
 }
 
-/// The error of the slab test, relative to the coordinates, with room to spare.
-const SLAB: f64 = 64.0 * f64::EPSILON;
+/// The bound on the error of the slab test, relative to the coordinates.
+const SLAB_ERROR: f64 = 64.0 * f64::EPSILON;
 
-/// A ray as the traversal needs it: with reciprocals, and a margin for what was rounded.
+/// A ray prepared for the traversal: with reciprocals, and a margin for rounding errors.
 pub struct TraversalRay {
     inverse: DVec3,
     origin: DVec3,
-    /// The part of the widening of boxes that does not depend on their own coordinates.
+    /// The distance by which boxes are widened, apart from the part that depends on the boxes.
     margin: f64,
 }
 
 impl TraversalRay {
-    /// Makes a ray that may be off by `error` on each axis, anywhere that matters.
+    /// Makes a ray that may be off by `error` on each axis, anywhere in the box of the tree.
     ///
     /// The slab test below is off by a few ulp of |origin| + |box|: each box is widened by
-    /// [`SLAB`] times that, and by the ray's own error, so that no box is missed whose primitive
-    /// is hit.
+    /// [`SLAB_ERROR`] times that, and by the ray's own error, so that no box is missed whose
+    /// primitive is hit.
     pub fn new(origin: DVec3, direction: DVec3, error: f64) -> Self {
-        let margin = error + SLAB * origin.abs().max_element();
+        let margin = error + SLAB_ERROR * origin.abs().max_element();
         Self { inverse: direction.recip(), origin, margin }
     }
 
@@ -78,7 +79,7 @@ impl Tree {
         mut test: impl FnMut(u32, &mut f64) -> bool,
     ) -> bool {
         let Some(root) = self.nodes.first() else { return false };
-        let margin = ray.margin + SLAB * root.bounds.max_abs();
+        let margin = ray.margin + SLAB_ERROR * root.bounds.max_abs();
         let mut stack = [(0u32, 0.0f64); MAX_DEPTH + 1];
         let mut top = 0;
         let mut current = ray.entry_t(&root.bounds, margin, *limit).map(|_| 0u32);

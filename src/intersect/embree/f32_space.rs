@@ -57,13 +57,13 @@ impl F32Space {
         Self { center: bounds.center(), bounds, extent }
     }
 
-    /// Makes the space of a frame, with box `bounds`, of an animation that takes place mostly within
-    /// `stage`: the same for all frames whose boxes lie in the stage and are at least a quarter as
-    /// large, and else one that is the same while the box changes a little. The frames before have no
-    /// part in it.
-    pub fn for_animation(bounds: Bounds, stage: Bounds) -> Self {
+    /// Makes the space of a frame, with box `bounds`, of an animation that lies mostly within
+    /// `animation_bounds`: the same for all frames whose boxes lie in these bounds and are at least
+    /// a quarter as large, and else one that is the same while the box changes a little. It does
+    /// not depend on earlier frames.
+    pub fn for_animation(bounds: Bounds, animation_bounds: Bounds) -> Self {
         let own = Self::from_bounds(bounds);
-        let shared = Self { bounds, ..Self::snapped(stage) };
+        let shared = Self { bounds, ..Self::snapped(animation_bounds) };
         let far = (bounds.lower - shared.center).abs().max((bounds.upper - shared.center).abs());
         let fits = far.max_element() <= 0.5 * shared.extent;
         if fits && 4.0 * own.extent >= shared.extent { shared } else { Self::snapped(bounds) }
@@ -155,10 +155,10 @@ mod tests {
 
     #[test]
     fn a_frame_that_leaves_the_stage_or_is_small_on_it_has_a_space_of_its_own() {
-        let stage = cube(0.0, 8.0);
-        let shared = F32Space::for_animation(stage, stage);
+        let animation_bounds = cube(0.0, 8.0);
+        let shared = F32Space::for_animation(animation_bounds, animation_bounds);
         for bounds in [cube(9.0, 8.0), cube(0.0, 1.0)] {
-            let space = F32Space::for_animation(bounds, stage);
+            let space = F32Space::for_animation(bounds, animation_bounds);
             assert!(
                 !space.has_same_coordinates(&shared)
                     && space.has_same_coordinates(&F32Space::snapped(bounds))
@@ -168,8 +168,10 @@ mod tests {
 
     #[test]
     fn an_empty_scene_has_a_space() {
-        for (bounds, stage) in [(Bounds::EMPTY, cube(0.0, 1.0)), (cube(0.0, 1.0), Bounds::EMPTY)] {
-            let space = F32Space::for_animation(bounds, stage);
+        for (bounds, animation_bounds) in
+            [(Bounds::EMPTY, cube(0.0, 1.0)), (cube(0.0, 1.0), Bounds::EMPTY)]
+        {
+            let space = F32Space::for_animation(bounds, animation_bounds);
             assert!(space.center.is_finite() && space.extent > 0.0);
         }
     }

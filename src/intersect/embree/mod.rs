@@ -67,7 +67,7 @@ impl<'s> Embree<'s> {
     /// bring, and to compare the two.
     ///
     /// # Errors
-    /// As [`Embree::build`].
+    /// The same as for [`Embree::build`].
     pub fn build_single(scene: &'s Scene, precision: Precision, threads: usize) -> Result<Self> {
         let width = Some(PacketWidth::One);
         let options = BuildOptions { precision, threads, width, ..BuildOptions::default() };

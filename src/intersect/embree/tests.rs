@@ -11,7 +11,7 @@ fn random(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Spheres, a mesh that stands once and one that stands twice.
+/// Spheres, a mesh with one instance and a mesh with two.
 fn scene(state: &mut u64) -> Scene {
     let mut scene = Scene::default();
     let mut point = || DVec3::new(random(state), random(state), random(state));

@@ -1,4 +1,4 @@
-//! The Embree scene that rays are traced in, and what is kept of it from frame to frame.
+//! The Embree scene that rays are traced in, and what frames reuse of it.
 //!
 //! Where anything moved, Embree builds the tree over spheres and instances again. Its refitting
 //! (quality LOW for the scene, REFIT for the spheres) was tried: with one of 100,000 spheres in
@@ -166,8 +166,8 @@ fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
 
 /// The device, BLASes and TLAS that frames share.
 pub struct FrameCache {
-    /// The box in which the frames take place, as far as it is known.
-    stage: Bounds,
+    /// The box in which most of the animation lies, or an empty one.
+    animation_bounds: Bounds,
     fast: BlasCache<fast::Blas>,
     certified: BlasCache<certified::Blas>,
     /// The TLAS of the last frame.
@@ -179,10 +179,10 @@ pub struct FrameCache {
 }
 
 impl FrameCache {
-    /// Makes an empty cache, for frames that take place mostly within `stage`.
-    pub fn new(stage: Bounds) -> Self {
+    /// Makes an empty cache, for frames that lie mostly within `animation_bounds`.
+    pub fn new(animation_bounds: Bounds) -> Self {
         Self {
-            stage,
+            animation_bounds,
             fast: BlasCache::default(),
             certified: BlasCache::default(),
             tlas: None,
@@ -209,7 +209,7 @@ impl FrameCache {
         mesh_bounds: &[Bounds],
         diff: Option<&FrameDiff>,
     ) -> Result<Arc<Tlas>> {
-        let space = F32Space::for_animation(scene.bounds_with(mesh_bounds), self.stage);
+        let space = F32Space::for_animation(scene.bounds_with(mesh_bounds), self.animation_bounds);
         // Taken, so that nothing half changed stays behind an error.
         let mut last = self.tlas.take();
         // An intersector that still traces the last frame holds it, too: then it must not change.

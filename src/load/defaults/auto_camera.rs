@@ -108,7 +108,7 @@ mod tests {
     use crate::scene::{Instance, MaterialId, Mesh, Sphere};
     use glam::DAffine3;
 
-    /// Returns the place of a point in the image, from −1 to 1 across it and upwards.
+    /// Returns the position of a point in the image, from −1 to 1 across it and upwards.
     fn project(camera: &Camera, size: [u32; 2], point: DVec3) -> [f64; 2] {
         let to = point - camera.position;
         let depth = to.dot(camera.forward);

@@ -1,4 +1,4 @@
-//! The extents of a scene: how far it reaches along given directions.
+//! The extents of a scene: its greatest coordinates along given directions.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

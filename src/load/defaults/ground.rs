@@ -6,11 +6,11 @@ use super::auto_lighting::BACKGROUND;
 use super::extents::extents;
 use crate::scene::{LightKind, Material, Plane, Scene};
 
-/// The distance of the ground from the lowest point of a model, as a share of its size: so a flat
-/// bottom does not coincide with it.
+/// The distance of the ground from the lowest point of a model, as a share of its size, so
+/// that a flat bottom does not coincide with it.
 const GAP: f64 = 1e-4;
 
-/// Adds a matt plane just below the lowest point of a scene, on which its shadow falls. Without a
+/// Adds a matt plane just below the lowest point of a scene, which receives its shadows. Without a
 /// shadow it looks like the background, so that it has no horizon; where point or spot lights shine
 /// on it, it is an even grey instead.
 ///

@@ -1,4 +1,4 @@
-//! The extensions that are read, and the refusal of files that require others.
+//! The check of the extensions that a file uses: files that require an unknown one are refused.
 
 use gltf::json;
 
@@ -17,42 +17,42 @@ const READ: [&str; 18] = [
     "KHR_texture_transform",
 ];
 
-/// The extensions that say nothing of what is seen: metadata, physics, sound, what can be clicked,
-/// and coarser meshes beside the ones that are shown.
+/// The extensions that are accepted and not read, since they do not change the image: metadata,
+/// physics, sound, interaction, and coarser levels of detail.
 #[rustfmt::skip]
-const UNSEEN: [&str; 15] = [
+const NON_VISUAL: [&str; 15] = [
     "EXT_feature_metadata", "EXT_instance_features", "EXT_mesh_features",
     "EXT_structural_metadata", "FB_ngon_encoding", "GODOT_single_root", "KHR_audio_emitter",
     "KHR_interactivity", "KHR_node_hoverability", "KHR_node_selectability",
     "KHR_physics_rigid_bodies", "KHR_xmp", "KHR_xmp_json_ld", "MSFT_lod", "MSFT_physics",
 ];
-/// The beginnings of the names of further such extensions.
-const UNSEEN_FAMILIES: [&str; 6] =
+/// The prefixes of the names of further extensions that do not change the image.
+const NON_VISUAL_PREFIXES: [&str; 6] =
     ["OMI_collider", "OMI_physics_", "OMI_seat", "OMI_spawn_point", "OMI_vehicle_", "OMI_link"];
 
-/// Refuses a file that cannot be shown without an extension that isn't read, and warns of
-/// extensions that a file uses but can do without.
+/// Refuses a file that requires (`extensionsRequired`) an extension that is not accepted, and warns
+/// of others that it uses (`extensionsUsed`).
 pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
-    let is_read = |name: &str| {
+    let is_accepted = |name: &str| {
         READ.contains(&name)
-            || UNSEEN.contains(&name)
-            || UNSEEN_FAMILIES.iter().any(|family| name.starts_with(family))
+            || NON_VISUAL.contains(&name)
+            || NON_VISUAL_PREFIXES.iter().any(|prefix| name.starts_with(prefix))
     };
     for (i, name) in root.extensions_required.iter().enumerate() {
-        if !is_read(name) {
+        if !is_accepted(name) {
             return Err(Error::input(format!("the file requires {name}, which is not read"))
                 .with_location(Location::Json(format!("extensionsRequired[{i}]")))
-                .help(remedy(name)));
+                .help(advice(name)));
         }
     }
-    for name in root.extensions_used.iter().filter(|name| !is_read(name)) {
+    for name in root.extensions_used.iter().filter(|name| !is_accepted(name)) {
         diagnostics.unsupported(&format!("the extension {name} is not read"), 1, String::new);
     }
     Ok(())
 }
 
 /// The advice on a file that requires an extension.
-fn remedy(name: &str) -> &'static str {
+fn advice(name: &str) -> &'static str {
     match name {
         "KHR_meshopt_compression" => {
             "`npx @gltf-transform/cli copy IN.glb OUT.glb` writes it uncompressed"

@@ -1,6 +1,6 @@
-//! glTF 2.0 files, text and binary.
+//! The importer of glTF 2.0 files, text and binary.
 //!
-//! The `gltf` crate gives the types of the JSON. Indices, offsets and URIs are followed here, with
+//! The `gltf` crate gives the types of the JSON. Indices, offsets and URIs are resolved here, with
 //! checks, since the crate's own readers trust the file. docs/formats.md says what is read, and how
 //! it maps to a scene.
 
@@ -24,7 +24,7 @@ use crate::load::{Loaded, ModelOptions};
 /// # Errors
 /// When it cannot be read, is damaged, or requires an extension that isn't read; the error has a
 /// JSON path. When it has no animation of the chosen name.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &ModelOptions) -> Result<Loaded> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &ModelOptions) -> Result<Loaded> {
     let path = file.path.clone();
     let bytes = file.read(sandbox)?;
     let load = || {
@@ -37,7 +37,7 @@ pub fn load(file: OpenedFile, sandbox: &Sandbox, choice: &ModelOptions) -> Resul
             None => diagnostics.note("the JSON is too large to be held against the standard"),
         }
         extensions::check(&document.root, &mut diagnostics)?;
-        import::import(&path, &document, bin, sandbox, choice, diagnostics)
+        import::import(&path, &document, bin, sandbox, options, diagnostics)
     };
     load().map_err(|e| e.at(&path))
 }

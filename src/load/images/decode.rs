@@ -17,10 +17,10 @@ use crate::scene::{Image, Texels};
 const MAX_SIDE: u32 = 1 << 15;
 /// The pixels for each byte of a file that do not count toward the limit.
 const FREE_PIXELS_PER_BYTE: u64 = 16;
-/// The number of encoded images that are kept in memory until they are decoded in parallel.
+/// The number of encoded images that are read into memory, and then decoded in parallel.
 const BATCH: usize = 16;
 
-/// The place of the bytes of an image (PNG, JPEG, WebP, TGA, BMP, Radiance HDR, OpenEXR or KTX 2).
+/// The source of the bytes of an image (PNG, JPEG, WebP, TGA, BMP, Radiance HDR, OpenEXR or KTX 2).
 pub enum Source<'a> {
     /// Bytes in memory, and the name of the image.
     Bytes(Cow<'a, [u8]>, String),

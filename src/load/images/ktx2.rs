@@ -11,11 +11,11 @@ use crate::scene::Texels;
 
 /// The first bytes of every KTX 2 file.
 const IDENTIFIER: &[u8; 12] = b"\xABKTX 20\xBB\r\n\x1A\n";
-/// The place, in the header, of the offset and length of the key/value data.
+/// The position, in the header, of the offset and length of the key/value data.
 const KEY_VALUE_DATA: std::ops::Range<usize> = 56..64;
-/// The place of the offset and length of the supercompression global data.
+/// The position of the offset and length of the supercompression global data.
 const GLOBAL_DATA: usize = 64;
-/// The place of the offset, length and uncompressed length of the first and largest level.
+/// The position of the offset, length and uncompressed length of the first and largest level.
 const LEVEL: usize = 80;
 /// Vulkan's formats: undefined, and blocks of 4×4 floats.
 const UNDEFINED: u32 = 0;

@@ -34,7 +34,7 @@ struct PendingImage<Source> {
 
 /// An image that was decoded, only named, or could not be read; and the textures that show it.
 pub struct DecodedImage<Source> {
-    /// The place of its bytes, as it was given to the cache.
+    /// The source of its bytes, as it was given to the cache.
     pub source: Source,
     /// The image, or the error that prevented it.
     pub image: Result<Image>,

@@ -34,9 +34,9 @@ pub struct ModelInstance {
     pub transform: DAffine3,
     /// The space that it moves with, into which `transform` leads; none for the world.
     pub node: Option<NodeId>,
-    /// The material of all of it, in place of the model's own.
+    /// The material that replaces all of the model's own.
     pub material: Option<MaterialId>,
-    /// True if it keeps light from what lies behind it.
+    /// True if the instance casts shadows.
     pub casts_shadow: bool,
     /// True if the model's own lights shine.
     pub has_lights: bool,

@@ -6,12 +6,12 @@ use std::path::Path;
 use crate::error::Result;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 
-/// Opens a file by the name that a model has for it: as it stands, or as written on Windows, or beside
+/// Opens a file by the name that a model has for it: unchanged, or as written on Windows, or beside
 /// the model when the folder it was in is on another machine; and where none is there, in upper or
 /// lower case.
 ///
 /// # Errors
-/// As [`Sandbox::open`], of the name as it stands.
+/// When no such file can be opened; the error of [`Sandbox::open`] is about the unchanged name.
 pub fn open_file(sandbox: &Sandbox, folder: &Path, name: &str) -> Result<OpenedFile> {
     let slashes = name.replace('\\', "/");
     let last = slashes.rsplit('/').next().unwrap_or_default();
@@ -27,7 +27,7 @@ pub fn unquote(name: &str) -> &str {
 }
 
 /// Finds a file below a folder by its path from there, ignoring the case. Only what is really below the
-/// folder is searched: no link is followed out of it.
+/// folder is searched: no symbolic link leads out of it.
 fn find_ignoring_case(folder: &Path, name: &str) -> Option<String> {
     let is_current = folder.as_os_str().is_empty();
     let mut path = if is_current { Path::new(".") } else { folder }.to_owned();

@@ -1,4 +1,4 @@
-//! The indices of faces. Nearly all faces of nearly all files can be handed to tobj as they stand,
+//! The indices of faces. Nearly all faces of nearly all files can be handed to tobj unchanged,
 //! which a scan tells; the others are parsed: those with negative indices, indices of nothing, or
 //! corners that name different attributes.
 
@@ -75,7 +75,7 @@ pub fn write_face(corners: &[Corner], attributes: Attributes, out: &mut String) 
     out.push('\n');
 }
 
-/// A face that tobj reads as it stands.
+/// A face that tobj reads unchanged.
 #[derive(Debug, PartialEq)]
 pub struct PlainFace {
     /// The number of its corners, at least 3.
@@ -108,7 +108,7 @@ pub fn scan_face(line: &[u8], counts: [u32; 3]) -> Option<PlainFace> {
     }
 }
 
-/// Scans `v`, `v/vt`, `v//vn` or `v/vt/vn`, and returns what follows it: a space or the line's end.
+/// Scans `v`, `v/vt`, `v//vn` or `v/vt/vn`, and returns the rest after it: a space or the line's end.
 fn scan_corner(word: &[u8]) -> Option<(Corner, &[u8])> {
     let (v, rest) = scan_digits(word)?;
     let (corner, rest) = match rest {
@@ -131,12 +131,12 @@ fn scan_corner(word: &[u8]) -> Option<(Corner, &[u8])> {
     rest.first().is_none_or(u8::is_ascii_whitespace).then_some((corner, rest))
 }
 
-/// Scans an index that is not 0, which would stand for none.
+/// Scans an index that is not 0, which is no index.
 fn scan_nonzero(text: &[u8]) -> Option<(u32, &[u8])> {
     scan_digits(text).filter(|(index, _)| *index != 0)
 }
 
-/// Scans a whole number of digits alone, and returns it with what follows it.
+/// Scans a whole number of digits alone, and returns it with the rest after it.
 pub fn scan_digits(text: &[u8]) -> Option<(u32, &[u8])> {
     let mut value = 0u32;
     let mut end = 0;

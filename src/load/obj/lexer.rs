@@ -124,7 +124,7 @@ fn parse_statement(line: &str) -> Statement<'_> {
     Statement { keyword: keyword.into(), rest: rest.trim_start().into() }
 }
 
-/// Returns a text without its comment, which begins at a `#` that stands first or after a space: names
+/// Returns a text without its comment, which begins at a `#` that is first or after a space: names
 /// may hold a `#`, and so does Microsoft's `1.#QNAN`.
 fn strip_comment(text: &str) -> &str {
     let is_start = |(at, _): &(usize, &str)| {

@@ -111,7 +111,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         }
     }
 
-    /// Returns roughness and metalness, where a statement is about them; a map counts in place of its
+    /// Returns roughness and metalness, where a statement sets them; a map counts in place of its
     /// value, since programs write any value beside it.
     fn metallic(&mut self, material: &Material) -> Option<MetallicRoughnessMaps> {
         let [pr, pm, map_pr, map_pm] =

@@ -1,15 +1,15 @@
 //! The importer of Wavefront OBJ files with their MTL files; docs/formats.md says what is read, and how.
 //!
 //! The tobj crate parses both kinds of file. But it gives up at the first line that it does not expect,
-//! without naming the line, and it loses count where only some vertices of a mesh have normals; and
-//! files from all over the world are full of such lines. So tobj is given a text of our own to read,
-//! nearly all of which are ranges of the file as it stands:
+//! without naming the line, and it misaligns normals where only some vertices of a mesh have them;
+//! and files from all over the world are full of such lines. So tobj reads a normalized text, which
+//! consists nearly everywhere of unchanged ranges of the file:
 //!
 //! 1. `lexer` decodes the bytes, and finds the lines and their statements.
 //! 2. `normalize` splits the text into chunks, and finds the `state` at the start of each.
 //! 3. `parse` sorts the lines of each chunk, in parallel, into vertices and the faces of groups: all
 //!    faces of a group become one mesh, and have the same attributes. Lines that tobj reads right are
-//!    kept as ranges of the file (`pieces`); the others are rewritten (`vertex_data`, `indices`) or
+//!    passed on as ranges of the file (`pieces`); the others are rewritten (`vertex_data`, `indices`) or
 //!    dropped, with a warning that names the line.
 //! 4. `tobj_input` is the text that tobj reads while later chunks are still being parsed: first all
 //!    vertices, then the faces, group by group. tobj unites the three indices of a corner.
@@ -53,7 +53,7 @@ use crate::scene::{Instance, Mesh, Scene, Transfer};
 /// Loads an `.obj` file; its images are read if the scene `needs_images`.
 ///
 /// # Errors
-/// When it cannot be read, is no text, or a line of it cannot be understood; the error names the
+/// When it cannot be read, is no text, or a line of it cannot be parsed; the error names the
 /// line.
 pub fn load(file: OpenedFile, sandbox: &Sandbox, needs_images: bool) -> Result<Loaded> {
     let path = file.path.clone();
@@ -74,11 +74,11 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> R
     // A mesh and an instance of each group.
     let mut library = MaterialLibrary::read(&info.libraries, path, sandbox, &mut diagnostics);
     let mut scene = Scene::default();
-    let full_color = full_color(&models);
+    let max_color_value = max_color_value(&models);
     for model in models {
         let index = model.name.parse().ok();
         let Some(group) = index.and_then(|i: usize| info.groups.get(i)) else { continue };
-        let Some(mesh) = build_mesh(&model.mesh, group, full_color, &mut diagnostics) else {
+        let Some(mesh) = build_mesh(&model.mesh, group, max_color_value, &mut diagnostics) else {
             continue;
         };
         let name = group.settings.material.as_deref().unwrap_or_default();
@@ -98,18 +98,18 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> R
     Ok(Loaded { scene, report })
 }
 
-/// Returns the value of a full vertex colour: 1, or 255 where a value is above 1.
-fn full_color(models: &[tobj::Model]) -> f32 {
+/// Returns the greatest value that vertex colours can have: 1, or 255 where one is above 1.
+fn max_color_value(models: &[tobj::Model]) -> f32 {
     let mut values = models.iter().flat_map(|model| &model.mesh.vertex_color);
     if values.any(|&x| x > 1.0) { 255.0 } else { 1.0 }
 }
 
-/// Builds the mesh of a group; none where it has no triangle. Its vertices' colours go up to
-/// `full_color`.
+/// Builds the mesh of a group, if it has a triangle. Vertex colours are divided by
+/// `max_color_value`.
 fn build_mesh(
     source: &tobj::Mesh,
     group: &FaceGroup,
-    full_color: f32,
+    max_color_value: f32,
     diagnostics: &mut Diagnostics,
 ) -> Option<Mesh> {
     let name = group.settings.name.as_deref();
@@ -119,7 +119,7 @@ fn build_mesh(
     // OBJ's v runs up the image, ours runs down.
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / full_color));
+    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / max_color_value));
     // Attributes and triangles, side by side.
     let attributes = || {
         let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();

@@ -13,7 +13,7 @@ use crate::load::diagnostics::Diagnostics;
 /// The name of a material whose name is empty, for tobj.
 pub const UNNAMED: &str = "(unnamed)";
 
-/// The kind of value that follows a statement's keyword.
+/// The kind of value that a statement has after its keyword.
 #[derive(Clone, Copy)]
 enum ValueKind {
     /// Three numbers from 0 up, or one for a grey.
@@ -30,7 +30,7 @@ enum ValueKind {
     Unsupported(&'static str),
 }
 
-/// Returns a statement's keyword as tobj has it, and the kind of value that must follow it.
+/// Returns a statement's keyword as tobj spells it, and the kind of value that it must have.
 fn statement_kind(keyword: &str) -> Option<(&'static str, ValueKind)> {
     use ValueKind::{Color, Ignored, IlluminationModel, Number, Texture, Unsupported};
     // Programs differ in the case that they write.
@@ -69,7 +69,7 @@ fn statement_kind(keyword: &str) -> Option<(&'static str, ValueKind)> {
     })
 }
 
-/// Normalizes the text of the file at `path`: one statement a line, all of them such as tobj reads.
+/// Normalizes the text of the file at `path` to statements that tobj reads, one on each line.
 pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> String {
     let mut out = String::with_capacity(text.len());
     let mut names = HashSet::new();
@@ -102,7 +102,7 @@ pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> Stri
             continue;
         }
         // Its value, where tobj is to read it.
-        match kind.read(rest) {
+        match kind.normalize(rest) {
             Ok(Some(value)) => {
                 let _ = writeln!(out, "{key} {value}");
             }
@@ -124,15 +124,15 @@ pub fn normalize(text: &str, path: &Path, diagnostics: &mut Diagnostics) -> Stri
 
 /// The reason why a value is not used.
 enum Unusable {
-    /// It is not of the kind that this describes.
+    /// The value is malformed; with the description of a valid one.
     Malformed(&'static str),
-    /// It is of this feature, which is not supported.
+    /// The value is of a feature that is not supported; with its name.
     Unsupported(&'static str),
 }
 
 impl ValueKind {
-    /// Returns the text of a value for tobj, if it is to read any.
-    fn read(self, text: &str) -> Result<Option<String>, Unusable> {
+    /// Returns a value as tobj is to read it; none if it is ignored.
+    fn normalize(self, text: &str) -> Result<Option<String>, Unusable> {
         let number = |word: &str| word.parse::<f32>().ok().filter(|x| x.is_finite() && *x >= 0.0);
         let read = match self {
             Self::Ignored => return Ok(None),
@@ -225,14 +225,14 @@ mod tests {
     }
 
     #[test]
-    fn unsupported_features_are_said_unless_they_are_zero() {
+    fn unsupported_features_are_reported_unless_they_are_zero() {
         let (text, said) = normalized("newmtl a\nPs 0\naniso 0.0\nPc 0.5\nrefl -type sphere a.png");
         assert_eq!(text, "newmtl a\n");
         assert!(said.len() == 2 && said[0].contains("clear coat"), "{said:?}");
     }
 
     #[test]
-    fn misplaced_and_unknown_statements_are_said() {
+    fn misplaced_and_unknown_statements_are_reported() {
         let (text, said) = normalized("Kd 1 1 1\nnewmtl a\nnewmtl a\nfoo");
         assert_eq!(text, "newmtl a\nnewmtl a\n");
         assert_eq!(said.len(), 3, "{said:?}");

@@ -1,9 +1,9 @@
 //! The normalization of an OBJ file to a text that tobj reads without errors.
 //!
-//! Threads share the file in chunks. Since a line's meaning depends on those before it, and a face may
-//! name a vertex that stands after it, the chunks are first [scanned](scan_chunk) for settings and the
-//! numbers of vertices; then they are [parsed](super::parse), while tobj already [reads](super::tobj_input)
-//! what is parsed.
+//! Threads share the file in chunks. Since a line's meaning depends on those before it, and a face
+//! may name a vertex that comes after it, the chunks are first [scanned](scan_chunk) for settings
+//! and the numbers of vertices; then they are [parsed](super::parse), while tobj already
+//! [reads](super::tobj_input) what is parsed.
 
 use std::sync::mpsc;
 
@@ -86,7 +86,7 @@ fn split(text: &str, size: usize) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Returns the state at the end of a chunk, as if nothing stood before it.
+/// Returns the state at the end of a chunk, as if the file began with it.
 fn scan_chunk(chunk: &str) -> State {
     let mut state = State { offset: chunk.len(), ..State::default() };
     for line in split(chunk, BLOCK).filter(|block| may_have_other_lines(block)).flat_map(lines) {

@@ -38,16 +38,16 @@ pub struct ChunkParser<'a> {
     chunk: &'a str,
     /// The offset of the chunk, and the lines before it.
     start: State,
-    /// The vertex data before the line.
-    so_far: [u32; 3],
-    /// The vertex data of the whole file.
+    /// The numbers of positions, texture coordinates and normals before the line.
+    counts_so_far: [u32; 3],
+    /// The numbers of vertex data in the whole file.
     total: VertexCounts,
     settings: FaceSettings,
-    /// The groups of the present settings, by the attributes that faces name: looked up once.
-    present: [Option<usize>; 4],
+    /// The indices of the groups with the current settings, by the attributes that faces name.
+    current_groups: [Option<usize>; 4],
     indices: HashMap<FaceGroup, usize>,
-    /// The section of the last line that was kept as it is, and the end of that line or of the
-    /// comments after it.
+    /// The section of the last unchanged line, and the end of that line or of the comments after
+    /// it.
     last: Option<(Section, usize)>,
     parsed: ParsedChunk,
 }
@@ -58,11 +58,11 @@ impl<'a> ChunkParser<'a> {
     pub fn new(chunk: &'a str, start: State, total: VertexCounts) -> Self {
         Self {
             chunk,
-            so_far: start.vertices.counts,
+            counts_so_far: start.vertices.counts,
             settings: start.settings.clone(),
             start,
             total,
-            present: [None; 4],
+            current_groups: [None; 4],
             indices: HashMap::new(),
             last: None,
             parsed: ParsedChunk::default(),
@@ -86,7 +86,7 @@ impl<'a> ChunkParser<'a> {
         Ok(self.parsed)
     }
 
-    /// Adds a line that tobj reads as it stands, or skips an empty one or a comment; returns true if
+    /// Adds a line that tobj reads unchanged, or skips an empty one or a comment; returns true if
     /// the line was one of these.
     fn add_plain(&mut self, line: &Line) -> bool {
         let start = self.start.offset + line.start;
@@ -123,12 +123,12 @@ impl<'a> ChunkParser<'a> {
         if !scan_numbers(rest).is_some_and(|count| (least..=most).contains(&count)) {
             return false;
         }
-        self.so_far[kind] += 1;
+        self.counts_so_far[kind] += 1;
         self.add_original(Section::Vertices, range);
         true
     }
 
-    /// Adds a line as it stands to a section.
+    /// Adds an unchanged line to a section.
     fn add_original(&mut self, section: Section, range: Range<usize>) {
         let is_continuation = self.last == Some((section, range.start));
         self.last = Some((section, range.end));
@@ -145,7 +145,7 @@ impl<'a> ChunkParser<'a> {
     /// Returns the index of the group of faces with these attributes, in the present settings.
     fn group(&mut self, attributes: Attributes) -> usize {
         let slot = usize::from(attributes.uvs) + 2 * usize::from(attributes.normals);
-        if let Some(index) = self.present[slot] {
+        if let Some(index) = self.current_groups[slot] {
             return index;
         }
         let mut settings = self.settings.clone();
@@ -159,7 +159,7 @@ impl<'a> ChunkParser<'a> {
         if index == next {
             self.parsed.groups.push((group, Pieces::default()));
         }
-        self.present[slot] = Some(index);
+        self.current_groups[slot] = Some(index);
         index
     }
 
@@ -167,7 +167,7 @@ impl<'a> ChunkParser<'a> {
     fn statement(&mut self, line: &Line, number: usize) -> Result<()> {
         let statement = line.statement();
         if self.settings.apply(&statement) {
-            self.present = [None; 4];
+            self.current_groups = [None; 4];
             return Ok(());
         }
         // Vertex data and faces are rewritten; all else that is drawn is counted and dropped.
@@ -177,7 +177,7 @@ impl<'a> ChunkParser<'a> {
         match keyword.as_ref() {
             "v" | "vt" | "vn" => {
                 let kind = vertex_data::KINDS.iter().position(|kind| kind == keyword).unwrap_or(0);
-                self.so_far[kind] += 1;
+                self.counts_so_far[kind] += 1;
                 let has_colors = self.total.has_colors;
                 let rewrite = |out: &mut String| vertex_data::rewrite(kind, rest, has_colors, out);
                 if !self.parsed.vertices.add_rewritten(rewrite)? {
@@ -204,7 +204,7 @@ impl<'a> ChunkParser<'a> {
 
     /// Rewrites a face, with absolute indices and the attributes that all of its corners have.
     fn face(&mut self, rest: &str, place: impl Fn() -> String) -> Result<()> {
-        let corners = parse_face(rest, self.so_far)?;
+        let corners = parse_face(rest, self.counts_so_far)?;
         let triangles = corners.len().saturating_sub(2).max(1) as u64;
         let diagnostics = &mut self.parsed.diagnostics;
         diagnostics.read(triangles);

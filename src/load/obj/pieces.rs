@@ -21,12 +21,13 @@ impl Piece {
     }
 }
 
-/// The pieces of a text; each consists of whole lines.
+/// The pieces of a text, in order; each consists of whole lines.
 #[derive(Debug, Default)]
 pub struct Pieces(pub Vec<Piece>);
 
 impl Pieces {
-    /// Adds a range of the original; if it continues the last piece, that one is extended.
+    /// Adds a line of the original: as a piece of its own, or to the end of the last piece if it
+    /// `is_continuation` of that one.
     pub fn add_original(&mut self, line: Range<usize>, is_continuation: bool) {
         match self.0.last_mut() {
             Some(Piece::Original(last)) if is_continuation => last.end = line.end,
@@ -34,7 +35,7 @@ impl Pieces {
         }
     }
 
-    /// Adds the lines that `write` appends to a text, and returns what it returns.
+    /// Adds the lines that `write` appends to the text that it is given, and returns its result.
     pub fn add_rewritten<T>(&mut self, write: impl FnOnce(&mut String) -> T) -> T {
         if let Some(Piece::Rewritten(text)) = self.0.last_mut() {
             return write(text);

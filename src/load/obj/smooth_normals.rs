@@ -17,7 +17,7 @@ const MIN_SHARE: usize = 1 << 14;
 /// The multiplier of a hash: 2⁶⁴ divided by the golden ratio, odd (D. Knuth, "The Art of Computer Programming", 6.4).
 const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
 
-/// Returns a normal for each vertex of a mesh: the mean of the normals of the triangles that meet at its
+/// Returns a normal for each vertex of a mesh: the mean of the normals of the triangles around its
 /// position, weighted by their angles there, so that it doesn't matter how polygons were cut
 /// (G. Thürmer and C. Wüthrich, "Computing vertex normals from polygonal facets", 1998), nor how many
 /// vertices are at one position for the sake of textures.

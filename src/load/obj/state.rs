@@ -1,9 +1,9 @@
-//! The state of an OBJ file at one of its lines: the statements before it set it.
+//! The parser state at a position in an OBJ file, as the statements before it determine it.
 
 use super::indices::Attributes;
 use super::lexer::Statement;
 
-/// The key of the faces that become one mesh.
+/// The key by which faces are grouped into meshes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct FaceGroup {
     /// The settings that the faces have.
@@ -12,7 +12,8 @@ pub struct FaceGroup {
     pub attributes: Attributes,
 }
 
-/// The settings that statements make for the faces after them; none where there was no statement yet.
+/// The settings that statements make for the faces after them; `None` where there was no statement
+/// yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct FaceSettings {
     /// The name of the object or group.
@@ -24,7 +25,7 @@ pub struct FaceSettings {
 }
 
 impl FaceSettings {
-    /// Applies a statement; returns true if it is a setting.
+    /// Applies a statement if it makes a setting, and returns true if so.
     pub fn apply(&mut self, statement: &Statement) -> bool {
         let rest = statement.rest.as_ref();
         match statement.keyword.as_ref() {
@@ -38,12 +39,12 @@ impl FaceSettings {
     }
 }
 
-/// The vertex data of a text.
+/// The numbers of vertex data lines in a part of a file.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct VertexCounts {
     /// The numbers of positions, texture coordinates and normals.
     pub counts: [u32; 3],
-    /// True if a position has a colour.
+    /// True if any position has a colour.
     pub has_colors: bool,
 }
 
@@ -61,21 +62,22 @@ impl VertexCounts {
     }
 }
 
-/// The state at a place of the file.
+/// The parser state at a position in the file.
 #[derive(Clone, Debug, Default)]
 pub struct State {
-    /// The offset of the place in the text.
+    /// The offset of the position, in bytes.
     pub offset: usize,
     /// The number of lines before it.
     pub lines: usize,
-    /// The vertex data before it.
+    /// The numbers of vertex data before it.
     pub vertices: VertexCounts,
     /// The settings for the faces after it.
     pub settings: FaceSettings,
 }
 
 impl State {
-    /// Moves on to the end of a chunk, given the state at its end as if nothing stood before it.
+    /// Advances to the end of a chunk, whose own state is that at its end if the file began with
+    /// it.
     pub fn advance(&mut self, chunk: State) {
         self.offset += chunk.offset;
         self.lines += chunk.lines;

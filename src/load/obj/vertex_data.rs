@@ -1,4 +1,4 @@
-//! The lines of vertex data. Nearly all of them can be handed to tobj as they stand, which a scan
+//! The lines of vertex data. Nearly all of them can be handed to tobj unchanged, which a scan
 //! tells; the others are parsed and rewritten: weights, colours, numbers in odd spellings.
 
 use smallvec::SmallVec;
@@ -83,7 +83,7 @@ fn parse_number(word: &str) -> Result<f32> {
 const MAX_DIGITS: u32 = 37;
 
 /// Scans the words after a keyword, and returns their number; none unless each is a finite number that
-/// tobj reads as it stands.
+/// tobj reads unchanged.
 pub fn scan_numbers(line: &[u8]) -> Option<usize> {
     let mut rest = line;
     let mut count = 0;
@@ -97,7 +97,7 @@ pub fn scan_numbers(line: &[u8]) -> Option<usize> {
     }
 }
 
-/// Scans a number, and returns what follows it: a space or the line's end.
+/// Scans a number, and returns the rest after it: a space or the line's end.
 fn scan_number(word: &[u8]) -> Option<&[u8]> {
     let unsigned = match word {
         [b'+' | b'-', rest @ ..] => rest,
@@ -120,14 +120,14 @@ fn scan_number(word: &[u8]) -> Option<&[u8]> {
     (ends && whole + exponent <= MAX_DIGITS).then_some(rest)
 }
 
-/// Counts the digits at the beginning of a text, and returns what follows them.
+/// Counts the digits at the beginning of a text, and returns the rest after them.
 fn count_digits(text: &[u8]) -> (u32, &[u8]) {
     let end = text.iter().position(|b| !b.is_ascii_digit()).unwrap_or(text.len());
     // A number is short: what doesn't fit is no plain number.
     (u32::try_from(end).unwrap_or(MAX_DIGITS + 1), text.get(end..).unwrap_or_default())
 }
 
-/// Scans an exponent of one or two digits, and returns it with what follows it.
+/// Scans an exponent of one or two digits, and returns it with the rest after it.
 fn scan_exponent(text: &[u8]) -> Option<(u32, &[u8])> {
     let (value, rest) = scan_digits(text)?;
     (value < 100).then_some((value, rest))

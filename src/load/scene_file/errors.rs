@@ -1,4 +1,5 @@
-//! The errors of serde and the TOML parser, in words that name the place and the way out.
+//! The errors of serde and the TOML parser, reworded to say where the mistake is and how to correct
+//! it.
 //!
 //! serde's errors are English text and nothing else, so this file parses that text: "unknown field
 //! `x`, expected one of `a`, `b`", "missing field `x`", "invalid type: x, expected y". If another
@@ -32,7 +33,7 @@ pub fn reword(source: &Source<'_>, mut error: toml::de::Error) -> Error {
         .unwrap_or_else(|| context.other(&message))
 }
 
-/// The place of an error of the TOML reader.
+/// The position of an error of the TOML reader.
 struct ErrorContext<'a> {
     source: &'a Source<'a>,
     span: Span,
@@ -150,7 +151,7 @@ impl ErrorContext<'_> {
     }
 }
 
-/// Returns the tables that have a key, for a key that stands in the wrong one.
+/// Returns the tables that have a key, for a key that is in the wrong one.
 fn tables_with_key(key: &str) -> Option<String> {
     let schema = schema();
     let tables = schema.get("properties")?.as_object()?;

@@ -2,8 +2,7 @@
 //!
 //! 1. `schema` holds the tables and values that may be written, and gives the JSON Schema of them.
 //! 2. serde reads the text into these tables; `errors` rewords its errors.
-//! 3. `build` turns the tables into a scene, and checks what only several keys together can get
-//!    wrong.
+//! 3. `build` turns the tables into a scene, and checks the keys that depend on one another.
 
 mod build;
 mod errors;
@@ -19,7 +18,7 @@ pub use schema::json_schema::schema;
 /// Loads a scene file, with the models that it names.
 ///
 /// # Errors
-/// When a file cannot be read, or says something that it cannot mean; the error names the line and
+/// When a file cannot be read, or its contents are not valid; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
 pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Result<Loaded> {
     let path = &file.path.clone();

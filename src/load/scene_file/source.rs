@@ -18,12 +18,12 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Returns an error at a place in the text.
+    /// Returns an error at a span of the text.
     pub fn error(&self, span: &Span, message: impl Into<String>) -> Error {
         self.locate(span, Error::input(message))
     }
 
-    /// Adds a place in the text to an error that names no file yet.
+    /// Adds the file and a span of its text to an error that names no file yet.
     pub fn locate(&self, span: &Span, error: Error) -> Error {
         error.at(self.path).with_location(Location::in_text(self.text, span.clone()))
     }
@@ -38,8 +38,8 @@ impl Source<'_> {
         self.folder().join(name)
     }
 
-    /// Returns the error that a file that the scene names, `kind` "model" or "image", cannot be
-    /// read.
+    /// Returns the error that a file cannot be read that the scene names: a `kind` of "model" or
+    /// "image".
     pub fn unreadable(&self, span: &Span, kind: &str, name: &str, error: &Error) -> Error {
         let path = self.resolve_path(name);
         let message = format!("the {kind} {}: {}", path.display(), error.message());
@@ -51,18 +51,18 @@ impl Source<'_> {
         }
     }
 
-    /// Returns the line of a place, counted from 1.
+    /// Returns the line on which a span starts, counted from 1.
     pub fn line(&self, span: &Span) -> usize {
         self.text[..span.start].matches('\n').count() + 1
     }
 
-    /// Returns the place as FILE:line:column, for warnings.
+    /// Returns the start of a span as FILE:line:column, for warnings.
     pub fn location(&self, span: &Span) -> String {
         format!("{}:{}", self.path.display(), Location::in_text(self.text, span.clone()))
     }
 
-    /// Returns the place of `key` in `key = value`, by the place of the value; that of the value
-    /// itself when the key is written another way.
+    /// Returns the span of `key` in `key = value`, given that of the value; the value's own when
+    /// the key is written another way.
     pub fn key_span(&self, key: &str, value: &Span) -> Span {
         let before = self.text[..value.start].trim_end();
         match before.strip_suffix('=').map(str::trim_end).and_then(|b| b.strip_suffix(key)) {
@@ -71,7 +71,7 @@ impl Source<'_> {
         }
     }
 
-    /// Returns the text at a place, cut short when it is long or goes on over several lines.
+    /// Returns the text of a span, cut short when it is long or has several lines.
     pub fn excerpt(&self, span: &Span) -> String {
         const MAX_LENGTH: usize = 40;
         let text = self.text.get(span.clone()).unwrap_or_default();

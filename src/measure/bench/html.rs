@@ -16,6 +16,7 @@ const STYLE: &str = include_str!("report.css");
 /// The width in pixels at which an image is shown, about half a page.
 const SHOWN_WIDTH: u32 = 570;
 
+/// The text on how to read the plot.
 const HOW_TO_READ: &str = "\
 The plot shows a mark for each mode: the time to build and render (the median of its runs, which \
 alternate with those of the other modes) against the error of its image. Left is faster, down is \
@@ -23,16 +24,19 @@ closer to the reference. The grey steps are the Pareto front: the modes that no 
 and RMSE together. The number at a mark is the samples per pixel; two numbers are the fewest and the \
 most of adaptive sampling. A setup named low uses Embree's low build quality.";
 
+/// The text on the ranks relative to the Pareto front.
 const RANKS: &str = "\
 <b>front</b>: no other mode is as fast with as small an RMSE. <b>hits</b>: another is, but with more \
 wrong hits. <b>dominated</b>: another is no slower, with no larger RMSE and no more wrong hits.";
 
+/// The text on the columns of the table.
 const COLUMNS: &str = "\
 RMSE and max: the root-mean-square and the largest difference of the radiance, as \
 <code>envers diff</code> computes them for EXRs. FLIP: the mean perceived difference of the PNGs, \
 from 0 to 1, at 67 pixels per degree. Wrong hits: pixels in which the ray through the centre hits \
 another primitive than a certified ray does.";
 
+/// The text on the images.
 const IMAGES: &str = "\
 Each image as a PNG shows it, next to its FLIP map: from black (no visible difference from \
 the reference) through red and yellow to white (0.5 and more). Hover over an image to see the \
@@ -49,7 +53,7 @@ pub fn html(report: &BenchReport, svg: &str) -> Result<String> {
     let svg = svg.replace(r#" xmlns="http://www.w3.org/2000/svg""#, "");
     let cores = machine.cores.map_or(String::new(), |cores| format!("{cores} cores, "));
     let embree = machine.embree.as_ref().map_or("none".to_owned(), |version| escape(version));
-    let encoded = report.images.par_iter().map(|image| Encoded::new(image, report.size));
+    let encoded = report.images.par_iter().map(|image| DataUris::new(image, report.size));
     let encoded = encoded.collect::<Result<Vec<_>>>()?;
     let figures = report.images.iter().zip(&encoded).skip(1);
     let figures: String = figures.map(|(image, encoded)| figure(image, encoded)).collect();
@@ -157,7 +161,7 @@ fn skipped(modes: &[SkippedMode]) -> String {
 }
 
 /// Returns an image and its FLIP map side by side.
-fn figure(image: &ModeImage, Encoded { image: picture, flip }: &Encoded) -> String {
+fn figure(image: &ModeImage, DataUris { image: picture, flip }: &DataUris) -> String {
     let modes = escape(&image.modes.join(", "));
     format!(
         "<figure>\n<figcaption>{modes}: FLIP {:.5}</figcaption>\n<div class=\"pair\">\
@@ -168,13 +172,13 @@ fn figure(image: &ModeImage, Encoded { image: picture, flip }: &Encoded) -> Stri
 }
 
 /// An image and its FLIP map as data URIs.
-struct Encoded {
+struct DataUris {
     image: String,
-    /// Empty where the image has no map.
+    /// The FLIP map; empty where the image has none.
     flip: String,
 }
 
-impl Encoded {
+impl DataUris {
     fn new(image: &ModeImage, size: [u32; 2]) -> Result<Self> {
         let flip: Vec<u8> = image.flip.iter().flat_map(|&flip| heat(flip * 2.0)).collect();
         let flip = if flip.is_empty() { String::new() } else { data_uri(&flip, size)? };

@@ -29,7 +29,7 @@ pub struct Mode {
 pub enum Samples {
     /// The same number for every pixel.
     Regular(u32),
-    /// AdaptiveSampling sampling with the default threshold; see [`AdaptiveSampling`].
+    /// Adaptive sampling with the default threshold; see [`AdaptiveSampling`].
     Adaptive {
         /// The fewest samples of a pixel.
         min: u32,

@@ -81,14 +81,14 @@ pub struct Row {
     /// The number of pixels whose ray hits something else than a certified one.
     #[serde(rename = "hits_wrong")]
     pub wrong_hits: u64,
-    /// The place of the mode relative to the Pareto front.
+    /// The rank of the mode relative to the Pareto front.
     #[serde(rename = "standing")]
     pub rank: ParetoRank,
     /// The fastest mode that dominates this one, if any does.
     pub dominated_by: Option<String>,
 }
 
-/// The place of a mode relative to the Pareto front.
+/// The rank of a mode relative to the Pareto front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ParetoRank {

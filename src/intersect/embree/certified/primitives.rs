@@ -1,7 +1,8 @@
 //! Spheres and triangles as user geometry of precision `certified`: each that Embree offers is tested in
 //! f64 with an error bound, and exactly where that cannot tell.
 //!
-//! Of Embree's own ray the tests only lower `tfar`, with slack, so that what lies behind is skipped.
+//! The tests change nothing of Embree's own ray but `tfar`: they lower it, with slack, so that what
+//! lies behind is skipped.
 
 use std::sync::Arc;
 

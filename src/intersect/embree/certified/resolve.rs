@@ -6,7 +6,7 @@ use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape}
 use crate::intersect::embree::packet::QueryContext;
 
 impl<const W: usize> QueryContext<'_, W> {
-    /// Keeps the primitive for those active rays that it is the closest hit of.
+    /// Records the primitive as the hit of those active rays that it is the closest hit of.
     #[inline(always)]
     pub fn keep_closest(
         &mut self,

@@ -1,4 +1,4 @@
-//! The last step of precision `certified`: the hits that were kept, with their distances rounded.
+//! The last step of precision `certified`: the rounding of the distances of the closest hits.
 
 use glam::DVec3;
 

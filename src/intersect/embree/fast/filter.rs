@@ -45,7 +45,7 @@ fn certain_hits_count<const OCCLUSION: bool, const W: usize>(
 /// True if the ray in `lane` certainly crosses the plane of the candidate within its segment.
 ///
 /// The f32 ray is off by at most the margin of the f32 space, and twice that is
-/// [`F32Space::t_uncertainty`] / 512: where its ends stand higher over the triangle than that, so do
+/// [`F32Space::t_uncertainty`] / 512: where its ends are higher over the triangle than that, so do
 /// those of the exact ray, on the same sides. A ray that grazes a triangle in whose plane it starts or
 /// ends may seem to cross it anywhere; the triangle that it left is one of those.
 ///

@@ -5,13 +5,13 @@ use crate::intersect::embree::ffi::{INVALID, RayHitRecord};
 use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Triangles;
 
-/// Intersects the triangles in `record` again in f64, and writes the hits; if there is none, nothing is
-/// written. Returns true if all of them lie within their rays' segments.
+/// Intersects the triangles in `record` again in f64, and writes the hits; writes nothing if
+/// there are no triangles. Returns true if all of them lie within their rays' segments.
 ///
-/// Where f64 says that the ray just misses the triangle that Embree's f32 arithmetic hit, the hit
-/// is kept, with t from the triangle's plane and the weights clamped: dropping it would leave a
-/// hole, since Embree no longer looked behind it. Where the plane gives no t either (the ray runs
-/// along it, or meets it outside the segment) Embree's own t is taken.
+/// Rays that just miss, in f64, the triangle that Embree hit in f32 count as hits, with t from the
+/// triangle's plane and the weights clamped: without them there would be a hole, since Embree has
+/// skipped what lies behind. If the plane gives no t either (the ray runs along it, or crosses it
+/// outside the segment), Embree's own t is taken.
 #[inline(always)]
 pub fn refine<const W: usize>(
     context: &QueryContext<'_, W>,

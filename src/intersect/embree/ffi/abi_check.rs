@@ -6,7 +6,7 @@ use embree4_rs::geometry::TriangleMeshGeometry;
 use embree4_sys as sys;
 
 use crate::error::{Error, Result};
-use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle, failed};
+use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle, embree_error};
 use crate::intersect::embree::ffi::queries::call_for_width;
 use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord, SENTINEL};
 
@@ -22,7 +22,7 @@ pub fn check() -> Result<()> {
     }
     let corners = [(-1.0, -1.0, 5.0), (3.0, -1.0, 5.0), (-1.0, 3.0, 5.0)];
     let mesh = TriangleMeshGeometry::try_new(&device.to_device(), &corners, &[(0, 1, 2)])
-        .map_err(failed)?;
+        .map_err(embree_error)?;
     let (quality, flags) = (sys::RTCBuildQuality::MEDIUM, sys::RTCSceneFlags::NONE);
     let scene = CommittedScene::new(&device, quality, flags, &mesh)?;
     let agrees = agrees::<1>(&scene) && agrees::<4>(&scene) && agrees::<8>(&scene);

@@ -1,5 +1,5 @@
-//! The callbacks that Embree calls while it traces: the one place where its pointers to the rays
-//! and hits of a packet are followed.
+//! The callbacks that Embree calls while it traces: the only file that dereferences its pointers to
+//! the rays and hits of a packet.
 //!
 //! Nearly always Embree passes a whole packet, ray `i` in lane `i`, which is tested side by side. Else
 //! (such as when few rays of a packet are left, and Embree goes on with one of them) it passes some
@@ -48,10 +48,10 @@ pub trait UserPrimitives {
 /// The tests of a primitive against rays. All of them are to be inlined always, so that they are
 /// compiled for the features of the width.
 pub trait UserPrimitive {
-    /// Keeps the primitive for those rays of a packet that it is the closest hit of.
+    /// Records the primitive as the hit of those rays of a packet that it is the closest hit of.
     fn intersect<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>);
 
-    /// Keeps the primitive for the ray in one lane if it is its closest hit.
+    /// Records the primitive as the hit of the ray in one lane if it is its closest hit.
     fn intersect_lane<const W: usize>(&self, context: &mut QueryContext<'_, W>, lane: usize);
 
     /// Sets `tfar` of each ray that the primitive occludes to minus infinity.

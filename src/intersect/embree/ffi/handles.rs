@@ -1,5 +1,5 @@
-//! The owners of Embree's devices, scenes and instances that embree4-rs does not own, and access to
-//! the handles that it keeps private.
+//! The owners of Embree's devices, scenes and instances, and access to the handles that embree4-rs
+//! has as private fields.
 #![allow(unsafe_code)]
 
 use std::ffi::c_void;
@@ -12,8 +12,9 @@ use embree4_sys as sys;
 use crate::error::{Error, Result};
 use crate::intersect::embree::ffi::packet_width::PacketWidth;
 
-/// The bytes that all devices of the process hold now, and the most that they ever held.
+/// The bytes that all devices of the process hold now.
 static HELD_BYTES: AtomicIsize = AtomicIsize::new(0);
+/// The most bytes that all devices of the process ever held together.
 static PEAK_BYTES: AtomicIsize = AtomicIsize::new(0);
 
 /// The most bytes that Embree held at any time in this process: trees, the vertices of meshes, and
@@ -31,7 +32,7 @@ unsafe extern "C" fn count_bytes(_: *mut c_void, bytes: isize, _: bool) -> bool 
 }
 
 /// Converts an error of embree4-rs into one of ours.
-pub fn failed(error: impl Display) -> Error {
+pub fn embree_error(error: impl Display) -> Error {
     Error::failed(format!("Embree does not start: {error}"))
 }
 
@@ -52,7 +53,7 @@ impl DeviceHandle {
     /// When the processor does not support the width.
     pub fn new(threads: usize, width: Option<PacketWidth>) -> Result<Self> {
         let config = format!("threads={threads}\0");
-        let device = embree4_rs::Device::try_new(Some(&config)).map_err(failed)?;
+        let device = embree4_rs::Device::try_new(Some(&config)).map_err(embree_error)?;
         const _: () = assert!(size_of::<embree4_rs::Device>() == size_of::<sys::RTCDevice>());
         // SAFETY: the crate's struct is its handle and nothing else, by the assertion here and in
         // `scene_handle`; the crate's version is pinned. Its reference is the one that `drop` releases.
@@ -63,7 +64,7 @@ impl DeviceHandle {
         Ok(device)
     }
 
-    /// The same device, as embree4-rs owns one.
+    /// Returns another reference to the device, in the type of embree4-rs.
     pub fn to_device(&self) -> embree4_rs::Device {
         // SAFETY: as in `new`. The reference that `clone` adds is the one that the struct releases
         // when it is dropped.
@@ -73,7 +74,7 @@ impl DeviceHandle {
         }
     }
 
-    /// Counts the memory that the device takes from now on.
+    /// Starts to count the memory that the device allocates.
     pub fn monitor_memory(&self) {
         // SAFETY: the device is live, and the callback uses no pointer.
         unsafe {
@@ -102,15 +103,15 @@ impl DeviceHandle {
         unsafe { sys::rtcGetDeviceProperty(self.handle, property) }
     }
 
-    /// Returns the first error since the last call, as one of ours.
-    pub fn check(&self, doing: &str) -> Result<()> {
+    /// Returns the first error on the device since the last check; `action` is what failed.
+    pub fn check(&self, action: &str) -> Result<()> {
         // SAFETY: the device is live.
         match unsafe { sys::rtcGetDeviceError(self.handle) } {
             sys::RTCError::NONE => Ok(()),
             sys::RTCError::OUT_OF_MEMORY => {
-                Err(Error::failed(format!("Embree ran out of memory while {doing}")))
+                Err(Error::failed(format!("Embree ran out of memory while {action}")))
             }
-            error => Err(Error::failed(format!("Embree failed while {doing}: {error:?}"))),
+            error => Err(Error::failed(format!("Embree failed while {action}: {error:?}"))),
         }
     }
 }
@@ -154,7 +155,7 @@ impl OpenScene {
         flags: sys::RTCSceneFlags,
     ) -> Result<Self> {
         let options = embree4_rs::SceneOptions { build_quality, flags };
-        embree4_rs::Scene::try_new(device.to_device(), options).map(Self).map_err(failed)
+        embree4_rs::Scene::try_new(device.to_device(), options).map(Self).map_err(embree_error)
     }
 
     /// Attaches a geometry, and returns its id.
@@ -162,16 +163,16 @@ impl OpenScene {
     /// # Errors
     /// When Embree runs out of memory.
     pub fn attach(&self, geometry: &dyn Geometry) -> Result<u32> {
-        self.0.attach_geometry(geometry).map_err(failed)
+        self.0.attach_geometry(geometry).map_err(embree_error)
     }
 
-    /// Commits the scene, which `device` is the device of.
+    /// Commits the scene, on the device that it was made with.
     ///
     /// # Errors
     /// When Embree runs out of memory.
     pub fn commit(self, device: &DeviceHandle) -> Result<CommittedScene> {
-        let failed = |e| Error::failed(format!("Embree cannot build the scene: {e}"));
-        Ok(CommittedScene { scene: self.0.commit().map_err(failed)?, device: device.clone() })
+        let build_error = |e| Error::failed(format!("Embree cannot build the scene: {e}"));
+        Ok(CommittedScene { scene: self.0.commit().map_err(build_error)?, device: device.clone() })
     }
 }
 
@@ -207,7 +208,8 @@ impl CommittedScene {
         self.device.check("placing what moved")
     }
 
-    /// Sets the transform of the instance with this geometry id; [`CommittedScene::recommit`] is to follow.
+    /// Sets the transform of the instance with this geometry id; [`CommittedScene::recommit`] must
+    /// be called afterwards.
     pub fn set_instance_transform(&mut self, id: u32, columns: &[[f32; 3]; 4]) {
         // SAFETY: `id` is one of the scene's instances, as the caller says.
         unsafe { set_transform(self.geometry(id), columns) }
@@ -219,9 +221,9 @@ impl CommittedScene {
         unsafe { sys::rtcGetGeometry(self.handle(), id) }
     }
 
-    /// The handle of the scene, which embree4-rs keeps private.
+    /// The handle of the scene, a private field of embree4-rs.
     ///
-    /// This goes when the crate offers its handles itself.
+    /// A version of the crate that gives access to its handles will replace this.
     #[inline(always)]
     pub(super) fn handle(&self) -> sys::RTCScene {
         use std::mem::{offset_of, size_of};
@@ -238,7 +240,7 @@ impl CommittedScene {
     }
 }
 
-/// A geometry of Embree's own kinds, to be attached to a scene.
+/// The owner of a geometry, which can be attached to scenes.
 pub struct OwnedGeometry(pub(super) sys::RTCGeometry);
 
 impl OwnedGeometry {
@@ -247,8 +249,8 @@ impl OwnedGeometry {
         Self(unsafe { sys::rtcNewGeometry(device.handle, kind) })
     }
 
-    /// Makes an instance of a scene, with the matrix from its space to the outer scene's, column by
-    /// column.
+    /// Makes an instance of a scene, with the columns of the matrix from its space to that of the
+    /// outer scene.
     ///
     /// # Errors
     /// When Embree runs out of memory.

@@ -1,18 +1,18 @@
 //! The packet widths, and the functions that are compiled once for each of them.
 //!
-//! All that depends on a width, and the processor features that come with it, is in the table at the end:
-//! the compiler and the detection at run time read the same list of features.
+//! The table at the end of this file lists the widths, each with the processor features that it
+//! needs: the compiler and the detection at run time read the same list.
 #![allow(unsafe_code)]
 
 use embree4_sys::RTCDeviceProperty;
 
-/// A loop over packets.
+/// A loop over packets, compiled once for each width.
 pub trait Kernel {
     /// Runs the loop with packets of `W` rays; to be inlined always.
     fn run<const W: usize>(self);
 }
 
-/// A function that Embree calls while it traces.
+/// A function that Embree calls while it traces, compiled once for each width.
 pub trait Callback {
     /// The record of arguments that Embree passes.
     type Arguments;
@@ -55,8 +55,8 @@ macro_rules! packet_widths {
         )*
 
         impl PacketWidth {
-            /// The widest packet that library and processor both have natively: a wider one is taken
-            /// apart by Embree and traced at the speed of single rays.
+            /// The widest packet that library and processor both support natively: Embree splits a
+            /// wider one, and traces it at the speed of single rays.
             pub fn native(property: impl Fn(RTCDeviceProperty) -> isize) -> Self {
                 let is_native = |width: Self, supported: Option<RTCDeviceProperty>| {
                     width.is_supported() && supported.is_none_or(|p| property(p) != 0)

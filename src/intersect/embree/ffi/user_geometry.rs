@@ -52,7 +52,7 @@ where
 }
 
 /// Tells Embree that primitives moved of the geometry with this id: they are as many as before, and
-/// `table` is where it was. [`CommittedScene::recommit`] is to follow.
+/// `table` is where it was. [`CommittedScene::recommit`] must be called afterwards.
 pub fn update_geometry(scene: &mut CommittedScene, id: u32, table: &impl PrimitiveTable) {
     let handle = scene.geometry(id);
     // SAFETY: `id` is one of the scene's geometries; the rest is as in `new_geometry`. The address is

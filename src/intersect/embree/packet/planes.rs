@@ -1,5 +1,5 @@
-//! The infinite planes beside a packet: they stand in no tree, since nothing infinite can be
-//! bounded.
+//! The tests of a packet against the infinite planes: these are in no tree, since nothing infinite
+//! can be bounded.
 
 use glam::DVec3;
 

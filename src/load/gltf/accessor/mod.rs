@@ -25,7 +25,7 @@ pub struct Accessors<'a> {
     buffers: &'a Buffers<'a>,
     /// The number of elements read so far.
     elements_read: Rc<Cell<u64>>,
-    /// Attributes that take the place of accessors, by the index of the accessor.
+    /// The attributes that replace accessors, by the index of the accessor.
     decompressed: HashMap<usize, DecompressedAttribute>,
 }
 

@@ -24,7 +24,7 @@ const BYTES_PER_FACE: u64 = 64;
 pub struct DecompressedPrimitive {
     /// The corners of its triangles.
     pub corners: Vec<u32>,
-    /// The attributes that take the place of its accessors, by the index of the accessor.
+    /// The attributes that replace its accessors, by the index of the accessor.
     pub attributes: HashMap<usize, DecompressedAttribute>,
 }
 

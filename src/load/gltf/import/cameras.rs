@@ -13,7 +13,7 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::json::lookup;
 use crate::scene::{Camera, Projection};
 
-/// Returns the camera of a node, if it has one that can be used.
+/// Returns the camera of a node, if it has one whose field of view and transform are valid.
 ///
 /// # Errors
 /// When the node refers to a missing camera.

@@ -17,7 +17,7 @@ use crate::scene::animation::{Animated, Curve, Deformation, Joint, Skin};
 /// The mesh of a primitive at a node.
 pub(super) struct MeshAtNode {
     pub(super) id: MeshId,
-    /// True if joints place it, whatever the transform of the node.
+    /// True if joints determine its position, whatever the transform of the node.
     pub(super) is_skinned: bool,
 }
 

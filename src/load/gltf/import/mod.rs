@@ -53,25 +53,25 @@ pub fn import(
     document: &Document,
     bin: Option<&[u8]>,
     sandbox: &Sandbox,
-    choice: &ModelOptions,
+    options: &ModelOptions,
     mut diagnostics: Diagnostics,
 ) -> Result<Loaded> {
     let root = &document.root;
     let buffers = Buffers::new(root, sandbox, path, bin);
     let accessors = Accessors::new(root, sandbox, &buffers);
     let mut clip =
-        AnimationClip::read(root, sandbox, &accessors, choice.animation, &mut diagnostics)?;
+        AnimationClip::read(root, sandbox, &accessors, options.animation, &mut diagnostics)?;
     let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
-    let textures = Textures::new(root, sandbox, &buffers, choice.needs_images);
+    let textures = Textures::new(root, sandbox, &buffers, options.needs_images);
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
         sandbox,
         accessors,
         materials: Materials::new(root, textures),
-        variants: Variants::read(root, choice.variant),
+        variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
         nodes: &nodes,
         joints: HashMap::new(),

@@ -1,4 +1,4 @@
-//! MorphTarget targets.
+//! Morph targets.
 
 use gltf::json;
 use gltf::json::Value;

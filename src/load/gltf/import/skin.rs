@@ -71,7 +71,7 @@ pub fn read_influences(
 /// The joints of a skin.
 #[derive(Clone)]
 pub struct SkinJoints {
-    /// The joints as the file places them.
+    /// The joints with the transforms that the file gives them.
     pub still: Vec<Joint>,
     /// The joints as they move with the nodes of the animation.
     pub animated: Vec<Joint>,

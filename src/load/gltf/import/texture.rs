@@ -48,7 +48,7 @@ struct ImageSource<'a> {
     path: String,
 }
 
-/// The place of an image's bytes.
+/// The source of an image's bytes.
 #[derive(Clone, Copy)]
 enum ImageBytes<'a> {
     BufferView(&'a [u8]),
@@ -69,10 +69,10 @@ impl<'a> Textures<'a> {
     }
 
     /// The texture of the scene for a material's reference, which is at the JSON path `by`; it is
-    /// placed by the texture coordinates `set` of the scene's mesh.
+    /// mapped by the texture coordinates `set` of the scene's mesh.
     ///
     /// # Errors
-    /// When the file's own references lead nowhere.
+    /// When a reference in the file leads nowhere.
     pub fn texture(
         &mut self,
         reference: TextureReference,

@@ -4,7 +4,7 @@ use glam::{Affine2, Mat2, Vec2};
 use gltf::json;
 use gltf::json::texture::Info;
 
-/// A reference to a texture, and how that is placed.
+/// A reference to a texture, with the transform of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureReference {
     /// The index of the texture in the file.

@@ -28,7 +28,7 @@ pub fn estimated_memory(bytes: &[u8]) -> u64 {
     total
 }
 
-/// The largest memory of JSON that is validated: its values are kept beside the crate's types.
+/// The largest memory of JSON that is validated: its values are stored beside the crate's types.
 const MAX_VALIDATED_MEMORY: u64 = 1 << 28;
 
 /// The JSON of a file.

@@ -73,16 +73,16 @@ pub const fn optional(name: &'static str, kind: Kind) -> Property {
     Property { name, is_required: false, kind }
 }
 
-/// All numbers.
+/// The range of all numbers.
 pub const ALL: NumberRange =
     NumberRange { least: f64::NEG_INFINITY, is_open: false, most: f64::INFINITY };
-/// 0 and above.
+/// The range of 0 and above.
 pub const NOT_NEGATIVE: NumberRange = NumberRange { least: 0.0, ..ALL };
-/// Above 0.
+/// The range above 0.
 pub const ABOVE_0: NumberRange = NumberRange { is_open: true, ..NOT_NEGATIVE };
-/// From 0 to 1.
+/// The range from 0 to 1.
 pub const SHARE: NumberRange = NumberRange { most: 1.0, ..NOT_NEGATIVE };
-/// From −1 to 1.
+/// The range from −1 to 1.
 const WITHIN_1: NumberRange = NumberRange { least: -1.0, most: 1.0, ..ALL };
 
 use Kind::{Attributes, Flag, Index, Integer, List, Number, Object, OneOf, Set, Text, Uri, Vector};

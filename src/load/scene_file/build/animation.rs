@@ -6,7 +6,7 @@ use super::objects::{NamedObjects, ObjectKind, ResolvedPoint};
 use super::tracks::{ObjectCurves, add_track};
 use crate::error::{Error, Result};
 use crate::load::scene_file::schema::animation_tables::{AnimationTable, OrbitTable};
-use crate::load::scene_file::schema::spanned::{At, Table};
+use crate::load::scene_file::schema::spanned::{Spanned, Table};
 use crate::load::scene_file::schema::tables::{ModelTable, SceneTable};
 use crate::load::scene_file::source::Source;
 use crate::scene::animation::{
@@ -61,7 +61,7 @@ pub fn build_animation(
     tables: &SceneTable,
     objects: &NamedObjects,
 ) -> Result<(Option<Animation>, ObjectMotions)> {
-    let Some(At { value: Table(table), .. }) = &tables.animation else {
+    let Some(Spanned { value: Table(table), .. }) = &tables.animation else {
         return Ok((None, ObjectMotions::default()));
     };
     let fps = table.fps.map_or(DEFAULT_FPS, |fps| fps.0);
@@ -109,7 +109,7 @@ fn orbits<'t>(
 ) -> Result<Vec<Option<ResolvedOrbit<'t>>>> {
     let mut orbits: Vec<_> = objects.objects.iter().map(|_| None).collect();
     for table in table.orbit.iter() {
-        let At { span, value: name } = &table.object;
+        let Spanned { span, value: name } = &table.object;
         let object = objects.index(source, &table.object)?;
         if objects.objects[object].position.is_none() {
             let noun = objects.objects[object].kind.noun();
@@ -215,7 +215,7 @@ impl MotionBuilder<'_, '_> {
         let Some(ResolvedOrbit { table, center_object, center }) = &self.orbits[object] else {
             return Ok(None);
         };
-        if let Some(At { span, .. }) = &self.motions.0[object].curves.position {
+        if let Some(Spanned { span, .. }) = &self.motions.0[object].curves.position {
             let name = &self.objects.objects[object].name;
             let message = format!("`{name}` is moved by its orbit already");
             return Err(self.source.error(span, message).help("leave out one of the two"));
@@ -241,7 +241,7 @@ impl MotionBuilder<'_, '_> {
         if position.is_none() && rotation.is_none() && scale.is_none() {
             return None;
         }
-        let curve = |curve: &Option<At<Curve<DVec3>>>, still| match curve {
+        let curve = |curve: &Option<Spanned<Curve<DVec3>>>, still| match curve {
             Some(curve) => curve.value.clone(),
             None => Curve::constant(still),
         };

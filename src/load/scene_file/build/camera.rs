@@ -15,7 +15,7 @@ use crate::scene::{Camera, Projection};
 const DEFAULT_FOV_Y: f64 = 45.0;
 
 impl SceneBuilder<'_> {
-    /// Adds a camera, whose table is at a place.
+    /// Adds the camera of the table at `span`.
     ///
     /// # Errors
     /// When its keys do not fit each other, or it looks at an object that there is not.
@@ -30,7 +30,7 @@ impl SceneBuilder<'_> {
     /// Returns the camera that a table describes.
     fn camera(&self, table: &CameraTable, span: &Span) -> Result<Camera> {
         let source = self.source;
-        // The forward direction, and the place of the key that gives it.
+        // The forward direction, and the span of the key that gives it.
         let position = table.position.0;
         let (forward, forward_span) = match (&table.look_at, &table.direction) {
             (Some(target), None) => {

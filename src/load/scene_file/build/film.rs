@@ -1,7 +1,7 @@
 //! The settings of the film.
 
 use crate::error::Result;
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::FilmTable;
 use crate::load::scene_file::schema::values::SampleRange;
 use crate::load::scene_file::source::Source;
@@ -14,7 +14,7 @@ use crate::scene::{AdaptiveSampling, FilmSettings};
 /// When its numbers do not fit each other.
 pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSettings> {
     let default = FilmSettings::default();
-    if let Some(At { span, value }) = &table.size {
+    if let Some(Spanned { span, value }) = &table.size {
         check::check_size(value.0).map_err(|e| source.locate(span, e))?;
     }
     let transfer = table.transfer.unwrap_or(default.transfer);
@@ -39,10 +39,10 @@ fn samples_per_pixel(
     table: &FilmTable,
 ) -> Result<(u32, Option<AdaptiveSampling>)> {
     let threshold = table.threshold.as_ref();
-    let Some(At { span, value: SampleRange([min, max]) }) = &table.adaptive else {
+    let Some(Spanned { span, value: SampleRange([min, max]) }) = &table.adaptive else {
         return match threshold {
             None => Ok((table.spp.map_or(FilmSettings::default().spp, |spp| spp.0), None)),
-            Some(At { span, .. }) => Err(source
+            Some(Spanned { span, .. }) => Err(source
                 .error(span, "`threshold` is about adaptive samples, and there are none")
                 .help("add `adaptive = [1, 25]`, or leave `threshold` out")),
         };

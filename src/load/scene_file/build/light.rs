@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::SceneBuilder;
 use crate::error::{Error, Result};
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::{Kind, LightTable};
 use crate::load::scene_file::source::{Source, Span};
 use crate::load::spelling;
@@ -41,7 +41,7 @@ impl SceneBuilder<'_> {
         }
         let direction = motion.curves.direction.as_ref().map(|curve| curve.value.clone());
         let mut intensity = None;
-        if let Some(At { span, value: curve }) = &motion.curves.intensity {
+        if let Some(Spanned { span, value: curve }) = &motion.curves.intensity {
             rest.intensity = color(table, self.scene.film.transfer);
             let greatest = curve.values.iter().fold(0.0f64, |a, &b| a.max(b));
             check_intensity(self.source, span, rest.intensity * greatest as f32)?;
@@ -91,7 +91,7 @@ impl Kind {
 fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Result<Light> {
     check_keys(source, table)?;
     let mut intensity = color(table, transfer);
-    if let Some(At { span, value }) = &table.intensity {
+    if let Some(Spanned { span, value }) = &table.intensity {
         intensity *= value.0 as f32;
         check_intensity(source, span, intensity)?;
     }
@@ -147,7 +147,7 @@ fn cone_angles(source: &Source<'_>, table: &LightTable) -> Result<(f64, f64)> {
     let (inner_angle, outer_angle) = (inner.to_radians(), outer.to_radians());
     let given = table.inner_angle.as_ref().or(table.outer_angle.as_ref());
     match given {
-        Some(At { span, .. }) if inner_angle >= outer_angle => Err(source.error(
+        Some(Spanned { span, .. }) if inner_angle >= outer_angle => Err(source.error(
             span,
             format!("`inner_angle` ({inner}) must be less than `outer_angle` ({outer})"),
         )),
@@ -157,7 +157,7 @@ fn cone_angles(source: &Source<'_>, table: &LightTable) -> Result<(f64, f64)> {
 
 /// Checks that a light has only keys that mean something for its kind.
 fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
-    fn span<T>(value: &Option<At<T>>) -> Option<&Span> {
+    fn span<T>(value: &Option<Spanned<T>>) -> Option<&Span> {
         value.as_ref().map(|v| &v.span)
     }
     // The keys that are given, of those that not every kind has.

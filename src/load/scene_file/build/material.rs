@@ -4,7 +4,7 @@ use super::SceneBuilder;
 use super::textures::Sampling;
 use crate::error::Result;
 use crate::load::scene_file::schema::color::Color;
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::{MapAlpha, MaterialTable};
 use crate::load::spelling;
 use crate::scene::{
@@ -20,7 +20,7 @@ impl SceneBuilder<'_> {
     /// # Errors
     /// When its keys do not fit each other, an image is not there, or the name is taken.
     pub fn add_material(&mut self, table: &MaterialTable) -> Result<()> {
-        let At { span, value: name } = &table.name;
+        let Spanned { span, value: name } = &table.name;
         let material = self.material(table)?;
         self.check_energy(table, &material)?;
         let id = self.scene.add_material(material);
@@ -76,7 +76,7 @@ impl SceneBuilder<'_> {
     /// Checks that a material sends on no more light than it gets; warns where only its diffuse
     /// colour does.
     fn check_energy(&mut self, table: &MaterialTable, material: &Material) -> Result<()> {
-        if let Some(At { span, .. }) = &table.diffuse
+        if let Some(Spanned { span, .. }) = &table.diffuse
             && material.diffuse.max_element() > 1.0
         {
             self.too_bright += 1;
@@ -90,7 +90,7 @@ impl SceneBuilder<'_> {
                 ));
             }
         }
-        if let Some(At { span, .. }) = table.transmit.as_ref().or(table.reflect.as_ref())
+        if let Some(Spanned { span, .. }) = table.transmit.as_ref().or(table.reflect.as_ref())
             && (material.reflect + material.transmit).max_element() > 1.0 + 1e-6
         {
             let message = "`reflect` and `transmit` are more than 1 together";
@@ -108,11 +108,11 @@ impl SceneBuilder<'_> {
     ) -> Result<Option<Coverage>> {
         let mode = table.alpha_mode.as_ref();
         let is_mask = mode.is_some_and(|mode| mode.value == MapAlpha::Mask);
-        if let Some(At { span, .. }) = table.alpha_cutoff.as_ref().filter(|_| !is_mask) {
+        if let Some(Spanned { span, .. }) = table.alpha_cutoff.as_ref().filter(|_| !is_mask) {
             let message = "`alpha_cutoff` is about a mask, and there is none";
             return Err(self.source.error(span, message).help("add `alpha_mode = \"mask\"`"));
         }
-        let Some(At { span, value }) = mode else { return Ok(None) };
+        let Some(Spanned { span, value }) = mode else { return Ok(None) };
         let mode = match value {
             MapAlpha::Opaque => return Ok(None),
             MapAlpha::Mask => {
@@ -136,8 +136,8 @@ impl SceneBuilder<'_> {
     ///
     /// # Errors
     /// When there is none; the message lists those that there are.
-    pub fn find_material(&self, name: &At<String>) -> Result<MaterialId> {
-        let At { span, value: name } = name;
+    pub fn find_material(&self, name: &Spanned<String>) -> Result<MaterialId> {
+        let Spanned { span, value: name } = name;
         self.materials.get(name).map(|(id, _)| *id).ok_or_else(|| {
             let materials = &self.scene.materials[..self.materials.len()];
             let names: Vec<&str> = materials.iter().map(|m| m.name.as_str()).collect();
@@ -154,7 +154,7 @@ impl SceneBuilder<'_> {
     ///
     /// # Errors
     /// When there is no material of this name.
-    pub fn material_or_default(&mut self, name: Option<&At<String>>) -> Result<MaterialId> {
+    pub fn material_or_default(&mut self, name: Option<&Spanned<String>>) -> Result<MaterialId> {
         if let Some(name) = name {
             return self.find_material(name);
         }

@@ -20,7 +20,7 @@ use self::image_use::ImageUse;
 use self::model::ModelKey;
 use self::objects::NamedObjects;
 use self::textures::Textures;
-use super::schema::spanned::At;
+use super::schema::spanned::Spanned;
 use super::schema::tables::SceneTable;
 use super::source::{Source, Span};
 use crate::error::Result;
@@ -92,7 +92,7 @@ struct SceneBuilder<'a> {
     scene: Scene,
     /// The load report so far.
     report: LoadReport,
-    /// The file's own materials by name, each with the place of its name.
+    /// The file's own materials by name, each with the span of its name.
     materials: HashMap<String, (MaterialId, Span)>,
     /// The material of objects that name none, once there is such an object.
     default_material: Option<MaterialId>,
@@ -107,7 +107,7 @@ struct SceneBuilder<'a> {
 
 impl SceneBuilder<'_> {
     /// Returns the motion of the object with a name, if it has both.
-    fn motion(&self, name: &Option<At<String>>) -> Option<&ObjectMotion> {
+    fn motion(&self, name: &Option<Spanned<String>>) -> Option<&ObjectMotion> {
         self.motions.get(self.objects.index(self.source, name.as_ref()?).ok()?)
     }
 

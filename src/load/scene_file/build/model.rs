@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::load::limits::Limit;
 use crate::load::merge::{MergedModel, ModelInstance};
 use crate::load::sandbox::OpenedFile;
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::ModelTable;
 use crate::load::{self, Loaded, ModelOptions};
 use crate::scene::check::MAX_COORDINATE;
@@ -81,7 +81,7 @@ impl SceneBuilder<'_> {
             needs_images: self.image_use.uses_materials_of_model(&path),
         };
         let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &options)?;
-        if let Some(At { span, value }) = &table.variant {
+        if let Some(Spanned { span, value }) = &table.variant {
             load::check_variant(value, &report).map_err(|e| self.source.locate(span, e))?;
         }
         // Each of the warnings names the model already.
@@ -97,8 +97,8 @@ impl SceneBuilder<'_> {
     }
 
     /// Opens a model file. An error of its name is one of the scene file and is reported there.
-    fn open_model(&self, name: &At<String>) -> Result<OpenedFile> {
-        let At { span, value: name } = name;
+    fn open_model(&self, name: &Spanned<String>) -> Result<OpenedFile> {
+        let Spanned { span, value: name } = name;
         let source = self.source;
         let opened = match load::extension(&source.resolve_path(name)).as_str() {
             "gltf" | "glb" | "vrm" | "obj" => self.sandbox.open(source.folder(), &[name]),
@@ -147,7 +147,7 @@ mod tests {
     fn table(rotate: [f64; 3], scale: DVec3, translate: DVec3) -> ModelTable {
         ModelTable {
             name: None,
-            file: At { span: 0..0, value: String::new() },
+            file: Spanned { span: 0..0, value: String::new() },
             translate: Some(Point(translate)),
             rotate: Some(Rotation(rotate)),
             scale: Some(Scale(scale)),

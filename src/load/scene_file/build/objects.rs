@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::error::Result;
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::{Kind, SceneTable};
 use crate::load::scene_file::schema::values::PointOrName;
 use crate::load::scene_file::source::{Source, Span};
@@ -44,7 +44,7 @@ impl ObjectKind {
 pub struct NamedObject {
     /// The name.
     pub name: String,
-    /// The place of the name in the text.
+    /// The span of the name in the text.
     pub span: Span,
     /// The kind of the object.
     pub kind: ObjectKind,
@@ -52,7 +52,7 @@ pub struct NamedObject {
     pub position: Option<DVec3>,
 }
 
-/// All objects with names, sorted by kind, then in the file's order.
+/// The objects that have names, sorted by kind, then in the file's order.
 #[derive(Debug, Default)]
 pub struct NamedObjects {
     /// The objects.
@@ -88,7 +88,7 @@ impl NamedObjects {
         });
         let mut objects = Self::default();
         for (name, kind, position) in cameras.chain(spheres).chain(models).chain(lights) {
-            let Some(At { span, value: name }) = name else { continue };
+            let Some(Spanned { span, value: name }) = name else { continue };
             if let Some(first) = objects.by_name.insert(name.clone(), objects.objects.len()) {
                 let first = &objects.objects[first];
                 let message = format!("there is {} `{name}` already", first.kind.noun());
@@ -106,8 +106,8 @@ impl NamedObjects {
     ///
     /// # Errors
     /// When there is none of this name; the message says which there are.
-    pub fn index(&self, source: &Source<'_>, name: &At<String>) -> Result<usize> {
-        let At { span, value: name } = name;
+    pub fn index(&self, source: &Source<'_>, name: &Spanned<String>) -> Result<usize> {
+        let Spanned { span, value: name } = name;
         self.by_name.get(name).copied().ok_or_else(|| {
             let error = source.error(span, format!("there is no object `{name}`"));
             let names: Vec<&str> = self.objects.iter().map(|o| &*o.name).collect();
@@ -122,15 +122,19 @@ impl NamedObjects {
     ///
     /// # Errors
     /// When there is no such object, or it has no position.
-    pub fn resolve(&self, source: &Source<'_>, point: &At<PointOrName>) -> Result<ResolvedPoint> {
-        let At { span, value } = point;
+    pub fn resolve(
+        &self,
+        source: &Source<'_>,
+        point: &Spanned<PointOrName>,
+    ) -> Result<ResolvedPoint> {
+        let Spanned { span, value } = point;
         let name = match value {
             PointOrName::Point(point) => {
                 return Ok(ResolvedPoint { object: None, position: *point });
             }
             PointOrName::Name(name) => name,
         };
-        let index = self.index(source, &At { span: span.clone(), value: name.clone() })?;
+        let index = self.index(source, &Spanned { span: span.clone(), value: name.clone() })?;
         let object = &self.objects[index];
         let Some(position) = object.position else {
             let message = format!("`{name}` is {}, which is nowhere", object.kind.noun());

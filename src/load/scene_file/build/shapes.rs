@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::SceneBuilder;
 use crate::error::Result;
-use crate::load::scene_file::schema::spanned::{At, Table};
+use crate::load::scene_file::schema::spanned::{Spanned, Table};
 use crate::load::scene_file::schema::tables::{PlaneTable, SphereTable};
 use crate::scene::animation::Animated;
 use crate::scene::check::MAX_COORDINATE;
@@ -14,9 +14,9 @@ impl SceneBuilder<'_> {
     /// Adds a sphere.
     ///
     /// # Errors
-    /// When it reaches too far from the origin, or there is no such material.
+    /// When it extends too far from the origin, or there is no such material.
     pub fn add_sphere(&mut self, table: &SphereTable) -> Result<()> {
-        let (center, At { span, value: radius }) = (table.center.0, &table.radius);
+        let (center, Spanned { span, value: radius }) = (table.center.0, &table.radius);
         if center.abs().max_element() + radius.0 > MAX_COORDINATE {
             return Err(self.source.error(span, "the sphere reaches beyond 1e15 from 0"));
         }

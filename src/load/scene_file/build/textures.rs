@@ -1,4 +1,4 @@
-//! The textures of the file's materials.
+//! The textures of the materials in a scene file.
 
 use std::path::PathBuf;
 
@@ -7,24 +7,24 @@ use crate::error::Result;
 use crate::load::images::decode;
 use crate::load::images::texture_cache::{ImageIndex, TextureCache, set_image};
 use crate::load::sandbox::Sandbox;
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::MapFilter;
 use crate::load::scene_file::source::Source;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer};
 
-/// The textures so far: their images by canonical path and whether they are needed, and how the
-/// textures sample them.
+/// The textures so far, by image and sampling; and their images, by canonical path and whether they
+/// are needed.
 pub type Textures = TextureCache<(PathBuf, bool), ImageFile, (ImageIndex, Sampling)>;
 
-/// An image file.
+/// An image file that the scene file names.
 pub struct ImageFile {
-    /// The name, where the scene file has it first.
-    name: At<String>,
-    /// True if something shows it.
+    /// The name, with the span where the scene file names it first.
+    name: Spanned<String>,
+    /// True if an object shows the image.
     is_needed: bool,
 }
 
-/// The parameters that tell apart the textures of an image.
+/// The transfer curve and the filter with which a texture samples its image.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Sampling {
     /// The curve by which the image encodes light.
@@ -41,7 +41,7 @@ impl SceneBuilder<'_> {
     /// When there is no such file, or it may not be read.
     pub fn texture(
         &mut self,
-        name: Option<&At<String>>,
+        name: Option<&Spanned<String>>,
         sampling: Sampling,
         is_needed: bool,
     ) -> Result<Option<TextureId>> {
@@ -70,7 +70,7 @@ impl SceneBuilder<'_> {
 /// Decodes the images of the textures.
 ///
 /// # Errors
-/// When one of them cannot be read; of several the one that is named first.
+/// When an image cannot be read; the error is about the first such image that the file names.
 pub fn decode_images(
     textures: Textures,
     source: &Source<'_>,
@@ -81,7 +81,7 @@ pub fn decode_images(
         sandbox.open(source.folder(), &[&file.name.value]).map(decode::Source::File)
     };
     for decoded in textures.decode(sandbox, open, |file| file.is_needed) {
-        let At { span, value: name } = &decoded.source.name;
+        let Spanned { span, value: name } = &decoded.source.name;
         let image = decoded.image.map_err(|e| source.unreadable(span, "image", name, &e))?;
         set_image(image, &decoded.textures, scene);
     }

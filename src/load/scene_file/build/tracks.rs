@@ -5,32 +5,32 @@ use glam::DVec3;
 use super::objects::{NamedObject, ObjectKind};
 use crate::error::Result;
 use crate::load::scene_file::schema::animation_tables::{self, List, TrackTable};
-use crate::load::scene_file::schema::spanned::At;
+use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::Kind;
 use crate::load::scene_file::source::Source;
 use crate::load::spelling;
 use crate::scene::Projection;
 use crate::scene::animation::{Curve, Interpolate, Interpolation};
 
-/// The curves of an object's animated keys, each with the place of its values.
+/// The curves of an object's animated keys, each with the span of its values.
 #[derive(Debug, Default)]
 pub struct ObjectCurves {
     /// The position: `center`, `translate` or `position`.
-    pub position: Option<At<Curve<DVec3>>>,
+    pub position: Option<Spanned<Curve<DVec3>>>,
     /// A model's angles, in radians.
-    pub rotation: Option<At<Curve<DVec3>>>,
+    pub rotation: Option<Spanned<Curve<DVec3>>>,
     /// A model's factors of scale.
-    pub scale: Option<At<Curve<DVec3>>>,
+    pub scale: Option<Spanned<Curve<DVec3>>>,
     /// A sphere's radius.
-    pub radius: Option<At<Curve<f64>>>,
+    pub radius: Option<Spanned<Curve<f64>>>,
     /// The direction in which a light travels or a camera looks.
-    pub direction: Option<At<Curve<DVec3>>>,
+    pub direction: Option<Spanned<Curve<DVec3>>>,
     /// The points that a camera looks at.
-    pub look_at: Option<At<Curve<DVec3>>>,
+    pub look_at: Option<Spanned<Curve<DVec3>>>,
     /// A light's intensity.
-    pub intensity: Option<At<Curve<f64>>>,
+    pub intensity: Option<Spanned<Curve<f64>>>,
     /// The kind of a camera's projection and its values, in radians, pixels or units.
-    pub projection: Option<(MakeProjection, At<Curve<f64>>)>,
+    pub projection: Option<(MakeProjection, Spanned<Curve<f64>>)>,
 }
 
 /// A function from a value, and the film's width in pixels, to a projection.
@@ -135,10 +135,10 @@ impl TrackReader<'_> {
     fn read<T, V: Interpolate>(
         &mut self,
         key: &str,
-        list: &Option<At<List<T>>>,
+        list: &Option<Spanned<List<T>>>,
         value: impl Fn(&T) -> V,
         smooth: fn(Vec<f64>, Vec<V>) -> Curve<V>,
-        slot: &mut Option<At<Curve<V>>>,
+        slot: &mut Option<Spanned<Curve<V>>>,
     ) -> Result<()> {
         let Some(curve) = self.curve(key, list, value, smooth)? else { return Ok(()) };
         let key_span = self.source.key_span(key, &curve.span);
@@ -153,10 +153,10 @@ impl TrackReader<'_> {
     fn read_projection<T>(
         &mut self,
         key: &str,
-        list: &Option<At<List<T>>>,
+        list: &Option<Spanned<List<T>>>,
         value: impl Fn(&T) -> f64,
         make: MakeProjection,
-        slot: &mut Option<(MakeProjection, At<Curve<f64>>)>,
+        slot: &mut Option<(MakeProjection, Spanned<Curve<f64>>)>,
     ) -> Result<()> {
         let Some(curve) = self.curve(key, list, value, Curve::<f64>::smooth)? else {
             return Ok(());
@@ -175,11 +175,11 @@ impl TrackReader<'_> {
     fn curve<T, V: Interpolate>(
         &mut self,
         key: &str,
-        list: &Option<At<List<T>>>,
+        list: &Option<Spanned<List<T>>>,
         value: impl Fn(&T) -> V,
         smooth: fn(Vec<f64>, Vec<V>) -> Curve<V>,
-    ) -> Result<Option<At<Curve<V>>>> {
-        let Some(At { span, value: List(list) }) = list else { return Ok(None) };
+    ) -> Result<Option<Spanned<Curve<V>>>> {
+        let Some(Spanned { span, value: List(list) }) = list else { return Ok(None) };
         self.is_empty = false;
         // The object must have the key.
         let kind = self.object.kind;
@@ -209,6 +209,6 @@ impl TrackReader<'_> {
                 Curve { times, values, interpolation: Interpolation::Step }
             }
         };
-        Ok(Some(At { span: span.clone(), value }))
+        Ok(Some(Spanned { span: span.clone(), value }))
     }
 }

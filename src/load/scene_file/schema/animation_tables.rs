@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer};
 
-use super::spanned::{At, ListVisitor, Tables};
+use super::spanned::{ListVisitor, Spanned, Tables};
 use super::values::{
     Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
     Rotation, Scale, Seconds,
@@ -33,9 +33,9 @@ pub struct AnimationTable {
 #[serde(deny_unknown_fields)]
 pub struct OrbitTable {
     /// The name of the object that circles.
-    pub object: At<String>,
+    pub object: Spanned<String>,
     /// The centre: a point, or the name of an object, which may move itself.
-    pub around: At<PointOrName>,
+    pub around: Spanned<PointOrName>,
     /// The seconds for one turn. Without it the object does not circle, but moves along with its
     /// centre.
     pub period: Option<Seconds>,
@@ -53,38 +53,38 @@ pub struct OrbitTable {
 #[serde(deny_unknown_fields)]
 pub struct TrackTable {
     /// The name of the object.
-    pub object: At<String>,
+    pub object: Spanned<String>,
     /// The times of the values in seconds, increasing: one for each value.
-    pub times: At<List<At<Coordinate>>>,
+    pub times: Spanned<List<Spanned<Coordinate>>>,
     /// The interpolation between the values: linear, a step, or a smooth curve.
     #[schemars(extend("default" = "linear"))]
     pub interpolation: Option<Interpolation>,
     /// Centres (sphere).
-    pub center: Option<At<List<Point>>>,
+    pub center: Option<Spanned<List<Point>>>,
     /// Radii (sphere).
-    pub radius: Option<At<List<Length>>>,
+    pub radius: Option<Spanned<List<Length>>>,
     /// Positions of the origin (model).
-    pub translate: Option<At<List<Point>>>,
+    pub translate: Option<Spanned<List<Point>>>,
     /// Angles in degrees, each of which is interpolated by itself (model).
-    pub rotate: Option<At<List<Rotation>>>,
+    pub rotate: Option<Spanned<List<Rotation>>>,
     /// Scales: one factor, or three (model).
-    pub scale: Option<At<List<Scale>>>,
+    pub scale: Option<Spanned<List<Scale>>>,
     /// Positions (light, camera).
-    pub position: Option<At<List<Point>>>,
+    pub position: Option<Spanned<List<Point>>>,
     /// Directions in which the light travels or the camera looks (light, camera).
-    pub direction: Option<At<List<Direction>>>,
+    pub direction: Option<Spanned<List<Direction>>>,
     /// Points that the camera looks at (camera).
-    pub look_at: Option<At<List<Point>>>,
+    pub look_at: Option<Spanned<List<Point>>>,
     /// Factors on the colour (light).
-    pub intensity: Option<At<List<Amount>>>,
+    pub intensity: Option<Spanned<List<Amount>>>,
     /// Fields of view from the lower to the upper edge, in degrees (camera).
-    pub fov_y: Option<At<List<FieldOfView>>>,
+    pub fov_y: Option<Spanned<List<FieldOfView>>>,
     /// Fields of view from the left to the right edge, in degrees (camera).
-    pub fov_x: Option<At<List<FieldOfView>>>,
+    pub fov_x: Option<Spanned<List<FieldOfView>>>,
     /// Distances from the eye to the picture, in pixels of the film's `size` (camera).
-    pub focal_px: Option<At<List<Length>>>,
+    pub focal_px: Option<Spanned<List<Length>>>,
     /// Heights of the view, for an orthographic camera (camera).
-    pub ortho_height: Option<At<List<Length>>>,
+    pub ortho_height: Option<Spanned<List<Length>>>,
 }
 
 /// The interpolation between two values.

@@ -1,4 +1,4 @@
-//! The wrappers of values that keep their place in the text, and check their shape.
+//! The wrappers of values that store their span in the text, and check their shape.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,16 +11,16 @@ use serde::{Deserialize, Deserializer};
 
 use crate::load::scene_file::source::Span;
 
-/// A value and its place in the text; a table that has a header is at its header.
+/// A value and its span in the text; that of a table with a header is the header.
 #[derive(Clone, Debug)]
-pub struct At<T> {
-    /// The place.
+pub struct Spanned<T> {
+    /// The span.
     pub span: Span,
     /// The value.
     pub value: T,
 }
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Spanned<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let spanned = toml::Spanned::<T>::deserialize(deserializer)?;
         Ok(Self { span: spanned.span(), value: spanned.into_inner() })
@@ -57,7 +57,7 @@ macro_rules! list_of_tables {
         }
 
         impl<T> $name<T> {
-            /// Returns the tables, without their places.
+            /// Returns the tables, without their spans.
             pub fn iter(&self) -> impl Iterator<Item = &T> {
                 self.0.iter().map(|table| &table.value.0)
             }
@@ -67,7 +67,7 @@ macro_rules! list_of_tables {
 
 /// A list of tables under headers in double brackets, such as `[[sphere]]`.
 #[derive(Debug)]
-pub struct Tables<T>(pub Vec<At<Table<T>>>);
+pub struct Tables<T>(pub Vec<Spanned<Table<T>>>);
 
 list_of_tables!(Tables);
 
@@ -101,7 +101,7 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ListVisitor<T> {
 
 /// A table, such as `[camera]`, or several under double brackets.
 #[derive(Debug)]
-pub struct OneOrMore<T>(pub Vec<At<Table<T>>>);
+pub struct OneOrMore<T>(pub Vec<Spanned<Table<T>>>);
 
 list_of_tables!(OneOrMore);
 
@@ -109,25 +109,25 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OneOrMore<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct OneOrMoreVisitor<T>(PhantomData<T>);
         impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMoreVisitor<T> {
-            type Value = Vec<At<Table<T>>>;
+            type Value = Vec<Spanned<Table<T>>>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("a table or a list of tables")
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
                 let table = Table(T::deserialize(MapAccessDeserializer::new(map))?);
-                Ok(vec![At { span: 0..0, value: table }])
+                Ok(vec![Spanned { span: 0..0, value: table }])
             }
             fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Self::Value, A::Error> {
                 read_elements(seq)
             }
         }
-        struct Tables<T>(Vec<At<Table<T>>>);
+        struct Tables<T>(Vec<Spanned<Table<T>>>);
         impl<'de, T: Deserialize<'de>> Deserialize<'de> for Tables<T> {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 deserializer.deserialize_any(OneOrMoreVisitor(PhantomData)).map(Tables)
             }
         }
-        let At { span, value: Tables(mut tables) } = At::deserialize(deserializer)?;
+        let Spanned { span, value: Tables(mut tables) } = Spanned::deserialize(deserializer)?;
         if let [only] = &mut tables[..] {
             // The span of the whole is that of the only table, or of the first of several.
             only.span = span;
@@ -166,7 +166,7 @@ macro_rules! transparent_schema {
     )*};
 }
 
-transparent_schema!(At Table);
+transparent_schema!(Spanned Table);
 
 impl<T: JsonSchema> JsonSchema for Tables<T> {
     fn inline_schema() -> bool {

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::animation_tables::AnimationTable;
 use super::color::{Color, Pair};
-use super::spanned::{At, OneOrMore, Table, Tables};
+use super::spanned::{OneOrMore, Spanned, Table, Tables};
 use super::values::{
     Amount, Depth, Direction, FieldOfView, HalfAngle, Index, Length, Number, Point, PointOrName,
     Priority, Rotation, SampleRange, Samples, Scale, ShadowKind, Share, Shininess, Size, Triple,
@@ -36,7 +36,7 @@ pub struct SceneTable {
     /// Lights.
     pub light: Tables<LightTable>,
     /// The motion of objects, and its length.
-    pub animation: Option<At<Table<AnimationTable>>>,
+    pub animation: Option<Spanned<Table<AnimationTable>>>,
 }
 
 /// The size and quality of the picture.
@@ -45,16 +45,16 @@ pub struct SceneTable {
 pub struct FilmTable {
     /// Width and height of the picture, in pixels.
     #[schemars(extend("default" = [1280, 720]))]
-    pub size: Option<At<Size>>,
+    pub size: Option<Spanned<Size>>,
     /// Samples per pixel, from 1 to 65536.
     #[schemars(extend("default" = 1))]
     pub spp: Option<Samples>,
     /// The fewest and the most samples per pixel, in place of `spp`. A pixel gets more than the
     /// fewest where neighbouring samples differ in what they hit, in its normal or in colour.
-    pub adaptive: Option<At<SampleRange>>,
+    pub adaptive: Option<Spanned<SampleRange>>,
     /// The difference from which two colours count as different for `adaptive`, from 0 (always) to
     /// 1; 0.1 by default.
-    pub threshold: Option<At<Share>>,
+    pub threshold: Option<Spanned<Share>>,
     /// The curve by which the PNG encodes light and hex colours are decoded: sRGB, or none.
     #[schemars(extend("default" = "srgb"))]
     pub transfer: Option<Transfer>,
@@ -85,25 +85,25 @@ pub struct FilmTable {
 #[serde(deny_unknown_fields)]
 pub struct CameraTable {
     /// The name by which the camera is chosen and moved; unique among all objects.
-    pub name: Option<At<String>>,
+    pub name: Option<Spanned<String>>,
     /// The position of the camera.
     pub position: Point,
     /// The point that the camera looks at, or the name of an object.
-    pub look_at: Option<At<PointOrName>>,
+    pub look_at: Option<Spanned<PointOrName>>,
     /// The direction in which the camera looks, in place of `look_at`.
-    pub direction: Option<At<Direction>>,
+    pub direction: Option<Spanned<Direction>>,
     /// The direction that is upward in the picture.
     #[schemars(extend("default" = [0, 1, 0]))]
-    pub up: Option<At<Direction>>,
+    pub up: Option<Spanned<Direction>>,
     /// The field of view from the lower to the upper edge, in degrees.
     #[schemars(extend("default" = 45))]
-    pub fov_y: Option<At<FieldOfView>>,
+    pub fov_y: Option<Spanned<FieldOfView>>,
     /// The field of view from the left to the right edge, in degrees.
-    pub fov_x: Option<At<FieldOfView>>,
+    pub fov_x: Option<Spanned<FieldOfView>>,
     /// The distance from the eye to the picture, in pixels of the film's `size`.
-    pub focal_px: Option<At<Length>>,
+    pub focal_px: Option<Spanned<Length>>,
     /// The height of the view in world units, for an orthographic camera.
-    pub ortho_height: Option<At<Length>>,
+    pub ortho_height: Option<Spanned<Length>>,
 }
 
 /// A material: Lambert's diffuse and Phong's specular reflection, mirrors and glass.
@@ -111,18 +111,18 @@ pub struct CameraTable {
 #[serde(deny_unknown_fields)]
 pub struct MaterialTable {
     /// The name by which objects refer to the material; unique among the materials.
-    pub name: At<String>,
+    pub name: Spanned<String>,
     /// The share of the light that is scattered in all directions.
     #[schemars(extend("default" = 0.8))]
-    pub diffuse: Option<At<Color>>,
+    pub diffuse: Option<Spanned<Color>>,
     /// An image file (PNG, JPEG, WebP, TGA, BMP or KTX 2, in sRGB; HDR or EXR, linear) multiplied
     /// by `diffuse`.
-    pub diffuse_map: Option<At<String>>,
+    pub diffuse_map: Option<Spanned<String>>,
     /// The share of the light in Phong's highlight.
     #[schemars(extend("default" = 0))]
     pub specular: Option<Color>,
     /// An image file, in sRGB, multiplied by `specular`.
-    pub specular_map: Option<At<String>>,
+    pub specular_map: Option<Spanned<String>>,
     /// Phong's exponent: the greater, the smaller the highlight.
     #[schemars(extend("default" = 50))]
     pub shininess: Option<Shininess>,
@@ -130,9 +130,9 @@ pub struct MaterialTable {
     #[schemars(extend("default" = 0))]
     pub emission: Option<Color>,
     /// An image file, in sRGB, multiplied by `emission`.
-    pub emission_map: Option<At<String>>,
+    pub emission_map: Option<Spanned<String>>,
     /// An image file of normals in tangent space, as in glTF: linear, y up in the image.
-    pub normal_map: Option<At<String>>,
+    pub normal_map: Option<Spanned<String>>,
     /// The filter of the material's images: `"nearest"`, `"linear"`, or `"mipmap"`, which averages
     /// the area that a sample covers.
     #[schemars(extend("default" = "linear"))]
@@ -140,15 +140,15 @@ pub struct MaterialTable {
     /// The meaning of the alpha of `diffuse_map`: none; a hole where it is below `alpha_cutoff`; or
     /// the share of what lies behind that the surface covers.
     #[schemars(extend("default" = "opaque"))]
-    pub alpha_mode: Option<At<MapAlpha>>,
+    pub alpha_mode: Option<Spanned<MapAlpha>>,
     /// The alpha below which `alpha_mode = "mask"` cuts holes. The default is 0.5.
-    pub alpha_cutoff: Option<At<Share>>,
+    pub alpha_cutoff: Option<Spanned<Share>>,
     /// The share of the light that is reflected as by a mirror.
     #[schemars(extend("default" = 0))]
-    pub reflect: Option<At<Color>>,
+    pub reflect: Option<Spanned<Color>>,
     /// The share of the light that goes through as through glass, less what Fresnel's law reflects.
     #[schemars(extend("default" = 0))]
-    pub transmit: Option<At<Color>>,
+    pub transmit: Option<Spanned<Color>>,
     /// The index of refraction of the inside.
     #[schemars(extend("default" = 1.5))]
     pub ior: Option<Index>,
@@ -198,13 +198,13 @@ pub enum MapAlpha {
 #[serde(deny_unknown_fields)]
 pub struct SphereTable {
     /// The name by which the sphere is moved or looked at; unique among all objects.
-    pub name: Option<At<String>>,
+    pub name: Option<Spanned<String>>,
     /// The centre of the sphere.
     pub center: Point,
     /// The radius of the sphere, above 0.
-    pub radius: At<Length>,
+    pub radius: Spanned<Length>,
     /// The name of the sphere's material. The default is plain grey.
-    pub material: Option<At<String>>,
+    pub material: Option<Spanned<String>>,
     /// True if the sphere casts shadows.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
@@ -219,7 +219,7 @@ pub struct PlaneTable {
     /// The normal of the plane, of any length but zero.
     pub normal: Direction,
     /// The name of the plane's material. The default is plain grey.
-    pub material: Option<At<String>>,
+    pub material: Option<Spanned<String>>,
     /// A checker in place of the material's diffuse colour.
     pub checker: Option<Table<CheckerTable>>,
     /// The side of the square that an image of the material covers before it repeats.
@@ -246,9 +246,9 @@ pub struct CheckerTable {
 #[serde(deny_unknown_fields)]
 pub struct ModelTable {
     /// The name by which the model is moved or looked at; unique among all objects.
-    pub name: Option<At<String>>,
+    pub name: Option<Spanned<String>>,
     /// The model file, `.gltf`, `.glb` or `.obj`, relative to the scene file.
-    pub file: At<String>,
+    pub file: Spanned<String>,
     /// The position of the model's origin.
     #[schemars(extend("default" = [0, 0, 0]))]
     pub translate: Option<Point>,
@@ -259,7 +259,7 @@ pub struct ModelTable {
     #[schemars(extend("default" = 1))]
     pub scale: Option<Scale>,
     /// The name of a material that replaces the model's own.
-    pub material: Option<At<String>>,
+    pub material: Option<Spanned<String>>,
     /// True if the model casts shadows.
     #[schemars(extend("default" = true))]
     pub casts_shadow: Option<bool>,
@@ -267,10 +267,10 @@ pub struct ModelTable {
     #[schemars(extend("default" = true))]
     pub lights: Option<bool>,
     /// The name of the animation that a glTF model plays. The default is its first.
-    pub animation: Option<At<String>>,
+    pub animation: Option<Spanned<String>>,
     /// The name of the material variant that a glTF model shows. The default is the one of the
     /// file.
-    pub variant: Option<At<String>>,
+    pub variant: Option<Spanned<String>>,
 }
 
 /// A light.
@@ -278,35 +278,35 @@ pub struct ModelTable {
 #[serde(deny_unknown_fields)]
 pub struct LightTable {
     /// The name by which the light is moved or looked at; unique among all objects.
-    pub name: Option<At<String>>,
+    pub name: Option<Spanned<String>>,
     /// The kind of light: point, directional (very far away), spot (a point with a cone) or
     /// ambient.
-    pub kind: At<Kind>,
+    pub kind: Spanned<Kind>,
     /// The position of the light (point, spot).
-    pub position: Option<At<Point>>,
+    pub position: Option<Spanned<Point>>,
     /// The direction in which the light travels (directional, spot).
-    pub direction: Option<At<Direction>>,
+    pub direction: Option<Spanned<Direction>>,
     /// The half-angle, in degrees, of the cone that has full light (spot).
     #[schemars(extend("default" = 0))]
-    pub inner_angle: Option<At<HalfAngle>>,
+    pub inner_angle: Option<Spanned<HalfAngle>>,
     /// The half-angle, in degrees, of the cone outside which there is no light (spot).
     #[schemars(extend("default" = 45))]
-    pub outer_angle: Option<At<HalfAngle>>,
+    pub outer_angle: Option<Spanned<HalfAngle>>,
     /// The colour of the light.
     #[schemars(extend("default" = [1, 1, 1]))]
     pub color: Option<Color>,
     /// A factor on the colour.
     #[schemars(extend("default" = 1))]
-    pub intensity: Option<At<Amount>>,
+    pub intensity: Option<Spanned<Amount>>,
     /// The decrease with distance: none, or with its square (point, spot).
     #[schemars(extend("default" = "none"))]
-    pub falloff: Option<At<Falloff>>,
+    pub falloff: Option<Spanned<Falloff>>,
     /// The distance at which the light has faded to nothing. The default is no limit (point, spot).
-    pub range: Option<At<Length>>,
+    pub range: Option<Spanned<Length>>,
     /// The shadows of the light (not ambient): with `true` and `"tinted"` glass lets light through
     /// and tints it; with `"opaque"` glass blocks it; `false` means no shadows.
     #[schemars(extend("default" = true))]
-    pub shadow: Option<At<ShadowKind>>,
+    pub shadow: Option<Spanned<ShadowKind>>,
 }
 
 /// The kind of a light.

@@ -1,4 +1,4 @@
-//! The differences that a comparison finds among rays.
+//! The differences that a comparison of two intersectors finds, and the worst ray.
 
 use crate::geometry::Ray;
 use crate::measure::mismatch::MismatchCause;
@@ -43,10 +43,10 @@ pub struct CameraRay<'m> {
     pub pixel: [u32; 2],
     pub ray: &'m Ray,
     /// The colour of the pixel in the heat map.
-    pub mark: &'m mut [f32; 3],
+    pub heatmap_color: &'m mut [f32; 3],
 }
 
-/// A mismatch of one ray.
+/// A mismatch on one ray.
 pub struct Mismatch {
     /// The explanation, if there is one.
     pub cause: Option<MismatchCause>,
@@ -55,8 +55,8 @@ pub struct Mismatch {
 }
 
 impl CameraRay<'_> {
-    /// Returns the description of a difference on this ray.
-    pub fn worst(
+    /// Returns the report of a difference on this ray or a shadow ray from its hit.
+    pub fn worst_ray(
         &self,
         cause: Option<&'static str>,
         is_shadow_ray: bool,
@@ -84,7 +84,8 @@ impl Differences {
         self
     }
 
-    /// Counts a mismatch and, if it has a pixel, marks it.
+    /// Counts a mismatch; given its camera ray, also colours the pixel, and keeps the ray if it is
+    /// the worst.
     pub fn add(&mut self, camera_ray: Option<CameraRay<'_>>, mismatch: Mismatch) {
         let Mismatch { cause, is_shadow_ray, t_error_ulp } = mismatch;
         *self.causes.count_mut(cause) += 1;
@@ -95,11 +96,11 @@ impl Differences {
             None => (Severity::Unexplained(ulp), "other"),
         };
         if cause.is_none() {
-            *camera_ray.mark = RED;
-        } else if *camera_ray.mark != RED {
-            *camera_ray.mark = YELLOW;
+            *camera_ray.heatmap_color = RED;
+        } else if *camera_ray.heatmap_color != RED {
+            *camera_ray.heatmap_color = YELLOW;
         }
-        self.keep_worst(severity, || camera_ray.worst(Some(name), is_shadow_ray, t_error_ulp));
+        self.keep_worst(severity, || camera_ray.worst_ray(Some(name), is_shadow_ray, t_error_ulp));
     }
 
     /// Keeps a ray as the worst if none before is as bad; `ray` is called only then.

@@ -100,7 +100,8 @@ impl Comparer<'_> {
                 if reference[x].is_some() && row[x] == [0.0; 3] {
                     row[x] = GREY;
                 }
-                let camera_ray = CameraRay { pixel: [x as u32, y as u32], ray, mark: &mut row[x] };
+                let camera_ray =
+                    CameraRay { pixel: [x as u32, y as u32], ray, heatmap_color: &mut row[x] };
                 let (tested, reference) = (tested[x].as_ref(), reference[x].as_ref());
                 self.compare_hits(ray, Some(camera_ray), tested, reference, &mut differences);
             }
@@ -133,7 +134,7 @@ impl Comparer<'_> {
             let mismatch = Mismatch { cause, is_shadow_ray: false, t_error_ulp };
             differences.add(camera_ray, mismatch);
         } else if let Some(camera_ray) = camera_ray.filter(|_| ulp > 0) {
-            let worst = || camera_ray.worst(None, false, t_error_ulp);
+            let worst = || camera_ray.worst_ray(None, false, t_error_ulp);
             differences.keep_worst(Severity::Distance(ulp), worst);
         }
     }
@@ -169,8 +170,8 @@ impl Comparer<'_> {
                 };
                 let (x, mismatch) =
                     (columns[i], Mismatch { cause, is_shadow_ray: true, t_error_ulp: None });
-                let (pixel, mark) = ([x as u32, y as u32], &mut row[x]);
-                differences.add(Some(CameraRay { pixel, ray: &rays[x], mark }), mismatch);
+                let (pixel, heatmap_color) = ([x as u32, y as u32], &mut row[x]);
+                differences.add(Some(CameraRay { pixel, ray: &rays[x], heatmap_color }), mismatch);
             }
         }
     }

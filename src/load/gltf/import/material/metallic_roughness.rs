@@ -1,4 +1,4 @@
-//! MetallicRoughness-roughness materials: the core's, with KHR_materials_ior, _specular, _transmission and
+//! Metallic-roughness materials: the core's, with KHR_materials_ior, _specular, _transmission and
 //! _volume.
 
 use glam::Vec3;
