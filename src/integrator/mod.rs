@@ -39,7 +39,7 @@ pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
 use sample_pattern::SamplePattern;
-#[cfg(all(feature = "measure", feature = "embree"))]
+#[cfg(all(feature = "measure", any(feature = "embree", test)))]
 pub use sample_pattern::sample_positions;
 pub use sample_pattern::sample_steps;
 use texture_lod::TextureLod;

@@ -10,7 +10,7 @@ pub(super) const MAX_STEPS: usize = 12;
 ///
 /// A square number of samples forms a regular grid; any other a lattice of points, evenly spaced
 /// along x and by the golden ratio along y.
-#[cfg(all(feature = "measure", feature = "embree"))]
+#[cfg(all(feature = "measure", any(feature = "embree", test)))]
 pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
     from_corner(film, regular(film.spp).offsets)
 }

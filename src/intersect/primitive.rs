@@ -4,7 +4,9 @@
 //! A ray does not hit, at its own origin, the surfaces that it was spawned on: [`sphere_departure`],
 //! [`starts_on_plane`] and [`starts_on_triangle`] say which those are.
 
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
+#[cfg(any(feature = "measure", feature = "embree"))]
+use crate::geometry::Geometry;
+use crate::geometry::{Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
 use crate::intersect::Precision;
 pub use crate::intersect::self_intersection::{
     SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
