@@ -56,7 +56,7 @@ pub fn run(arguments: &Render) -> Result<Outcome> {
         .render_frames(&times, |i, frame| writer.write(i, frame))
         .map_err(|e| e.at(&input.scene))?;
     bar.finish_and_clear();
-    let mut totals = writer.finish()?;
+    let mut totals = writer.into_totals()?;
 
     // Report warnings, the summary and the statistics.
     let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
@@ -176,7 +176,7 @@ impl<'a> FrameWriter<'a> {
     }
 
     /// Completes the animated images.
-    fn finish(mut self) -> Result<RenderTotals> {
+    fn into_totals(mut self) -> Result<RenderTotals> {
         let start = Instant::now();
         self.movies.into_iter().try_for_each(Movie::finish)?;
         self.totals.write += start.elapsed();
