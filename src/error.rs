@@ -1,12 +1,12 @@
 //! The error type of the library: a message with its file, the place in the file, and advice.
 //!
 //! ```
-//! use envers::{Error, Place};
+//! use envers::{Error, Location};
 //! use std::path::Path;
 //!
 //! let error = Error::input("unknown key `centre`")
 //!     .at(Path::new("scene.toml"))
-//!     .place(Place::Line(3))
+//!     .with_location(Location::Line(3))
 //!     .help("did you mean `center`?");
 //! assert_eq!(error.to_string(), "scene.toml:3: unknown key `centre` (did you mean `center`?)");
 //! ```

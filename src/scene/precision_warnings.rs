@@ -2,7 +2,7 @@
 //! distance from the origin.
 //!
 //! ```
-//! use envers::scene::precision_warnings::precision_warnings;
+//! use envers::scene::precision_warnings;
 //! use envers::scene::{MaterialId, Scene, Sphere};
 //! use glam::DVec3;
 //!

@@ -1,10 +1,10 @@
 //! The validity checks of a scene, which all scenes pass before they are rendered.
 //!
 //! ```
-//! use envers::scene::{Scene, check::MAX_DEPTH};
+//! use envers::Scene;
 //!
 //! let mut scene = Scene::default();
-//! scene.film.max_depth = MAX_DEPTH + 1;
+//! scene.film.max_depth = 65_537;
 //! let error = scene.check().unwrap_err();
 //! assert_eq!(error.message(), "max_depth must be at most 65536, found 65537");
 //! ```
