@@ -42,7 +42,7 @@ pub struct PrecisionWarning {
 /// The detail of a mesh is the square root of its triangles' mean area, that of a sphere its
 /// radius. It is lost where it is finer than
 /// - with `f32_rays`, as on Embree in precision `fast`: the longest side of the scene's box over
-///   [`FAST_RATIO`] (meshes only);
+///   `FAST_RATIO` (meshes only);
 /// - the spacing of f32 at the mesh's own coordinates, since files and scenes store meshes in f32;
 /// - the spacing of f64 at the object's coordinates in the world.
 pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning> {
