@@ -33,7 +33,11 @@ pub(super) fn set_lane(colors: &mut Radiance16, i: usize, color: Vec3) {
 #[inline(always)]
 pub(super) fn any(lanes: &Lanes<bool>) -> bool {
     // As numbers: compilers fold these side by side, and truth values one by one.
-    lanes.map(u8::from).iter().fold(0, |all, one| all | one) != 0
+    let mut any = 0;
+    for i in 0..LANES {
+        any |= u8::from(lanes[i]);
+    }
+    any != 0
 }
 
 /// True if every channel of every lane is finite.
@@ -232,5 +236,9 @@ fn pixel_values(sums: &Radiance16, weight: f32) -> Lanes<Pixel> {
             values[channel][i] = if is_number { sums[channel][i] * weight } else { 0.0 };
         }
     }
-    std::array::from_fn(|i| [values[0][i], values[1][i], values[2][i]])
+    let mut pixels = [[0.0; 3]; LANES];
+    for i in 0..LANES {
+        pixels[i] = [values[0][i], values[1][i], values[2][i]];
+    }
+    pixels
 }

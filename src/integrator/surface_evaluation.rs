@@ -76,24 +76,32 @@ pub(super) fn evaluate(
     radiance: &mut WaveRadiance,
     counts: &mut FeatureCounts,
 ) {
-    // The loop is compiled for what a scene has, and for each instruction set.
+    // The loop is compiled for what a scene has, and for each instruction set: a function for each of
+    // these, since in one that holds all of them the compiler inlines less.
     let ShadingFeatures { textures, smooth_normals, .. } = integrator.features;
+    let evaluate = match (textures, smooth_normals) {
+        (false, false) => dispatch_blocks::<false, false>,
+        (false, true) => dispatch_blocks::<false, true>,
+        (true, false) => dispatch_blocks::<true, false>,
+        (true, true) => dispatch_blocks::<true, true>,
+    };
+    evaluate(integrator, wave, surfaces, radiance, counts);
+}
+
+fn dispatch_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    surfaces: &mut WaveSurfaces,
+    radiance: &mut WaveRadiance,
+    counts: &mut FeatureCounts,
+) {
     simd::dispatch(
         integrator.arch,
         #[inline(always)]
-        || match (textures, smooth_normals) {
-            (false, false) => {
-                evaluate_blocks::<false, false>(integrator, wave, surfaces, radiance, counts)
-            }
-            (false, true) => {
-                evaluate_blocks::<false, true>(integrator, wave, surfaces, radiance, counts)
-            }
-            (true, false) => {
-                evaluate_blocks::<true, false>(integrator, wave, surfaces, radiance, counts)
-            }
-            (true, true) => {
-                evaluate_blocks::<true, true>(integrator, wave, surfaces, radiance, counts)
-            }
+        || {
+            evaluate_blocks::<TEXTURES, SMOOTH_NORMALS>(
+                integrator, wave, surfaces, radiance, counts,
+            )
         },
     );
 }
@@ -176,7 +184,9 @@ fn evaluate_uniform_block(
     lit.has_mapped_normals = false;
     lit.has_highlights = material.has_highlight;
     lit.common_exponent = shading::integer_exponent(shininess);
-    *radiance = material.params.emission.to_array().map(|channel| [channel; LANES]);
+    for channel in 0..3 {
+        radiance[channel] = [material.params.emission[channel]; LANES];
+    }
     true
 }
 

@@ -86,10 +86,15 @@ impl Surface16 {
         // Lanes that hit no sphere take the first, so that all are computed alike.
         let is_sphere = |i: usize| hits.id.geometry[i] == PrimitiveId16::SPHERES;
         let index = |i| if is_sphere(i) { hits.id.primitive[i] } else { 0 };
-        let spheres: Lanes<&Sphere> = std::array::from_fn(|i| &scene.spheres[index(i) as usize]);
-        let center: [Lanes<f64>; 3] =
-            std::array::from_fn(|axis| std::array::from_fn(|i| spheres[i].center[axis]));
-        let radius: Lanes<f64> = std::array::from_fn(|i| spheres[i].radius);
+        let mut spheres: Lanes<&Sphere> = [&scene.spheres[0]; LANES];
+        let (mut center, mut radius) = ([[0.0; LANES]; 3], [0.0; LANES]);
+        for i in 0..LANES {
+            spheres[i] = &scene.spheres[index(i) as usize];
+            radius[i] = spheres[i].radius;
+            for axis in 0..3 {
+                center[axis][i] = spheres[i].center[axis];
+            }
+        }
         for i in 0..LANES {
             let (origin, direction) = ray16.origin_and_direction(i);
             let center = lane(&center, i);
@@ -108,11 +113,15 @@ impl Surface16 {
     fn set_planes(&mut self, scene: &Scene, ray16: &Ray16, hits: &Hit16) {
         let is_plane = |i: usize| hits.id.geometry[i] == PrimitiveId16::PLANES;
         let index = |i| if is_plane(i) { hits.id.primitive[i] } else { 0 };
-        let planes: Lanes<&Plane> = std::array::from_fn(|i| &scene.planes[index(i) as usize]);
-        let point: [Lanes<f64>; 3] =
-            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].point[axis]));
-        let normal: [Lanes<f64>; 3] =
-            std::array::from_fn(|axis| std::array::from_fn(|i| planes[i].normal[axis]));
+        let mut planes: Lanes<&Plane> = [&scene.planes[0]; LANES];
+        let (mut point, mut normal) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
+        for i in 0..LANES {
+            planes[i] = &scene.planes[index(i) as usize];
+            for axis in 0..3 {
+                point[axis][i] = planes[i].point[axis];
+                normal[axis][i] = planes[i].normal[axis];
+            }
+        }
         for i in 0..LANES {
             let (origin, direction) = ray16.origin_and_direction(i);
             let (point, normal) = (lane(&point, i), lane(&normal, i));

@@ -25,12 +25,16 @@ impl IncidentLight16 {
     /// Sets it to the light that arrives at the surfaces that scatter any.
     #[inline(always)]
     pub fn set(&mut self, light: &Light, lit: &LitSurface16) {
-        self.intensity = light.intensity.to_array().map(|channel| [channel; LANES]);
+        for channel in 0..3 {
+            self.intensity[channel] = [light.intensity[channel]; LANES];
+        }
         self.arrives = lit.scatters;
         self.tmax = if light.is_bounded() { 1.0 } else { f64::INFINITY };
         match light.kind {
             LightKind::Directional { direction } => {
-                self.toward = (-direction).to_array().map(|x| [x; LANES]);
+                for axis in 0..3 {
+                    self.toward[axis] = [-direction[axis]; LANES];
+                }
             }
             LightKind::Point { position, .. } if light.has_constant_intensity() => {
                 for axis in 0..3 {

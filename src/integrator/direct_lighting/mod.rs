@@ -54,17 +54,19 @@ pub(super) fn reflect(
     // The loop is compiled for what a scene has, and for each instruction set.
     let (lit, counts) = (surfaces.lit(), &mut counts.work);
     shadows.clear();
-    simd::dispatch(
-        integrator.arch,
-        #[inline(always)]
-        || {
-            if integrator.features.highlights {
-                reflect_blocks::<true>(light, wave, lit, radiance, shadows, counts);
-            } else {
-                reflect_blocks::<false>(light, wave, lit, radiance, shadows, counts);
-            }
-        },
-    );
+    if integrator.features.highlights {
+        simd::dispatch(
+            integrator.arch,
+            #[inline(always)]
+            || reflect_blocks::<true>(light, wave, lit, radiance, shadows, counts),
+        );
+    } else {
+        simd::dispatch(
+            integrator.arch,
+            #[inline(always)]
+            || reflect_blocks::<false>(light, wave, lit, radiance, shadows, counts),
+        );
+    }
 }
 
 #[inline(always)]
