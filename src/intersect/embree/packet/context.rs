@@ -68,6 +68,15 @@ impl<const W: usize> PacketHits<W> {
         Self { t: tmax, error: [0.0; W], primitive: [INVALID; W], instance: [INVALID; W] }
     }
 
+    /// Forgets the hits, for rays that end at `tmax`.
+    #[inline(always)]
+    fn reset(&mut self, tmax: &[f64; W]) {
+        self.t = *tmax;
+        self.error = [0.0; W];
+        self.primitive = [INVALID; W];
+        self.instance = [INVALID; W];
+    }
+
     /// The distance beyond which nothing is closer than the hit of ray `i`.
     #[inline(always)]
     pub fn upper(&self, i: usize) -> f64 {
@@ -205,7 +214,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
         self.rays.load(&packet);
         let lanes = self.rays.set_up_f32_rays(self.query.space, record);
         self.f32_tmax = record.tfar;
-        self.hits = PacketHits::new(self.rays.tmax);
+        self.hits.reset(&self.rays.tmax);
         if self.departures.any {
             let max_coordinate = self.rays.max_origin_coordinate().max(self.query.max_coordinate);
             self.departures.tolerance = max_tolerance(max_coordinate);
