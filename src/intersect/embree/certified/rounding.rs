@@ -22,14 +22,20 @@ struct Rounded<const W: usize> {
 pub fn round_hits<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hit16) {
     let QueryContext { scene, packet, .. } = context;
     let mut ids = [None; W];
+    let (mut any_sphere, mut any_triangle) = (false, false);
     for i in 0..packet.count {
         ids[i] = context.hits.id(scene, i);
+        let is_sphere = ids[i].is_some_and(|id| id.geometry == Geometry::Spheres);
+        any_sphere |= is_sphere;
+        any_triangle |= ids[i].is_some() & !is_sphere;
     }
     let mut rounded = Rounded { t: [0.0; W], u: [0.0; W], v: [0.0; W], certain: [false; W] };
-    if ids.iter().flatten().any(|id| id.geometry == Geometry::Spheres) {
+    if any_sphere {
         round_spheres(context, &ids, &mut rounded);
     }
-    round_triangles(context, &ids, &mut rounded);
+    if any_triangle {
+        round_triangles(context, &ids, &mut rounded);
+    }
     for i in 0..packet.count {
         let hit = ids[i].and_then(|id| {
             if rounded.certain[i] {
