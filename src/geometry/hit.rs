@@ -58,35 +58,9 @@ pub struct Hit {
     pub id: PrimitiveId,
 }
 
-impl Hit {
-    /// True if this hit comes before `other`, by (t, geometry, primitive, instance).
-    #[inline]
-    pub fn is_before(&self, other: &Hit) -> bool {
-        self.t < other.t || (self.t == other.t && self.id < other.id)
-    }
-
-    /// Replaces `best` by `candidate` if that comes first.
-    #[inline]
-    pub fn keep_closest(best: &mut Option<Hit>, candidate: Hit) {
-        if best.is_none_or(|b| candidate.is_before(&b)) {
-            *best = Some(candidate);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn hit(t: f64, id: PrimitiveId) -> Hit {
-        Hit { t, u: 0.0, v: 0.0, id }
-    }
-
-    #[test]
-    fn nearer_hit_counts() {
-        let near = hit(1.0, PrimitiveId::triangle(9, 9, 9));
-        assert!(near.is_before(&hit(2.0, PrimitiveId::sphere(0))));
-    }
 
     #[test]
     fn tie_is_decided_by_geometry_then_primitive_then_instance() {
@@ -99,7 +73,7 @@ mod tests {
             PrimitiveId::triangle(1, 0, 0),
         ];
         for pair in order.windows(2) {
-            assert!(hit(1.0, pair[0]).is_before(&hit(1.0, pair[1])), "{pair:?}");
+            assert!(pair[0] < pair[1], "{pair:?}");
         }
     }
 

@@ -20,6 +20,7 @@ mod double_double;
 #[cfg(test)]
 mod dyadic;
 mod estimate;
+pub mod exact_order;
 mod hit;
 mod hit16;
 mod integer;

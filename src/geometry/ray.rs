@@ -50,15 +50,6 @@ pub struct Continuation {
     pub crossed: Departure,
 }
 
-impl Continuation {
-    /// True if the ray has passed a crossing at `t` with primitive `id`, in the order of hits: by `t`,
-    /// then by id. Only the far side of a sphere that the ray entered lies ahead.
-    #[inline]
-    pub fn excludes(&self, t: f64, id: PrimitiveId) -> bool {
-        t < self.t || (t == self.t && id <= self.crossed.id)
-    }
-}
-
 /// A half-line from `origin` along `direction`, up to `tmax`.
 ///
 /// It hits what it crosses at `t` with 0 < t < `tmax`, both strictly.

@@ -34,7 +34,7 @@ impl<'s> BruteForce<'s> {
     /// The closest hit of a ray.
     pub(crate) fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
         let mut best = None;
-        self.all_hits(ray).for_each(|hit| Hit::keep_closest(&mut best, hit));
+        self.all_hits(ray).for_each(|hit| self.primitives.keep_closest(ray, &mut best, hit));
         best
     }
 

@@ -14,6 +14,7 @@ mod bvh;
 mod embree;
 mod frame_diff;
 mod object_space;
+mod order;
 pub mod primitive;
 mod self_intersection;
 

@@ -39,8 +39,8 @@ impl Primitives<'_> {
         let id = PrimitiveId::sphere(index);
         let root = |far| self.sphere_root(index, ray, inverse_length_squared, limit, far);
         if continuation.crossed.id != id {
-            let is_ahead = |hit: &Hit| !continuation.excludes(hit.t, id);
-            return root(false).filter(is_ahead).or_else(|| root(true).filter(is_ahead));
+            let ahead = |far| root(far).filter(|hit| !self.has_passed(ray, hit.t, id, far));
+            return ahead(false).or_else(|| ahead(true));
         }
         // A sphere that the ray entered is hit at its far side, which rounding may put at the same t.
         if continuation.crossed.side == Side::Front {
@@ -51,7 +51,7 @@ impl Primitives<'_> {
 
     /// The hit at the first root that counts, or at the far one.
     #[inline(always)]
-    fn sphere_root(
+    pub(super) fn sphere_root(
         &self,
         index: u32,
         ray: &Ray,
@@ -109,7 +109,7 @@ impl Primitives<'_> {
             }
         };
         let id = PrimitiveId::plane(index);
-        if starts_on_plane(self.scene, index, ray) || is_passed(ray, t, id) {
+        if starts_on_plane(self.scene, index, ray) || self.is_passed(ray, t, id) {
             return None;
         }
         Some(Hit { t, u: 0.0, v: 0.0, id })
@@ -134,7 +134,8 @@ impl Primitives<'_> {
             }
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
-        let excluded = starts_on_triangle(self.scene, vertices, ray) || is_passed(ray, hit.t, id);
+        let excluded =
+            starts_on_triangle(self.scene, vertices, ray) || self.is_passed(ray, hit.t, id);
         (!excluded && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
     }
 
@@ -157,7 +158,7 @@ impl Primitives<'_> {
     pub fn merge_planes(&self, ray: &Ray, best: &mut Option<Hit>) {
         for index in 0..self.scene.planes.len() as u32 {
             if let Some(hit) = self.plane(index, ray) {
-                Hit::keep_closest(best, hit);
+                self.keep_closest(ray, best, hit);
             }
         }
     }
@@ -168,12 +169,12 @@ impl Primitives<'_> {
         (0..self.scene.planes.len() as u32)
             .any(|i| self.scene.blocks_light(PrimitiveId::plane(i)) && self.plane(i, ray).is_some())
     }
-}
 
-/// True if a continuation ray has passed a surface that its line crosses once, at `t`.
-#[inline(always)]
-fn is_passed(ray: &Ray, t: f64, id: PrimitiveId) -> bool {
-    ray.continuation.is_some_and(|c| c.crossed.id == id || c.excludes(t, id))
+    /// True if a continuation ray has passed a surface that its line crosses once, at `t`.
+    #[inline(always)]
+    fn is_passed(&self, ray: &Ray, t: f64, id: PrimitiveId) -> bool {
+        ray.continuation.is_some_and(|c| c.crossed.id == id || self.has_passed(ray, t, id, false))
+    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ fn empty() -> Scene {
 }
 
 /// Returns all hits on each ray's way, in order.
-fn crossings(scene: &Scene, intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Vec<Hit>> {
+pub fn crossings(scene: &Scene, intersector: &dyn Intersector, rays: &[Ray]) -> Vec<Vec<Hit>> {
     let mut all = vec![Vec::new(); rays.len()];
     let mut open: Vec<usize> = (0..rays.len()).collect();
     let mut ahead = rays.to_vec();

@@ -8,6 +8,7 @@ mod cross_check;
 mod dominated_modes;
 #[cfg(feature = "measure")]
 mod oracle;
+mod order;
 mod random_scenes;
 mod self_intersection;
 #[cfg(feature = "measure")]

@@ -168,7 +168,7 @@ impl Intersector for Bvh<'_> {
         trace_each(rays, hits, |ray| {
             let (mut best, mut limit) = (None, ray.tmax);
             self.visit(ray, &mut limit, |hit, limit| {
-                Hit::keep_closest(&mut best, hit);
+                self.primitives.keep_closest(ray, &mut best, hit);
                 *limit = limit.min(hit.t);
                 false
             });

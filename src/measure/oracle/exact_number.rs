@@ -84,6 +84,41 @@ impl ExactNumber {
         if below { radicand.cmp(&square) } else { square.cmp(&radicand) }
     }
 
+    /// Compares two numbers, exactly.
+    ///
+    /// With a common denominator the difference is D = k ± √p ± √q in integers. The product of D and its
+    /// three conjugates, which are at most M = |k| + √p + √q, is an integer; so D is 0 or at least
+    /// M⁻³ (also where a conjugate is 0: then D is twice k, √p or √q, or 0), and an approximation to
+    /// more digits than that decides.
+    pub fn compare_with(&self, other: &Self) -> Ordering {
+        // Over both denominators, in the unit of the lesser exponent.
+        let low = self.exponent.min(other.exponent);
+        let terms = |number: &Self, denominator: &IBig| {
+            let factor = denominator << (number.exponent - low) as usize;
+            let square = (&factor * &factor).unsigned_abs();
+            (&number.rational * factor, &number.radicand * square)
+        };
+        let (a, p) = terms(self, &other.denominator);
+        let (b, q) = terms(other, &self.denominator);
+        let k = a - b;
+        // Each root is rounded down, by less than 1.
+        let bits = k.bit_len().max(p.bit_len() / 2 + 1).max(q.bit_len() / 2 + 1) + 2;
+        let shift = 3 * bits + 3;
+        let root = |radicand: UBig, sign: Sign| {
+            let root = IBig::from((radicand << (2 * shift)).sqrt());
+            if sign == Sign::Negative { -root } else { root }
+        };
+        let difference = (k << shift) + root(p, self.root) - root(q, other.root);
+        let four = IBig::from(4);
+        if difference >= four {
+            Ordering::Greater
+        } else if difference <= -four {
+            Ordering::Less
+        } else {
+            Ordering::Equal
+        }
+    }
+
     /// Returns a mantissa of at least [`BITS`] bits and an exponent, so that the mantissa is within 2
     /// of the number divided by 2^exponent.
     fn approximate(&self) -> (UBig, i64) {
@@ -238,6 +273,34 @@ mod tests {
         assert!((third.ulps_from(near) - 1.0 / 3.0).abs() < 1e-12);
         assert!((third.ulps_from(f64::next_up(near)) - 2.0 / 3.0).abs() < 1e-12);
         assert_eq!(quotient(1, 1, 0).ulps_from(1.0 + 5.0 * f64::EPSILON), 5.0);
+    }
+
+    #[test]
+    fn two_numbers_compare_exactly_where_they_round_alike() {
+        let root = |p: i64, sign, q: u64, a: i64, k| {
+            ExactNumber::root(IBig::from(p), sign, UBig::from(q), IBig::from(a), k)
+        };
+        let (plus, minus) = (Sign::Positive, Sign::Negative);
+        let pairs = [
+            (root(0, plus, 8, 2, 0), root(0, plus, 2, 1, 0), Ordering::Equal),
+            (root(0, plus, 8, 1, -1), root(0, plus, 2, 1, 0), Ordering::Equal),
+            (root(3, minus, 4, 1, 0), root(7, plus, 0, 7, 0), Ordering::Equal),
+            (root(5, minus, 24, 1, 0), root(10, minus, 96, 2, 0), Ordering::Equal),
+            (quotient(1 << 60, (1 << 60) + 1, 0), quotient(1, 1, 0), Ordering::Less),
+            (root(0, plus, (1 << 62) + 1, 1, 0), quotient(1 << 31, 1, 0), Ordering::Greater),
+            (
+                root(1 << 40, minus, 1 << 62, 1, 0),
+                root(1 << 40, minus, (1 << 62) + 1, 1, 0),
+                Ordering::Greater,
+            ),
+        ];
+        for (a, b, order) in pairs {
+            assert_eq!(
+                (a.compare_with(&b), b.compare_with(&a)),
+                (order, order.reverse()),
+                "{a:?} {b:?}"
+            );
+        }
     }
 
     #[test]

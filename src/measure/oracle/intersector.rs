@@ -5,6 +5,7 @@ use crate::intersect::primitive::{
     SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
 };
 use crate::intersect::{Coherence, Intersector};
+use crate::measure::oracle::ExactNumber;
 use crate::scene::Scene;
 
 /// An intersector in exact arithmetic; slow, for small pictures that others are compared with.
@@ -31,8 +32,8 @@ impl<'s> Oracle<'s> {
         Self { scene, boxes: spheres.chain(triangles).collect() }
     }
 
-    /// Returns every hit of the ray, in no particular order.
-    pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
+    /// Returns every hit of the ray with its exact distance, in no particular order.
+    fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = ExactHit> {
         let (ray, planes) = (*ray, self.scene.planes.len() as u32);
         let near = self.boxes.iter().filter(move |(_, bounds)| passes_near(bounds, &ray));
         near.map(|(id, _)| *id)
@@ -41,19 +42,22 @@ impl<'s> Oracle<'s> {
     }
 
     /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed.
-    fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+    fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<ExactHit> {
         let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
-        if past.crossed.id != id {
-            return [false, true]
-                .into_iter()
-                .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.excludes(h.t, id)));
+        let crossed = past.crossed;
+        if crossed.id == id {
+            let inside = id.geometry == Geometry::Spheres && crossed.side == Side::Back;
+            return inside.then(|| self.crossing(id, ray, true))?;
         }
-        let inside = id.geometry == Geometry::Spheres && past.crossed.side == Side::Back;
-        inside.then(|| self.crossing(id, ray, true))?.filter(|hit| hit.t >= past.t)
+        // The surface that was crossed last, by its distance on a ray that has crossed nothing.
+        let unbroken = Ray { continuation: None, ..*ray };
+        let last = self.crossing(crossed.id, &unbroken, crossed.side == Side::Front);
+        let is_ahead = |hit: &ExactHit| last.as_ref().is_none_or(|last| last.is_before(hit));
+        [false, true].into_iter().find_map(|far| self.crossing(id, ray, far).filter(is_ahead))
     }
 
     /// Returns where the ray crosses a primitive; a sphere at its first root, or at its far one.
-    fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<Hit> {
+    fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<ExactHit> {
         if ray.departure.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
             return None;
         }
@@ -87,7 +91,27 @@ impl<'s> Oracle<'s> {
                 (crossing.t, crossing.u, crossing.v)
             }
         };
-        Some(Hit { t: t.to_f64(), u, v, id })
+        Some(ExactHit { t, u, v, id })
+    }
+}
+
+/// A hit with its exact distance.
+struct ExactHit {
+    t: ExactNumber,
+    u: f64,
+    v: f64,
+    id: PrimitiveId,
+}
+
+impl ExactHit {
+    /// True if this hit comes before `other`: by distance, then by id.
+    fn is_before(&self, other: &Self) -> bool {
+        self.t.compare_with(&other.t).then(self.id.cmp(&other.id)).is_lt()
+    }
+
+    /// The hit with its distance rounded.
+    fn rounded(&self) -> Hit {
+        Hit { t: self.t.to_f64(), u: self.u, v: self.v, id: self.id }
     }
 }
 
@@ -124,8 +148,8 @@ impl Intersector for Oracle<'_> {
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         for (ray, best) in rays.iter().zip(hits) {
-            *best = None;
-            self.all_hits(ray).for_each(|hit| Hit::keep_closest(best, hit));
+            let first = self.all_hits(ray).reduce(|a, b| if b.is_before(&a) { b } else { a });
+            *best = first.map(|hit| hit.rounded());
         }
     }
 

@@ -126,8 +126,12 @@ impl<const W: usize> QueryContext<'_, W> {
             self.hits.error[lane] = 0.0;
         }
         let t = self.hits.t[lane];
+        let is_before = |best| {
+            let best = Hit { t, u: 0.0, v: 0.0, id: best };
+            self.query.primitives().is_before(&self.packet.ray(lane), &hit, &best)
+        };
         // Without a hit so far `t` is the ray's end, which the exact test knows.
-        if best.is_none_or(|best| hit.is_before(&Hit { t, u: 0.0, v: 0.0, id: best })) {
+        if best.is_none_or(is_before) {
             self.hits.set(lane, Estimate { t: hit.t, error: 0.0 }, id);
         }
     }

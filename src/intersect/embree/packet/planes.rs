@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::geometry::plane::certified::{certainly_misses, round};
-use crate::geometry::{Hit16, PrimitiveId, PrimitiveId16, plane};
+use crate::geometry::{Hit, Hit16, PrimitiveId, PrimitiveId16, plane};
 use crate::intersect::Precision;
 use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Plane;
@@ -63,7 +63,8 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
             for i in 0..W {
                 let (origin, direction) = rays.origin_and_direction(i);
                 let (t, certain) = round(point, normal, origin, direction);
-                let decided = open[i] & certain & (t != rays.tmax[i]);
+                // What rounds to the same distance as the hit so far is compared exactly.
+                let decided = open[i] & certain & (t != rays.tmax[i]) & (t != limits[i]);
                 ts[i] = if decided & (t > 0.0) & (t < rays.tmax[i]) { t } else { f64::NAN };
                 open[i] &= !decided;
             }
@@ -72,8 +73,10 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
         // Test the rays that are left one by one.
         for i in (0..packet.count).filter(|&i| open[i]) {
             let best = hits.hit(first + i);
-            let hit = query.primitives().plane(index, &packet.ray(i));
-            if let Some(hit) = hit.filter(|hit| best.is_none_or(|best| hit.is_before(&best))) {
+            let (primitives, ray) = (query.primitives(), packet.ray(i));
+            let is_first =
+                |hit: &Hit| best.is_none_or(|best| primitives.is_before(&ray, hit, &best));
+            if let Some(hit) = primitives.plane(index, &ray).filter(is_first) {
                 hits.set(first + i, Some(hit));
             }
         }
