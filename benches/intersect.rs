@@ -46,7 +46,7 @@ impl Case {
                 let toward = scenes::LIGHT - surface.position;
                 let lit = surface.normal.dot(toward) > 0.0;
                 let arrival = IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
-                lit.then(|| surface.shadow_ray(&arrival))
+                lit.then(|| surface.shadow_ray(ray.direction, &arrival))
             })
             .collect();
         shadow.truncate(shadow.len() / 16 * 16);

@@ -84,7 +84,8 @@ pub use glam;
 pub use error::{Error, ErrorKind, Location, Remedy, Result};
 pub use film::{Film, View};
 pub use geometry::{
-    Bounds, Continuation, Departure, Geometry, Hit, HitBatch, PrimitiveId, Ray, RayBatch, Side,
+    Bounds, Continuation, Departure, Geometry, Hit, HitBatch, PrimitiveId, Ray, RayBatch,
+    ShadowEnds, Side,
 };
 #[cfg(feature = "embree")]
 pub use intersect::Embree;

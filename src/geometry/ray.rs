@@ -50,6 +50,16 @@ pub struct Continuation {
     pub crossed: Departure,
 }
 
+/// What a shadow ray knows of its ends, a shading point and a light, beyond the line between them.
+///
+/// It does not hit, at the light, a surface on which the light lies. At the shading point a surface
+/// through the point blocks it that separates the light from the viewer; in precision `certified`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowEnds {
+    /// The direction from the shading point toward the viewer, of any length.
+    pub viewer: DVec3,
+}
+
 /// A half-line from `origin` along `direction`, up to `tmax`.
 ///
 /// It hits what it crosses at `t` with 0 < t < `tmax`, both strictly.
@@ -65,13 +75,16 @@ pub struct Ray {
     pub departure: Option<Departure>,
     /// Its progress, if it went straight through a surface: it hits only what lies ahead.
     pub continuation: Option<Continuation>,
+    /// What it knows of its ends, if it is a shadow ray.
+    pub shadow: Option<ShadowEnds>,
 }
 
 impl Ray {
     /// A ray without end, spawned on no surface.
     #[inline]
     pub fn new(origin: DVec3, direction: DVec3) -> Self {
-        Self { origin, direction, tmax: f64::INFINITY, departure: None, continuation: None }
+        let (departure, continuation, shadow) = (None, None, None);
+        Self { origin, direction, tmax: f64::INFINITY, departure, continuation, shadow }
     }
 
     /// The segment from `origin` to `target`, both ends excluded.

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Continuation, Departure, LANES, Lanes, PrimitiveId16, Ray, Side};
+use crate::geometry::{
+    Continuation, Departure, LANES, Lanes, PrimitiveId16, Ray, ShadowEnds, Side,
+};
 
 /// Sixteen rays side by side, without their departures; see [`Ray`].
 #[derive(Clone, Debug, Default)]
@@ -54,6 +56,8 @@ pub struct RayBatch {
     departures: Vec<Departure16>,
     /// The continuations; empty while no ray has one.
     continuations: Vec<Option<Continuation>>,
+    /// The directions toward the viewers of shadow rays, axis by axis; empty for other rays.
+    viewers: Vec<[Lanes<f64>; 3]>,
 }
 
 impl RayBatch {
@@ -72,6 +76,7 @@ impl RayBatch {
         self.len = 0;
         self.departures.clear();
         self.continuations.clear();
+        self.viewers.clear();
     }
 
     /// Resizes the batch to `blocks` blocks of rays without departure, and returns them to be filled.
@@ -87,6 +92,7 @@ impl RayBatch {
         self.len = self.len.min(count);
         self.departures.truncate(count.div_ceil(LANES));
         self.continuations.truncate(count);
+        self.viewers.truncate(count.div_ceil(LANES));
     }
 
     fn reserve(&mut self, blocks: usize) {
@@ -96,9 +102,16 @@ impl RayBatch {
     }
 
     /// Appends a ray.
+    ///
+    /// # Panics
+    /// When it is a shadow ray and the rays before it are not, or the reverse.
     #[inline]
     pub fn push(&mut self, ray: &Ray) {
         let i = self.len;
+        if ray.shadow.is_some() && (i == 0 || self.are_shadow_rays()) {
+            self.viewers.resize(i / LANES + 1, [[0.0; LANES]; 3]);
+        }
+        self.set_viewer(i, ray);
         self.reserve(i / LANES + 1);
         self.len += 1;
         if ray.departure.is_some() || !self.departures.is_empty() {
@@ -112,18 +125,23 @@ impl RayBatch {
         self.set_ray(i, ray);
     }
 
-    /// Appends a block of sixteen rays that have departures but no continuations, and returns it to
-    /// be filled.
+    /// Appends a block of sixteen shadow rays that have departures but no continuations, and returns
+    /// it to be filled. `viewers` are the directions toward their viewers.
     ///
     /// # Panics
     /// When a block before it is not full, or holds rays of another kind.
     #[inline(always)]
-    pub fn push_block(&mut self) -> (&mut Ray16, &mut Departure16) {
+    pub fn push_shadow_block(
+        &mut self,
+        viewers: [Lanes<f64>; 3],
+    ) -> (&mut Ray16, &mut Departure16) {
         let block = self.len / LANES;
         let alike = self.len.is_multiple_of(LANES)
             && self.departures.len() == block
-            && self.continuations.is_empty();
+            && self.continuations.is_empty()
+            && self.viewers.len() == block;
         assert!(alike, "rays of another kind");
+        self.viewers.push(viewers);
         self.reserve(block + 1);
         self.departures.resize(block + 1, Departure16::default());
         self.len += LANES;
@@ -133,9 +151,10 @@ impl RayBatch {
     /// Replaces ray `i`.
     ///
     /// # Panics
-    /// When there is no ray `i`.
+    /// When there is no ray `i`, or one of the two is a shadow ray and the other is not.
     pub fn set(&mut self, i: usize, ray: &Ray) {
         assert!(i < self.len, "ray {i} of {}", self.len);
+        self.set_viewer(i, ray);
         if ray.departure.is_some() && self.departures.is_empty() {
             self.departures.resize(self.len.div_ceil(LANES), Departure16::default());
         }
@@ -149,6 +168,16 @@ impl RayBatch {
             *continuation = ray.continuation;
         }
         self.set_ray(i, ray);
+    }
+
+    #[inline(always)]
+    fn set_viewer(&mut self, i: usize, ray: &Ray) {
+        assert!(ray.shadow.is_some() == self.are_shadow_rays(), "shadow rays and others");
+        if let Some(ends) = ray.shadow {
+            for axis in 0..3 {
+                self.viewers[i / LANES][axis][i % LANES] = ends.viewer[axis];
+            }
+        }
     }
 
     #[inline(always)]
@@ -176,7 +205,17 @@ impl RayBatch {
             tmax: block.tmax[lane],
             departure: self.departure(i),
             continuation: self.continuation(i),
+            shadow: self
+                .viewers
+                .get(i / LANES)
+                .map(|viewers| ShadowEnds { viewer: viewers.map(|axis| axis[lane]).into() }),
         }
+    }
+
+    /// True if the rays are shadow rays.
+    #[inline(always)]
+    pub fn are_shadow_rays(&self) -> bool {
+        !self.viewers.is_empty()
     }
 
     /// An iterator over all rays.

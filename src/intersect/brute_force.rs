@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Hit, PrimitiveId, Ray, sphere};
+use crate::geometry::{Hit, PrimitiveId, Ray};
 use crate::intersect::primitive::Primitives;
 use crate::intersect::{Coherence, Intersector, Precision, trace_each};
 use crate::scene::Scene;
@@ -33,8 +33,8 @@ impl<'s> BruteForce<'s> {
 
     /// The closest hit of a ray.
     pub(crate) fn closest_hit(&self, ray: &Ray) -> Option<Hit> {
-        let mut best = None;
-        self.all_hits(ray).for_each(|hit| self.primitives.keep_closest(ray, &mut best, hit));
+        let (mut best, tests) = (None, self.primitives.with_ray(ray));
+        self.all_hits(ray).for_each(|hit| tests.keep_closest(&mut best, hit));
         best
     }
 
@@ -45,16 +45,14 @@ impl<'s> BruteForce<'s> {
 
     /// Returns every hit of a ray, in no particular order.
     pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
-        let (primitives, ray) = (self.primitives, *ray);
-        let scene = primitives.scene;
-        let inverse = sphere::inverse_length_squared(ray.direction);
-        let spheres = (0..scene.spheres.len() as u32)
-            .filter_map(move |i| primitives.sphere(i, &ray, inverse, f64::INFINITY));
-        let planes = (0..scene.planes.len() as u32).filter_map(move |i| primitives.plane(i, &ray));
+        let (scene, tests) = (self.primitives.scene, self.primitives.with_ray(ray));
+        let spheres =
+            (0..scene.spheres.len() as u32).filter_map(move |i| tests.sphere(i, f64::INFINITY));
+        let planes = (0..scene.planes.len() as u32).filter_map(move |i| tests.plane(i));
         let triangles = (0..scene.instances.len() as u32).flat_map(move |instance| {
             let mesh = scene.instances[instance as usize].mesh.0;
             (0..scene.meshes[mesh as usize].triangles.len() as u32).filter_map(move |t| {
-                primitives.triangle(PrimitiveId::triangle(mesh, t, instance), &ray, f64::INFINITY)
+                tests.triangle(PrimitiveId::triangle(mesh, t, instance), f64::INFINITY)
             })
         });
         spheres.chain(planes).chain(triangles)

@@ -16,7 +16,7 @@ mod frame_diff;
 mod object_space;
 mod order;
 pub mod primitive;
-mod self_intersection;
+mod ray_ends;
 
 pub use brute_force::BruteForce;
 pub use build_quality::BuildQuality;

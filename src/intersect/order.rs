@@ -6,21 +6,21 @@
 use std::cmp::Ordering;
 
 use crate::geometry::exact_order::{CrossedSurface, compare};
-use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side, sphere};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Side};
 use crate::intersect::Precision;
-use crate::intersect::primitive::{Primitives, SphereDeparture, sphere_departure};
+use crate::intersect::primitive::{ORIGIN_T, RayTests, SphereDeparture};
 
-impl Primitives<'_> {
-    /// True if hit `a` of a ray comes before its hit `b`.
+impl RayTests<'_> {
+    /// True if hit `a` of the ray comes before its hit `b`.
     #[inline(always)]
-    pub fn is_before(&self, ray: &Ray, a: &Hit, b: &Hit) -> bool {
-        if a.t != b.t { a.t < b.t } else { self.breaks_tie(ray, a.id, b.id) }
+    pub fn is_before(&self, a: &Hit, b: &Hit) -> bool {
+        if a.t != b.t { a.t < b.t } else { self.breaks_tie(a, b.id) }
     }
 
     /// Replaces `best` by `candidate`, another hit of the ray, if that comes first.
     #[inline(always)]
-    pub fn keep_closest(&self, ray: &Ray, best: &mut Option<Hit>, candidate: Hit) {
-        if best.is_none_or(|best| self.is_before(ray, &candidate, &best)) {
+    pub fn keep_closest(&self, best: &mut Option<Hit>, candidate: Hit) {
+        if best.is_none_or(|best| self.is_before(&candidate, &best)) {
             *best = Some(candidate);
         }
     }
@@ -28,50 +28,48 @@ impl Primitives<'_> {
     /// True if a continuation ray has passed its crossing with primitive `id` at `t`; at the far root
     /// of a sphere if `far`.
     #[inline(always)]
-    pub fn has_passed(&self, ray: &Ray, t: f64, id: PrimitiveId, far: bool) -> bool {
-        let Some(continuation) = ray.continuation else { return false };
+    pub fn has_passed(&self, t: f64, id: PrimitiveId, far: bool) -> bool {
+        let Some(continuation) = self.ray.continuation else { return false };
         if t != continuation.t {
             return t < continuation.t;
         }
         let crossed = continuation.crossed;
-        if self.precision == Precision::Fast {
+        if self.precision == Precision::Fast || t == ORIGIN_T {
             return id <= crossed.id;
         }
         // A sphere that the ray left was crossed at its far root.
         let last = self.surface(crossed.id, crossed.side == Side::Front);
-        let order = compare(&self.surface(id, far), &last, ray.origin, ray.direction);
+        let order = compare(&self.surface(id, far), &last, self.ray.origin, self.ray.direction);
         order.then(id.cmp(&crossed.id)).is_le()
     }
 
     /// True if the hit on `a` comes before that on `b`, at distances that round alike.
     #[cold]
     #[inline(never)]
-    fn breaks_tie(&self, ray: &Ray, a: PrimitiveId, b: PrimitiveId) -> bool {
+    fn breaks_tie(&self, a: &Hit, b: PrimitiveId) -> bool {
         let order = match self.precision {
-            Precision::Fast => Ordering::Equal,
-            Precision::Certified => {
-                let [first, second] =
-                    [a, b].map(|id| self.surface(id, self.hits_far_root(ray, id)));
-                compare(&first, &second, ray.origin, ray.direction)
+            Precision::Certified if a.t != ORIGIN_T => {
+                let [first, second] = [a.id, b].map(|id| self.surface(id, self.hits_far_root(id)));
+                compare(&first, &second, self.ray.origin, self.ray.direction)
             }
+            // Hits at the very origin have no crossings.
+            _ => Ordering::Equal,
         };
-        order.then(a.cmp(&b)).is_lt()
+        order.then(a.id.cmp(&b)).is_lt()
     }
 
     /// True if the hit of a ray on a primitive is that at the far root of a sphere, also when the near
     /// one lies ahead of the ray's origin.
-    fn hits_far_root(&self, ray: &Ray, id: PrimitiveId) -> bool {
+    fn hits_far_root(&self, id: PrimitiveId) -> bool {
         if id.geometry != Geometry::Spheres {
             return false;
         }
-        let departs_inward =
-            sphere_departure(self.scene, id.primitive, ray) == SphereDeparture::Inward;
+        let departs_inward = self.ends.sphere_departure(id.primitive) == SphereDeparture::Inward;
         let has_passed_first = || {
-            let Some(continuation) = ray.continuation else { return false };
-            let inverse = sphere::inverse_length_squared(ray.direction);
-            let first = self.sphere_root(id.primitive, ray, inverse, f64::INFINITY, false);
+            let Some(continuation) = self.ray.continuation else { return false };
+            let first = self.sphere_root(id.primitive, f64::INFINITY, false);
             continuation.crossed.id == id
-                || first.is_none_or(|first| self.has_passed(ray, first.t, id, false))
+                || first.is_none_or(|first| self.has_passed(first.t, id, false))
         };
         departs_inward || has_passed_first()
     }

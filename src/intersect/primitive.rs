@@ -1,16 +1,14 @@
 //! The tests of one ray against one primitive, in f64 and in world space: what every backend means by a
 //! hit.
 //!
-//! A ray does not hit, at its own origin, the surfaces that it was spawned on: [`sphere_departure`],
-//! [`starts_on_plane`] and [`starts_on_triangle`] say which those are.
+//! A ray does not hit, at its ends, surfaces on which these lie; see [`RayEnds`].
 
-#[cfg(any(feature = "measure", feature = "embree"))]
-use crate::geometry::Geometry;
-use crate::geometry::{Hit, PrimitiveId, Ray, Side, plane, sphere, triangle};
-use crate::intersect::Precision;
-pub use crate::intersect::self_intersection::{
-    SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
+use crate::geometry::{
+    Continuation, Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle,
 };
+use crate::intersect::Precision;
+use crate::intersect::ray_ends::RayEnds;
+pub use crate::intersect::ray_ends::SphereDeparture;
 use crate::scene::Scene;
 
 /// The primitives of a scene, with the precision in which they are tested.
@@ -22,54 +20,122 @@ pub struct Primitives<'s> {
     pub precision: Precision,
 }
 
-impl Primitives<'_> {
-    /// The hit of `ray` on sphere `index`, with `inverse_length_squared` = 1 / |direction|². A hit
-    /// beyond `limit` may be left out.
+impl<'s> Primitives<'s> {
+    /// The tests of one ray against these primitives.
+    #[inline(always)]
+    pub fn with_ray(&self, ray: &Ray) -> RayTests<'s> {
+        let Primitives { scene, precision } = *self;
+        let inverse_length_squared = sphere::inverse_length_squared(ray.direction);
+        let ends = RayEnds::new(scene, ray);
+        RayTests { scene, precision, ray: *ray, ends, inverse_length_squared }
+    }
+}
+
+/// The t of a hit at the very origin of a shadow ray: the least there is.
+pub(super) const ORIGIN_T: f64 = f64::from_bits(1);
+
+/// The tests of one ray against the primitives of a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct RayTests<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) precision: Precision,
+    pub(super) ray: Ray,
+    pub(super) ends: RayEnds<'a>,
+    /// The reciprocal 1 / |direction|².
+    inverse_length_squared: f64,
+}
+
+impl RayTests<'_> {
+    /// The hit on sphere `index`. A hit beyond `limit` may be left out.
     #[inline]
-    pub fn sphere(
-        &self,
-        index: u32,
-        ray: &Ray,
-        inverse_length_squared: f64,
-        limit: f64,
-    ) -> Option<Hit> {
-        let Some(continuation) = ray.continuation else {
-            return self.sphere_root(index, ray, inverse_length_squared, limit, false);
+    pub fn sphere(&self, index: u32, limit: f64) -> Option<Hit> {
+        self.between_ends(PrimitiveId::sphere(index), || self.sphere_crossing(index, limit))
+    }
+
+    /// The hit on plane `index`.
+    #[inline]
+    pub fn plane(&self, index: u32) -> Option<Hit> {
+        self.between_ends(PrimitiveId::plane(index), || self.plane_crossing(index))
+    }
+
+    /// The hit on the triangle `id`. A hit beyond `limit` may be left out.
+    #[inline]
+    pub fn triangle(&self, id: PrimitiveId, limit: f64) -> Option<Hit> {
+        self.between_ends(id, || self.triangle_crossing(id, limit))
+    }
+
+    /// The hit on any primitive.
+    #[cfg(any(feature = "measure", feature = "embree"))]
+    pub fn primitive(&self, id: PrimitiveId) -> Option<Hit> {
+        match id.geometry {
+            Geometry::Spheres => self.sphere(id.primitive, f64::INFINITY),
+            Geometry::Planes => self.plane(id.primitive),
+            Geometry::Mesh(_) => self.triangle(id, f64::INFINITY),
+        }
+    }
+
+    /// The hit on a primitive, which `crossing` gives. A shadow ray may instead be blocked at its origin,
+    /// and does not hit, at its light, what the light lies on.
+    #[inline(always)]
+    fn between_ends(&self, id: PrimitiveId, crossing: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
+        if self.ray.shadow.is_none() {
+            return crossing();
+        }
+        let is_blocked = self.precision == Precision::Certified && self.ends.is_blocked_by(id);
+        let blocked = if is_blocked { self.hit_at_origin(id) } else { None };
+        blocked.or_else(|| crossing().filter(|hit| !self.ends.ends_at(hit)))
+    }
+
+    /// The hit on a surface that blocks a shadow ray at its origin, at the least t; none if the ray has
+    /// passed the surface there, or a mask cuts a hole.
+    #[cold]
+    fn hit_at_origin(&self, id: PrimitiveId) -> Option<Hit> {
+        let Self { scene, ray, .. } = self;
+        let (mut u, mut v) = (0.0, 0.0);
+        if let Geometry::Mesh(_) = id.geometry {
+            (u, v) = triangle::weights(scene.triangle_vertices(id), ray.origin);
+            if scene.is_cut_out(id, u, v) {
+                return None;
+            }
+        }
+        let is_ahead = |c: Continuation| c.t == ORIGIN_T && c.crossed.id < id;
+        ray.continuation.is_none_or(is_ahead).then_some(Hit { t: ORIGIN_T, u, v, id })
+    }
+
+    /// The crossing with sphere `index` that a ray hits, whatever surface its end lies on.
+    #[inline(always)]
+    fn sphere_crossing(&self, index: u32, limit: f64) -> Option<Hit> {
+        let Some(continuation) = self.ray.continuation else {
+            return self.sphere_root(index, limit, false);
         };
         let id = PrimitiveId::sphere(index);
-        let root = |far| self.sphere_root(index, ray, inverse_length_squared, limit, far);
         if continuation.crossed.id != id {
-            let ahead = |far| root(far).filter(|hit| !self.has_passed(ray, hit.t, id, far));
+            let ahead = |far| {
+                self.sphere_root(index, limit, far).filter(|hit| !self.has_passed(hit.t, id, far))
+            };
             return ahead(false).or_else(|| ahead(true));
         }
         // A sphere that the ray entered is hit at its far side, which rounding may put at the same t.
         if continuation.crossed.side == Side::Front {
             return None;
         }
-        root(true).filter(|hit| hit.t >= continuation.t)
+        self.sphere_root(index, limit, true).filter(|hit| hit.t >= continuation.t)
     }
 
     /// The hit at the first root that counts, or at the far one.
     #[inline(always)]
-    pub(super) fn sphere_root(
-        &self,
-        index: u32,
-        ray: &Ray,
-        inverse_length_squared: f64,
-        limit: f64,
-        far: bool,
-    ) -> Option<Hit> {
+    pub(super) fn sphere_root(&self, index: u32, limit: f64, far: bool) -> Option<Hit> {
         let s = &self.scene.spheres[index as usize];
-        let (origin, direction) = (ray.origin, ray.direction);
-        let inverse = inverse_length_squared;
+        let Ray { origin, direction, tmax, .. } = self.ray;
+        let inverse = self.inverse_length_squared;
         let t = match self.precision {
             Precision::Fast => {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
-                let t = sphere::first_root(roots, ray.tmax, false)?;
-                match sphere_departure(self.scene, index, ray) {
+                let t = sphere::first_root(roots, tmax, false)?;
+                match self.ends.sphere_departure(index) {
                     SphereDeparture::Outward => return None,
                     SphereDeparture::No if !far => t,
-                    _ => sphere::first_root(roots, ray.tmax, true)?,
+                    _ => sphere::first_root(roots, tmax, true)?,
                 }
             }
             Precision::Certified => {
@@ -78,102 +144,91 @@ impl Primitives<'_> {
                 if estimate(s.center, s.radius, origin, direction, inverse).is_outside(limit) {
                     return None;
                 }
-                let inward = match sphere_departure(self.scene, index, ray) {
+                let inward = match self.ends.sphere_departure(index) {
                     SphereDeparture::Outward => return None,
                     SphereDeparture::No => far,
                     SphereDeparture::Inward => true,
                 };
-                first_root(s.center, s.radius, origin, direction, ray.tmax, inward)?
+                first_root(s.center, s.radius, origin, direction, tmax, inward)?
             }
         };
-        let id = PrimitiveId::sphere(index);
-        Some(Hit { t, u: 0.0, v: 0.0, id })
+        Some(Hit { t, u: 0.0, v: 0.0, id: PrimitiveId::sphere(index) })
     }
 
-    /// The hit of `ray` on plane `index`.
-    #[inline]
-    pub fn plane(&self, index: u32, ray: &Ray) -> Option<Hit> {
+    /// The crossing with plane `index` that a ray hits, whatever surface its end lies on.
+    #[inline(always)]
+    fn plane_crossing(&self, index: u32) -> Option<Hit> {
         let p = &self.scene.planes[index as usize];
+        let Ray { origin, direction, tmax, .. } = self.ray;
         let t = match self.precision {
-            Precision::Fast => plane::intersect(p.point, p.normal, ray.origin, ray.direction)
-                .filter(|&t| t > 0.0 && t < ray.tmax)?,
+            Precision::Fast => plane::intersect(p.point, p.normal, origin, direction)
+                .filter(|&t| t > 0.0 && t < tmax)?,
             Precision::Certified => {
                 use plane::certified::{certainly_misses, crossing};
                 // A ray that leaves the plane nearly hits it, which is expensive to decide.
-                if certainly_misses(p.point, p.normal, ray.origin, ray.direction, ray.tmax)
-                    || starts_on_plane(self.scene, index, ray)
+                if certainly_misses(p.point, p.normal, origin, direction, tmax)
+                    || self.ends.starts_on_plane(index)
                 {
                     return None;
                 }
-                crossing(p.point, p.normal, ray.origin, ray.direction, ray.tmax)?
+                crossing(p.point, p.normal, origin, direction, tmax)?
             }
         };
         let id = PrimitiveId::plane(index);
-        if starts_on_plane(self.scene, index, ray) || self.is_passed(ray, t, id) {
+        if self.ends.starts_on_plane(index) || self.has_passed_flat(t, id) {
             return None;
         }
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
-    /// The hit of `ray` on the triangle `id`. A hit beyond `limit` may be left out.
-    #[inline]
-    pub fn triangle(&self, id: PrimitiveId, ray: &Ray, limit: f64) -> Option<Hit> {
-        if ray.departure.is_some_and(|departure| departure.id == id) {
+    /// The crossing with the triangle `id` that a ray hits, whatever surface its end lies on.
+    #[inline(always)]
+    fn triangle_crossing(&self, id: PrimitiveId, limit: f64) -> Option<Hit> {
+        let Ray { origin, direction, tmax, departure, .. } = self.ray;
+        if departure.is_some_and(|departure| departure.id == id) {
             return None;
         }
         let vertices = self.scene.triangle_vertices(id);
         let crossing = match self.precision {
-            Precision::Fast => triangle::intersect(vertices, ray.origin, ray.direction)
-                .filter(|hit| hit.t > 0.0 && hit.t < ray.tmax)?,
+            Precision::Fast => triangle::intersect(vertices, origin, direction)
+                .filter(|hit| hit.t > 0.0 && hit.t < tmax)?,
             Precision::Certified => {
                 use triangle::certified::{crossing, estimate};
-                if estimate(vertices, ray.origin, ray.direction).is_outside(limit) {
+                if estimate(vertices, origin, direction).is_outside(limit) {
                     return None;
                 }
-                crossing(vertices, ray.origin, ray.direction, ray.tmax)?
+                crossing(vertices, origin, direction, tmax)?
             }
         };
         let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
         let excluded =
-            starts_on_triangle(self.scene, vertices, ray) || self.is_passed(ray, hit.t, id);
+            self.ends.starts_on_triangle(id, vertices) || self.has_passed_flat(hit.t, id);
         (!excluded && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
-    }
-
-    /// The hit of `ray` on the primitive `id`.
-    #[cfg(any(feature = "measure", feature = "embree"))]
-    pub fn test(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
-        match id.geometry {
-            Geometry::Spheres => {
-                let inverse = sphere::inverse_length_squared(ray.direction);
-                self.sphere(id.primitive, ray, inverse, f64::INFINITY)
-            }
-            Geometry::Planes => self.plane(id.primitive, ray),
-            Geometry::Mesh(_) => self.triangle(id, ray, f64::INFINITY),
-        }
     }
 
     /// Merges the infinite planes into a hit on finite primitives: they are in no tree, since nothing
     /// infinite can be bounded.
     #[inline]
-    pub fn merge_planes(&self, ray: &Ray, best: &mut Option<Hit>) {
+    pub fn merge_planes(&self, best: &mut Option<Hit>) {
         for index in 0..self.scene.planes.len() as u32 {
-            if let Some(hit) = self.plane(index, ray) {
-                self.keep_closest(ray, best, hit);
+            if let Some(hit) = self.plane(index) {
+                self.keep_closest(best, hit);
             }
         }
     }
 
     /// True if a plane that blocks light is hit by the ray.
     #[inline]
-    pub fn planes_occlude(&self, ray: &Ray) -> bool {
+    pub fn planes_occlude(&self) -> bool {
         (0..self.scene.planes.len() as u32)
-            .any(|i| self.scene.blocks_light(PrimitiveId::plane(i)) && self.plane(i, ray).is_some())
+            .any(|i| self.scene.blocks_light(PrimitiveId::plane(i)) && self.plane(i).is_some())
     }
 
     /// True if a continuation ray has passed a surface that its line crosses once, at `t`.
     #[inline(always)]
-    fn is_passed(&self, ray: &Ray, t: f64, id: PrimitiveId) -> bool {
-        ray.continuation.is_some_and(|c| c.crossed.id == id || self.has_passed(ray, t, id, false))
+    fn has_passed_flat(&self, t: f64, id: PrimitiveId) -> bool {
+        let crossed_it = |c: Continuation| c.crossed.id == id || self.has_passed(t, id, false);
+        self.ray.continuation.is_some_and(crossed_it)
     }
 }
 
@@ -210,7 +265,7 @@ mod tests {
         let id = PrimitiveId::triangle(0, 0, 0);
         let origin = DVec3::new(0.5, 0.5 + 1e-17, 0.0);
         let ray = spawned(origin, DVec3::new(1.0, -1.0, 0.0), id, Side::Back);
-        assert_eq!(fast(&scene).triangle(id, &ray, f64::INFINITY), None);
+        assert_eq!(fast(&scene).with_ray(&ray).triangle(id, f64::INFINITY), None);
     }
 
     #[test]
@@ -223,7 +278,7 @@ mod tests {
             Side::Front,
         );
         assert_eq!(
-            fast(&scene).triangle(PrimitiveId::triangle(0, 1, 0), &ray, f64::INFINITY),
+            fast(&scene).with_ray(&ray).triangle(PrimitiveId::triangle(0, 1, 0), f64::INFINITY),
             None
         );
     }
@@ -237,8 +292,10 @@ mod tests {
             PrimitiveId::triangle(0, 0, 0),
             Side::Front,
         );
-        let hit =
-            fast(&scene).triangle(PrimitiveId::triangle(0, 1, 0), &ray, f64::INFINITY).unwrap();
+        let hit = fast(&scene)
+            .with_ray(&ray)
+            .triangle(PrimitiveId::triangle(0, 1, 0), f64::INFINITY)
+            .unwrap();
         assert_eq!(hit.t, 0.5);
     }
 
@@ -248,7 +305,7 @@ mod tests {
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let inside = DVec3::X * (1.0 - 1e-16);
         let ray = spawned(inside, DVec3::new(1e-9, 1.0, 0.0), PrimitiveId::sphere(0), Side::Front);
-        assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY), None);
+        assert_eq!(fast(&scene).with_ray(&ray).sphere(0, f64::INFINITY), None);
     }
 
     #[test]
@@ -256,7 +313,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::ZERO, 1.0, MaterialId(0)));
         let ray = spawned(DVec3::X, -DVec3::X, PrimitiveId::sphere(0), Side::Back);
-        assert_eq!(fast(&scene).sphere(0, &ray, 1.0, f64::INFINITY).unwrap().t, 2.0);
+        assert_eq!(fast(&scene).with_ray(&ray).sphere(0, f64::INFINITY).unwrap().t, 2.0);
     }
 
     #[test]
@@ -266,7 +323,7 @@ mod tests {
         let ray = Ray::new(DVec3::Y * 2.0, -DVec3::Y);
         for (t, expected) in [(1.0, 1.0), (3.0, 2.0)] {
             let mut best = Some(Hit { t, u: 0.0, v: 0.0, id: PrimitiveId::triangle(0, 0, 0) });
-            fast(&scene).merge_planes(&ray, &mut best);
+            fast(&scene).with_ray(&ray).merge_planes(&mut best);
             assert_eq!(best.unwrap().t, expected);
         }
     }
@@ -275,7 +332,7 @@ mod tests {
     fn the_end_of_a_segment_is_not_hit() {
         let mut scene = Scene::default();
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, MaterialId(0)));
-        assert!(!fast(&scene).planes_occlude(&Ray::segment(DVec3::Y, DVec3::ZERO)));
-        assert!(fast(&scene).planes_occlude(&Ray::segment(DVec3::Y, -DVec3::Y)));
+        assert!(!fast(&scene).with_ray(&Ray::segment(DVec3::Y, DVec3::ZERO)).planes_occlude());
+        assert!(fast(&scene).with_ray(&Ray::segment(DVec3::Y, -DVec3::Y)).planes_occlude());
     }
 }

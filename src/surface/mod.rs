@@ -10,7 +10,9 @@ mod texture_context;
 
 use glam::{DMat3, DVec3};
 
-use crate::geometry::{Departure, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
+use crate::geometry::{
+    Departure, Geometry, Hit, PrimitiveId, Ray, ShadowEnds, Side, plane, triangle,
+};
 use crate::scene::{IncidentLight, MaterialId, Scene};
 pub use footprint::{Footprint, RayCone, curvature};
 pub use normal_map::mapped_normal;
@@ -74,8 +76,9 @@ impl Surface {
         }
     }
 
-    /// Returns the shadow ray toward incident light; it leaves the surface on the light's side.
-    pub fn shadow_ray(&self, incident: &IncidentLight) -> Ray {
+    /// Returns the shadow ray toward incident light; it leaves the surface, which a ray along `incoming`
+    /// hit, on the light's side.
+    pub fn shadow_ray(&self, incoming: DVec3, incident: &IncidentLight) -> Ray {
         let is_in_front = self.geometric_normal.dot(incident.toward) > 0.0;
         let side = if is_in_front { Side::Front } else { Side::Back };
         Ray {
@@ -84,6 +87,7 @@ impl Surface {
             tmax: if incident.is_bounded { 1.0 } else { f64::INFINITY },
             departure: Some(Departure { id: self.id, side }),
             continuation: None,
+            shadow: Some(ShadowEnds { viewer: -incoming }),
         }
     }
 }
@@ -116,7 +120,7 @@ fn plane_surface(scene: &Scene, ray: &Ray, hit: &Hit) -> Surface {
 /// Returns a position put back on a plane, as with the sphere.
 #[inline(always)]
 fn project_to_plane(point: DVec3, normal: DVec3, position: DVec3) -> DVec3 {
-    position - normal * normal.dot(position - point)
+    position - normal * plane::height(point, normal, position)
 }
 
 fn triangle_surface(scene: &Scene, hit: &Hit) -> Surface {

@@ -124,7 +124,7 @@ fn shadow_ray_leaves_on_the_lights_side() {
     let ray = Ray::new(DVec3::ZERO, DVec3::Z);
     let surface = Surface::new(&scene(), &ray, &hit(4.0, 0.0, 0.0, PrimitiveId::sphere(0)));
     let toward = |toward: DVec3| IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE };
-    let side = |d: DVec3| surface.shadow_ray(&toward(d)).departure.unwrap().side;
+    let side = |d: DVec3| surface.shadow_ray(ray.direction, &toward(d)).departure.unwrap().side;
     assert_eq!((side(DVec3::NEG_Z), side(DVec3::Z)), (Side::Front, Side::Back));
 }
 

@@ -10,6 +10,7 @@ mod dominated_modes;
 mod oracle;
 mod order;
 mod random_scenes;
+mod ray_ends;
 mod self_intersection;
 #[cfg(feature = "measure")]
 mod stress;

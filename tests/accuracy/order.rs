@@ -35,7 +35,7 @@ fn layers(random: &mut Random) -> Scene {
 }
 
 /// Every intersector of precision `certified`, by name.
-fn intersectors(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
+pub fn intersectors(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
     vec![
         ("brute force", Box::new(BruteForce::new(scene, Precision::Certified))),
         ("BVH", Box::new(Bvh::build(scene, Precision::Certified))),

@@ -13,6 +13,8 @@ pub mod certified;
 
 use glam::DVec3;
 
+use crate::geometry::double_double::{self, difference};
+
 /// The t at which the line `origin + t·direction` crosses the plane through `point` with normal
 /// `normal` (of any length); `None` for a line parallel to the plane or within it.
 ///
@@ -28,6 +30,13 @@ pub fn quotient(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) ->
     normal.dot(point - origin) / normal.dot(direction)
 }
 
+/// The height of `position` over the plane, in units of the length of `normal`, right to one rounding:
+/// the plane's point may lie far away.
+#[inline(always)]
+pub fn height(point: DVec3, normal: DVec3, position: DVec3) -> f64 {
+    double_double::dot(difference(position, point), normal.to_array()).hi
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,6 +50,15 @@ mod tests {
     #[test]
     fn misses_a_parallel_plane() {
         assert_eq!(intersect(DVec3::ZERO, DVec3::Y, DVec3::Y, DVec3::X), None);
+    }
+
+    #[test]
+    fn the_height_over_a_plane_does_not_depend_on_where_its_point_lies() {
+        for far in [0.0, 1e9, 1e15] {
+            let point = DVec3::new(far, -far, 7.0 * far);
+            let normal = DVec3::new(0.5, 0.5, 0.0);
+            assert_eq!(height(point, normal, DVec3::new(0.1, 0.2, 3.0)), 0.5 * 0.1 + 0.5 * 0.2);
+        }
     }
 
     #[test]

@@ -111,6 +111,16 @@ pub fn point(triangle: [DVec3; 3], u: f64, v: f64) -> DVec3 {
     a + (b - a) * u + (c - a) * v
 }
 
+/// The barycentric weights of the second and third vertex at a point of a triangle, clamped to \[0, 1\].
+#[inline]
+pub fn weights(triangle: [DVec3; 3], point: DVec3) -> (f64, f64) {
+    let [a, b, c] = triangle;
+    let (normal, offset) = (area_normal(triangle), point - a);
+    let inverse = 1.0 / normal.length_squared();
+    let weight = |x: f64| (x * inverse).clamp(0.0, 1.0);
+    (weight(offset.cross(c - a).dot(normal)), weight((b - a).cross(offset).dot(normal)))
+}
+
 /// The normal of a triangle by the right-hand rule; its length is twice the area, 0 for a degenerate
 /// triangle.
 #[inline]
@@ -130,6 +140,14 @@ mod tests {
     fn weights_belong_to_the_second_and_third_vertex() {
         let hit = intersect(UNIT, DVec3::new(0.25, 0.5, 3.0), -DVec3::Z).unwrap();
         assert_eq!((hit.t, hit.u, hit.v), (3.0, 0.25, 0.5));
+    }
+
+    #[test]
+    fn the_weights_of_a_point_give_back_the_point() {
+        let corners =
+            [DVec3::new(1.0, 2.0, 3.0), DVec3::new(2.0, 5.0, -1.0), DVec3::new(0.0, 1.0, 4.0)];
+        let (u, v) = weights(corners, point(corners, 0.25, 0.5));
+        assert!((u - 0.25).abs() < 1e-14 && (v - 0.5).abs() < 1e-14, "{u} {v}");
     }
 
     #[test]

@@ -113,25 +113,33 @@ fn reflect_blocks<const HIGHLIGHTS: bool>(
         if casts_shadow {
             let block = lit.block;
             shadows.pending.push(PendingLight { block, radiance: contribution, is_active: is_lit });
-            spawn_shadow_rays(lit, hits, &incident, &reflected, &is_lit, shadows);
+            let incoming = &wave.rays.blocks()[block].direction;
+            spawn_shadow_rays(lit, incoming, hits, &incident, &reflected, &is_lit, shadows);
         } else {
             radiance.add_block(lit.block, &contribution, &is_lit);
         }
     }
 }
 
-/// Spawns shadow rays from the lit surfaces of a block toward a light. The other lanes get rays that
-/// hit nothing.
+/// Spawns shadow rays from the lit surfaces of a block, seen along `incoming`, toward a light. The other
+/// lanes get rays that hit nothing.
 #[inline(always)]
 fn spawn_shadow_rays(
     lit: &LitSurface16,
+    incoming: &[Lanes<f64>; 3],
     hits: &Hit16,
     incident: &IncidentLight16,
     reflected: &Reflected16,
     is_lit: &Lanes<bool>,
     shadows: &mut ShadowQueue,
 ) {
-    let (rays, departure) = shadows.rays.push_block();
+    let mut viewers = *incoming;
+    for axis in 0..3 {
+        for i in 0..LANES {
+            viewers[axis][i] = -viewers[axis][i];
+        }
+    }
+    let (rays, departure) = shadows.rays.push_shadow_block(viewers);
     for axis in 0..3 {
         rays.origin[axis] = lit.surface.position[axis];
         rays.direction[axis] = incident.toward[axis];

@@ -13,13 +13,13 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
 use crate::intersect::blas_cache::{BlasCache, meshes_in_use};
 use crate::intersect::brute_force::is_extreme;
 use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::object_space::{ObjectSpace, world_bounds};
-use crate::intersect::primitive::Primitives;
+use crate::intersect::primitive::{Primitives, RayTests};
 use crate::intersect::{BruteForce, Coherence, Intersector, Precision, trace_each};
 use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
@@ -97,16 +97,21 @@ impl<'s> Bvh<'s> {
 
     /// Calls `visit` with the hits on finite primitives that may be closer than the limit, which `visit`
     /// may lower, until it returns true.
-    fn visit(&self, ray: &Ray, limit: &mut f64, mut visit: impl FnMut(Hit, &mut f64) -> bool) {
+    fn visit(
+        &self,
+        tests: &RayTests<'_>,
+        limit: &mut f64,
+        mut visit: impl FnMut(Hit, &mut f64) -> bool,
+    ) {
+        let ray = &tests.ray;
         if is_extreme(ray.origin, ray.direction) {
             let brute = BruteForce::new(self.primitives.scene, self.primitives.precision);
             brute.all_hits(ray).any(|hit| visit(hit, limit));
             return;
         }
-        let inverse = sphere::inverse_length_squared(ray.direction);
         let world_ray = TraversalRay::new(ray.origin, ray.direction, 0.0);
         let done = self.spheres.traverse(&world_ray, limit, |index, limit| {
-            self.primitives.sphere(index, ray, inverse, *limit).is_some_and(|hit| visit(hit, limit))
+            tests.sphere(index, *limit).is_some_and(|hit| visit(hit, limit))
         });
         if done {
             return;
@@ -118,7 +123,7 @@ impl<'s> Bvh<'s> {
             let object_ray = TraversalRay::new(origin, direction, space.error(ray.origin));
             self.meshes[mesh as usize].0.traverse(&object_ray, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
-                self.primitives.triangle(id, ray, *limit).is_some_and(|hit| visit(hit, limit))
+                tests.triangle(id, *limit).is_some_and(|hit| visit(hit, limit))
             })
         });
     }
@@ -166,22 +171,24 @@ impl Intersector for Bvh<'_> {
 
     fn closest(&self, rays: &[Ray], _: Coherence, hits: &mut [Option<Hit>]) {
         trace_each(rays, hits, |ray| {
+            let tests = self.primitives.with_ray(ray);
             let (mut best, mut limit) = (None, ray.tmax);
-            self.visit(ray, &mut limit, |hit, limit| {
-                self.primitives.keep_closest(ray, &mut best, hit);
+            self.visit(&tests, &mut limit, |hit, limit| {
+                tests.keep_closest(&mut best, hit);
                 *limit = limit.min(hit.t);
                 false
             });
-            self.primitives.merge_planes(ray, &mut best);
+            tests.merge_planes(&mut best);
             best
         });
     }
 
     fn occluded(&self, rays: &[Ray], _: Coherence, occluded: &mut [bool]) {
         trace_each(rays, occluded, |ray| {
-            let mut occluded = self.primitives.planes_occlude(ray);
+            let tests = self.primitives.with_ray(ray);
+            let mut occluded = tests.planes_occlude();
             if !occluded {
-                self.visit(ray, &mut { ray.tmax }, |hit, _| {
+                self.visit(&tests, &mut { ray.tmax }, |hit, _| {
                     occluded = self.primitives.scene.blocks_light(hit.id);
                     occluded
                 });

@@ -32,7 +32,7 @@ use crate::error::Result;
 use crate::geometry::{Bounds, Hit, HitBatch, PrimitiveId, Ray, RayBatch};
 use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
-use crate::intersect::self_intersection::max_coordinate;
+use crate::intersect::ray_ends::max_coordinate;
 use crate::intersect::{Coherence, Intersector, Precision, Query};
 use crate::scene::{Instance, Scene};
 pub use ffi::peak_memory;

@@ -129,7 +129,9 @@ impl MismatchClassifier<'_> {
         }
         let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
         let unbounded = Ray { tmax: f64::INFINITY, ..*ray };
-        let Some(hit) = primitives.test(id, &unbounded) else { return Occlusion::Clear };
+        let Some(hit) = primitives.with_ray(&unbounded).primitive(id) else {
+            return Occlusion::Clear;
+        };
         let slack = self.t_margin(ray, &hit);
         if hit.t > ray.tmax + slack {
             return Occlusion::Clear;

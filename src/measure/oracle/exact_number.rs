@@ -46,6 +46,11 @@ impl ExactNumber {
         Self { rational, root, radicand, denominator, exponent }
     }
 
+    /// Returns the least positive float.
+    pub(super) fn least() -> Self {
+        Self::quotient(IBig::from(1), IBig::from(1), -1074)
+    }
+
     /// Compares the number with `x`, exactly; infinities lie beyond every number.
     ///
     /// # Panics

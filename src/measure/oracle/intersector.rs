@@ -1,11 +1,9 @@
 //! The intersector that tests every primitive in exact arithmetic.
 
-use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
-use crate::intersect::primitive::{
-    SphereDeparture, sphere_departure, starts_on_plane, starts_on_triangle,
-};
+use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
 use crate::intersect::{Coherence, Intersector};
-use crate::measure::oracle::ExactNumber;
+use crate::measure::oracle::ends::{self, Start};
+use crate::measure::oracle::{self, Crossing, ExactNumber};
 use crate::scene::Scene;
 
 /// An intersector in exact arithmetic; slow, for small pictures that others are compared with.
@@ -41,8 +39,12 @@ impl<'s> Oracle<'s> {
             .filter_map(move |id| self.hit(id, &ray))
     }
 
-    /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed.
+    /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed. A shadow
+    /// ray may be blocked at its origin, by a hit at the least t; and does not hit what its light lies on.
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<ExactHit> {
+        if let Some(blocked) = self.blocked_at_origin(id, ray) {
+            return Some(blocked);
+        }
         let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
         let crossed = past.crossed;
         if crossed.id == id {
@@ -50,48 +52,64 @@ impl<'s> Oracle<'s> {
             return inside.then(|| self.crossing(id, ray, true))?;
         }
         // The surface that was crossed last, by its distance on a ray that has crossed nothing.
-        let unbroken = Ray { continuation: None, ..*ray };
+        let unbroken = Ray { continuation: None, shadow: None, ..*ray };
         let last = self.crossing(crossed.id, &unbroken, crossed.side == Side::Front);
         let is_ahead = |hit: &ExactHit| last.as_ref().is_none_or(|last| last.is_before(hit));
         [false, true].into_iter().find_map(|far| self.crossing(id, ray, far).filter(is_ahead))
     }
 
-    /// Returns where the ray crosses a primitive; a sphere at its first root, or at its far one.
-    fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<ExactHit> {
-        if ray.departure.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
+    /// Returns the hit on a surface that blocks a shadow ray at its origin.
+    fn blocked_at_origin(&self, id: PrimitiveId, ray: &Ray) -> Option<ExactHit> {
+        if !ends::blocks_origin(self.scene, id, ray) {
             return None;
         }
-        let (t, u, v) = match id.geometry {
+        let least = ExactNumber::least();
+        let is_passed = ray.continuation.is_some_and(|past| {
+            least.compare(past.t) == std::cmp::Ordering::Less || past.crossed.id >= id
+        });
+        let (u, v) = match id.geometry {
+            Geometry::Mesh(_) => triangle::weights(self.scene.triangle_vertices(id), ray.origin),
+            _ => (0.0, 0.0),
+        };
+        let is_cut_out =
+            matches!(id.geometry, Geometry::Mesh(_)) && self.scene.is_cut_out(id, u, v);
+        (!is_passed && !is_cut_out).then_some(ExactHit { t: least, u, v, id })
+    }
+
+    /// Returns where the ray crosses a primitive; a sphere at its first root, or at its far one.
+    fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<ExactHit> {
+        let scene = self.scene;
+        let index = id.primitive as usize;
+        let start = || ends::start(scene, id, ray);
+        match id.geometry {
             Geometry::Spheres => {
-                let inward = match sphere_departure(self.scene, id.primitive, ray) {
-                    SphereDeparture::No => far,
-                    SphereDeparture::Outward => return None,
-                    SphereDeparture::Inward => true,
+                let from_inside = match start() {
+                    Start::Elsewhere => far,
+                    Start::Leaves => return None,
+                    Start::Enters => true,
                 };
-                let s = &self.scene.spheres[id.primitive as usize];
-                (super::sphere(s.center, s.radius, ray, inward)?, 0.0, 0.0)
+                let s = &scene.spheres[index];
+                let t = oracle::sphere(s.center, s.radius, ray, from_inside)?;
+                // The root is the far one where the origin lies inside.
+                let is_far =
+                    from_inside || oracle::signed_distance(s.center, s.radius, ray, 0.0) <= 0.0;
+                let is_hit = !ends::ends_on(scene, id, ray, is_far);
+                is_hit.then_some(ExactHit { t, u: 0.0, v: 0.0, id })
             }
             Geometry::Planes => {
-                let p = &self.scene.planes[id.primitive as usize];
-                let t = super::plane(p.point, p.normal, ray)?;
-                if starts_on_plane(self.scene, id.primitive, ray) {
-                    return None;
-                }
-                (t, 0.0, 0.0)
+                let p = &scene.planes[index];
+                let t = oracle::plane(p.point, p.normal, ray)?;
+                let is_hit = start() == Start::Elsewhere && !ends::ends_on(scene, id, ray, false);
+                is_hit.then_some(ExactHit { t, u: 0.0, v: 0.0, id })
             }
             Geometry::Mesh(_) => {
-                let corners = self.scene.triangle_vertices(id);
-                let crossing = super::triangle(corners, ray)?;
-                if starts_on_triangle(self.scene, corners, ray) {
-                    return None;
-                }
-                if self.scene.is_cut_out(id, crossing.u, crossing.v) {
-                    return None;
-                }
-                (crossing.t, crossing.u, crossing.v)
+                let Crossing { t, u, v } = oracle::triangle(scene.triangle_vertices(id), ray)?;
+                let is_hit = start() == Start::Elsewhere
+                    && !ends::ends_on(scene, id, ray, false)
+                    && !scene.is_cut_out(id, u, v);
+                is_hit.then_some(ExactHit { t, u, v, id })
             }
-        };
-        Some(ExactHit { t, u, v, id })
+        }
     }
 }
 

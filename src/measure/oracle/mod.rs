@@ -7,6 +7,7 @@
 //!
 //! All arguments must be finite; the functions panic otherwise.
 
+mod ends;
 mod exact_number;
 mod integers;
 mod intersector;

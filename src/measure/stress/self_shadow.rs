@@ -88,7 +88,7 @@ fn check_sphere(
                 });
                 stats.count_relative(error / (radius + center.length()));
                 let toward = *light - surface.position;
-                shadow.push(surface.shadow_ray(&incident_light(toward)));
+                shadow.push(surface.shadow_ray(ray.direction, &incident_light(toward)));
                 // Only the far side of the sphere blocks light, from outside toward a point inside.
                 let inward = surface.geometric_normal.dot(toward) <= 0.0;
                 expected.push(inward && light.distance(center) > radius);
@@ -125,7 +125,9 @@ fn check_shell(radius: f64, precision: Precision, sampler: &RaySampler) -> Resul
                     continue;
                 };
                 let surface = Surface::new(&inner, ray, &hit);
-                shadow_rays.push(surface.shadow_ray(&incident_light(*light - surface.position)));
+                shadow_rays.push(
+                    surface.shadow_ray(ray.direction, &incident_light(*light - surface.position)),
+                );
             }
             for is_occluded in occluded(&**shadow, &shadow_rays, Incoherent) {
                 stats.count_wrong(!is_occluded);

@@ -33,10 +33,14 @@ pub struct EdgeBounds {
     functions: [f64; 3],
     /// The bound of the error of each function; infinite where nothing is certain.
     error: f64,
+    /// The change of each function for a unit by which the line is displaced.
+    displacement: f64,
     numerator: f64,
     numerator_error: f64,
     denominator: f64,
     denominator_error: f64,
+    /// The product w of the largest components of two sides.
+    area: f64,
 }
 
 impl EdgeBounds {
@@ -54,20 +58,41 @@ impl EdgeBounds {
         Self {
             functions: edge_functions([a, b, c], direction),
             error: if ranges { 48.0 * U * direction_size * size * size } else { f64::INFINITY },
+            displacement: 24.0 * direction_size * size,
             numerator: normal.dot(a),
             numerator_error: 64.0 * U * area * size,
             denominator: normal.dot(direction),
             denominator_error: 64.0 * U * area * direction_size,
+            area,
         }
     }
 
     /// True if the line may cross the triangle: false only where it certainly misses.
     #[inline(always)]
     pub fn may_cross(&self) -> bool {
+        self.may_pass_within(0.0)
+    }
+
+    /// True if the line may pass the triangle within a distance: false only where it certainly does not.
+    ///
+    /// A displacement of the line by η changes d·(p × q) by |d·(η × (q − p))|, at most 12 δ s |η| in
+    /// largest components.
+    #[inline(always)]
+    pub fn may_pass_within(&self, distance: f64) -> bool {
         let [a, b, c] = self.functions;
-        let above = (a > self.error) | (b > self.error) | (c > self.error);
-        let below = (a < -self.error) | (b < -self.error) | (c < -self.error);
+        let error = self.error + self.displacement * distance;
+        let above = (a > error) | (b > error) | (c > error);
+        let below = (a < -error) | (b < -error) | (c < -error);
         !(above & below)
+    }
+
+    /// True if a point, the line's origin, within `distance` of the triangle may be on it, whatever the
+    /// line does: false only where its distance from the triangle's plane is certainly greater.
+    #[inline(always)]
+    pub fn may_start_within(&self, distance: f64) -> bool {
+        // The normal is at most 2 √3 w long. Negated for what is not a number.
+        let apart = self.numerator.abs() > self.numerator_error + 4.0 * self.area * distance;
+        !apart
     }
 
     /// The signs of the edge functions where they are certain, `Equal` where they are not.

@@ -15,7 +15,7 @@ use crate::intersect::embree::ffi::{
     CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
 };
 use crate::intersect::embree::packet::QueryContext;
-use crate::intersect::primitive::{SphereDeparture, sphere_departure, starts_on_triangle};
+use crate::intersect::ray_ends::{RayEnds, SphereDeparture};
 use crate::scene::{Instance, Mesh, Scene};
 
 /// A primitive as the callbacks of precision `certified` test it.
@@ -29,8 +29,17 @@ pub struct CertifiedPrimitive<S> {
 
 /// The shape of a primitive. All functions are to be inlined always.
 pub trait Shape {
-    /// False if a line certainly misses it.
-    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> bool;
+    /// False if a line certainly passes it at more than a distance.
+    fn may_pass_within(
+        &self,
+        distance: f64,
+        origin: DVec3,
+        direction: DVec3,
+        inverse_length_squared: f64,
+    ) -> bool;
+
+    /// False if the distance of a point from it is certainly more than `distance`; `true` may be wrong.
+    fn may_contain(&self, point: DVec3, distance: f64) -> bool;
 
     /// The estimate of the first t > 0, for a ray that left no surface.
     fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
@@ -92,9 +101,24 @@ impl UserPrimitives for CertifiedSphere {
 
 impl Shape for CertifiedSphere {
     #[inline(always)]
-    fn may_cross(&self, origin: DVec3, direction: DVec3, inverse: f64) -> bool {
-        sphere::certified::QuadraticBound::new(self.center, self.radius, origin, direction, inverse)
+    fn may_pass_within(
+        &self,
+        distance: f64,
+        origin: DVec3,
+        direction: DVec3,
+        inverse: f64,
+    ) -> bool {
+        let radius = self.radius + distance;
+        sphere::certified::QuadraticBound::new(self.center, radius, origin, direction, inverse)
             .may_cross()
+    }
+
+    #[inline(always)]
+    fn may_contain(&self, point: DVec3, distance: f64) -> bool {
+        let power = (point - self.center).length_squared() - self.radius * self.radius;
+        // Negated for what is not a number.
+        let apart = power.abs() > distance * (2.0 * self.radius + distance);
+        !apart
     }
 
     #[inline(always)]
@@ -107,7 +131,7 @@ impl Shape for CertifiedSphere {
         let f = context.rays.origin_and_direction(lane).0 - self.center;
         let power = f.length_squared() - self.radius * self.radius;
         context.departures.may_start_on_sphere(lane, self.index, self.radius, power)
-            && sphere_departure(context.scene, self.index, &context.packet.ray(lane))
+            && RayEnds::new(context.scene, &context.packet.ray(lane)).sphere_departure(self.index)
                 != SphereDeparture::No
     }
 }
@@ -155,6 +179,7 @@ impl PrimitiveTable for TriangleTable {
 
 /// A triangle, tested with a bound.
 pub struct CertifiedTriangle {
+    id: PrimitiveId,
     vertices: [DVec3; 3],
 }
 
@@ -173,7 +198,7 @@ impl UserPrimitives for CertifiedTriangle {
         let scene = context.scene;
         CertifiedPrimitive {
             id,
-            shape: Self { vertices: scene.triangle_vertices(id) },
+            shape: Self { id, vertices: scene.triangle_vertices(id) },
             blocks_light: scene.blocks_light(id),
             is_masked: context.query.is_masked(instance),
         }
@@ -182,8 +207,15 @@ impl UserPrimitives for CertifiedTriangle {
 
 impl Shape for CertifiedTriangle {
     #[inline(always)]
-    fn may_cross(&self, origin: DVec3, direction: DVec3, _: f64) -> bool {
-        triangle::certified::EdgeBounds::new(self.vertices, origin, direction).may_cross()
+    fn may_pass_within(&self, distance: f64, origin: DVec3, direction: DVec3, _: f64) -> bool {
+        triangle::certified::EdgeBounds::new(self.vertices, origin, direction)
+            .may_pass_within(distance)
+    }
+
+    #[inline(always)]
+    fn may_contain(&self, point: DVec3, distance: f64) -> bool {
+        triangle::certified::EdgeBounds::new(self.vertices, point, DVec3::X)
+            .may_start_within(distance)
     }
 
     #[inline(always)]
@@ -192,6 +224,7 @@ impl Shape for CertifiedTriangle {
     }
 
     fn may_start_on<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        starts_on_triangle(context.scene, self.vertices, &context.packet.ray(lane))
+        RayEnds::new(context.scene, &context.packet.ray(lane))
+            .starts_on_triangle(self.id, self.vertices)
     }
 }

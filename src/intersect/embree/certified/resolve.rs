@@ -4,6 +4,7 @@
 use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
 use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
 use crate::intersect::embree::packet::QueryContext;
+use crate::intersect::ray_ends::RayEnds;
 
 impl<const W: usize> QueryContext<'_, W> {
     /// Records the primitive as the hit of those active rays that it is the closest hit of.
@@ -15,8 +16,14 @@ impl<const W: usize> QueryContext<'_, W> {
         tfar: &mut [f32; W],
     ) {
         let Some(estimates) = self.estimates(primitive, active) else { return };
+        let at_origin = self.may_start_on(primitive, active);
         for i in 0..W {
             let e = estimates[i];
+            if at_origin[i] {
+                self.resolve_exactly(i, primitive.id);
+                tfar[i] = self.closest_tfar(i).min(tfar[i]);
+                continue;
+            }
             // The next hit of a continuation ray is not always the first root.
             if self.departures.any_continuation && active[i] != 0 {
                 self.resolve_exactly(i, primitive.id);
@@ -35,6 +42,7 @@ impl<const W: usize> QueryContext<'_, W> {
             if !certain
                 || primitive.is_masked
                 || (self.departures.any && primitive.shape.may_start_on(self, i))
+                || self.ends_at(i, e.t, primitive.id)
             {
                 self.resolve_exactly(i, primitive.id);
             } else {
@@ -53,9 +61,10 @@ impl<const W: usize> QueryContext<'_, W> {
         tfar: &mut [f32; W],
     ) {
         let Some(estimates) = self.estimates(primitive, active) else { return };
+        let at_origin = self.may_start_on(primitive, active);
         for i in 0..W {
             let e = estimates[i];
-            if active[i] == 0 || e.is_outside(self.rays.tmax[i]) {
+            if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !at_origin[i]) {
                 continue;
             }
             if self.departures.any && self.is_departure(i, primitive.id) {
@@ -64,7 +73,11 @@ impl<const W: usize> QueryContext<'_, W> {
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
             let may_start_on = || self.departures.any && primitive.shape.may_start_on(self, i);
             let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
-            let certain = within && has_plain_hit && !may_start_on();
+            let certain = within
+                && has_plain_hit
+                && !at_origin[i]
+                && !may_start_on()
+                && !self.ends_at(i, e.t, primitive.id);
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
@@ -81,6 +94,41 @@ impl<const W: usize> QueryContext<'_, W> {
         self.packet.departure(lane).is_some_and(|departure| departure.id == id)
     }
 
+    /// True for each active shadow ray that may start on a primitive, other than the one that it left,
+    /// and so be blocked by it at its origin.
+    #[inline(always)]
+    fn may_start_on(
+        &self,
+        primitive: &CertifiedPrimitive<impl Shape>,
+        active: &[i32; W],
+    ) -> [bool; W] {
+        let mut may_start_on = [false; W];
+        if !self.are_shadow_rays {
+            return may_start_on;
+        }
+        let distance = self.departures.tolerance;
+        for i in 0..W {
+            let origin = self.rays.origin_and_direction(i).0;
+            may_start_on[i] = (active[i] != 0) & primitive.shape.may_contain(origin, distance);
+        }
+        for i in 0..W {
+            may_start_on[i] = may_start_on[i] && !self.is_departure(i, primitive.id);
+        }
+        may_start_on
+    }
+
+    /// True if a shadow ray ends on the primitive that it hits at `t`, which does not block its light.
+    #[inline(always)]
+    fn ends_at(&self, lane: usize, t: f64, id: PrimitiveId) -> bool {
+        self.are_shadow_rays
+            && RayEnds::new(self.scene, &self.packet.ray(lane)).ends_at(&Hit {
+                t,
+                u: 0.0,
+                v: 0.0,
+                id,
+            })
+    }
+
     /// The estimates for the rays of a packet; `None` if all active ones certainly miss.
     #[inline(always)]
     fn estimates(
@@ -88,11 +136,14 @@ impl<const W: usize> QueryContext<'_, W> {
         primitive: &CertifiedPrimitive<impl Shape>,
         active: &[i32; W],
     ) -> Option<[Estimate; W]> {
+        // A shadow ray may be blocked by what it starts on, beside its line.
+        let distance = if self.are_shadow_rays { self.departures.tolerance } else { 0.0 };
         let mut any = false;
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            any |= (active[i] != 0) & primitive.shape.may_cross(origin, direction, inverse);
+            let may_pass = primitive.shape.may_pass_within(distance, origin, direction, inverse);
+            any |= (active[i] != 0) & may_pass;
         }
         if !any {
             return None;
@@ -108,7 +159,7 @@ impl<const W: usize> QueryContext<'_, W> {
 
     /// The exact hit of the ray in `lane` on a primitive.
     pub fn exact_hit(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
-        self.query.primitives().test(id, &self.packet.get(lane)?)
+        self.query.primitives().with_ray(&self.packet.get(lane)?).primitive(id)
     }
 
     /// Decides exactly whether `id` is the closest hit of the ray in `lane`.
@@ -128,7 +179,7 @@ impl<const W: usize> QueryContext<'_, W> {
         let t = self.hits.t[lane];
         let is_before = |best| {
             let best = Hit { t, u: 0.0, v: 0.0, id: best };
-            self.query.primitives().is_before(&self.packet.ray(lane), &hit, &best)
+            self.query.primitives().with_ray(&self.packet.ray(lane)).is_before(&hit, &best)
         };
         // Without a hit so far `t` is the ray's end, which the exact test knows.
         if best.is_none_or(is_before) {

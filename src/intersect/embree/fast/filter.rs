@@ -116,5 +116,5 @@ fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: Pr
 fn is_hit<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
     let primitives = context.query.primitives();
     let ray = context.packet.get(lane);
-    ray.is_some_and(|ray| primitives.triangle(id, &ray, f64::INFINITY).is_some())
+    ray.is_some_and(|ray| primitives.with_ray(&ray).triangle(id, f64::INFINITY).is_some())
 }

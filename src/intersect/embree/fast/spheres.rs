@@ -6,13 +6,13 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds, PrimitiveId, Ray, sphere};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{
     CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
 };
 use crate::intersect::embree::packet::QueryContext;
-use crate::intersect::primitive::{SphereDeparture, sphere_departure};
+use crate::intersect::ray_ends::{RayEnds, SphereDeparture};
 use crate::scene::{Scene, Sphere};
 
 /// The spheres of a scene, as callbacks of either precision read them.
@@ -118,7 +118,7 @@ impl UserPrimitive for FastSphere<'_> {
         let (context, active, tfar) = packet.parts();
         let Some(ts) = self.distances(context, active) else { return };
         for i in 0..W {
-            if ts[i] < context.rays.tmax[i] {
+            if ts[i] < context.rays.tmax[i] && !self.ends_at(context, i, ts[i]) {
                 tfar[i] = f32::NEG_INFINITY;
             }
         }
@@ -126,11 +126,23 @@ impl UserPrimitive for FastSphere<'_> {
 
     #[inline(always)]
     fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        self.sphere.blocks_light && self.distance(context, lane) < context.rays.tmax[lane]
+        let t = self.distance(context, lane);
+        self.sphere.blocks_light && t < context.rays.tmax[lane] && !self.ends_at(context, lane, t)
     }
 }
 
 impl FastSphere<'_> {
+    /// True if ray `i`, a shadow ray that hits the sphere at `t`, ends on it there: its light lies on it.
+    #[inline(always)]
+    fn ends_at<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize, t: f64) -> bool {
+        if !context.are_shadow_rays {
+            return false;
+        }
+        let (id, ray) = (PrimitiveId::sphere(self.index), context.packet.get(i));
+        let hit = Hit { t, u: 0.0, v: 0.0, id };
+        ray.is_some_and(|ray| RayEnds::new(context.scene, &ray).ends_at(&hit))
+    }
+
     /// True if the sphere at distance `t` is closer than the hit of ray `i` so far; at the same distance
     /// the lesser index counts.
     #[inline(always)]
@@ -197,12 +209,12 @@ impl FastSphere<'_> {
         }
         let ray = context.packet.get(i);
         if let Some(ray) = ray.filter(|ray| ray.continuation.is_some()).as_ref() {
-            let inverse = context.rays.inverse_length_squared[i];
-            let hit = context.query.primitives().sphere(self.index, ray, inverse, f64::INFINITY);
+            let tests = context.query.primitives().with_ray(ray);
+            let hit = tests.sphere(self.index, f64::INFINITY);
             return hit.map_or(f64::INFINITY, |hit| hit.t);
         }
         let root = |inward| sphere::first_root(quadratic.roots(), f64::INFINITY, inward);
-        let departure = |ray: Ray| sphere_departure(context.scene, self.index, &ray);
+        let departure = |ray: Ray| RayEnds::new(context.scene, &ray).sphere_departure(self.index);
         let t = match (root(false), ray.map_or(SphereDeparture::No, departure)) {
             (None, _) | (_, SphereDeparture::Outward) => None,
             (t, SphereDeparture::No) => t,

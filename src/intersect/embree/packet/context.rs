@@ -6,7 +6,7 @@ use crate::intersect::embree::ffi::{CommittedScene, INVALID, RayHitRecord};
 use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::packet::rays::{PacketRays, TracedLanes};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::self_intersection::max_tolerance;
+use crate::intersect::ray_ends::max_tolerance;
 use crate::intersect::{BruteForce, Precision};
 use crate::scene::Scene;
 
@@ -164,6 +164,8 @@ pub struct QueryContext<'a, const W: usize> {
     /// these lie in its object space.
     pub rays: PacketRays<W>,
     pub departures: PacketDepartures<W>,
+    /// True if the rays are shadow rays, which both their ends may exempt from hits.
+    pub are_shadow_rays: bool,
     /// The hits that the callbacks found: in precision `fast` spheres, in `certified` everything.
     pub hits: PacketHits<W>,
     /// The ends of the f32 rays, before anything was hit.
@@ -196,6 +198,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
                 inward: [INVALID; W],
                 tolerance: 0.0,
             },
+            are_shadow_rays: batch.are_shadow_rays(),
             hits: PacketHits::new([0.0; W]),
             f32_tmax: [0.0; W],
             t_uncertainty: query.space.t_uncertainty(),

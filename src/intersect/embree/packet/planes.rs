@@ -10,7 +10,7 @@ use crate::intersect::embree::packet::QueryContext;
 use crate::scene::Plane;
 
 /// Merges the planes into the hits of a packet; see
-/// [`Primitives::merge_planes`](crate::intersect::primitive::Primitives::merge_planes).
+/// [`RayTests::merge_planes`](crate::intersect::primitive::RayTests::merge_planes).
 #[inline(always)]
 pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hit16) {
     let QueryContext { query, packet, rays, departures, .. } = context;
@@ -73,10 +73,10 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
         // Test the rays that are left one by one.
         for i in (0..packet.count).filter(|&i| open[i]) {
             let best = hits.hit(first + i);
-            let (primitives, ray) = (query.primitives(), packet.ray(i));
-            let is_first =
-                |hit: &Hit| best.is_none_or(|best| primitives.is_before(&ray, hit, &best));
-            if let Some(hit) = primitives.plane(index, &ray).filter(is_first) {
+            let ray = packet.ray(i);
+            let tests = query.primitives().with_ray(&ray);
+            let is_first = |hit: &Hit| best.is_none_or(|best| tests.is_before(hit, &best));
+            if let Some(hit) = tests.plane(index).filter(is_first) {
                 hits.set(first + i, Some(hit));
             }
         }
@@ -101,14 +101,19 @@ pub fn occlude<const W: usize>(context: &QueryContext<'_, W>, occluded: &mut [bo
                 Precision::Fast => misses(point, normal, origin, direction, tmax),
                 Precision::Certified => certainly_misses(point, normal, origin, direction, tmax),
             };
-            may_cross[i] = u64::from(!misses & !departed[i] & (tmax > 0.0));
+            // A shadow ray may be blocked at its origin, by a plane on which it starts.
+            let height = normal.dot(origin - point).abs();
+            let apart = height > context.departures.tolerance;
+            let may_start_on = context.are_shadow_rays & !apart;
+            let may_hit = !misses | may_start_on;
+            may_cross[i] = u64::from(may_hit & !departed[i] & (tmax > 0.0));
         }
         if may_cross.iter().fold(0, |any, may| any | may) == 0 {
             continue;
         }
         for (i, occluded) in occluded.iter_mut().enumerate() {
             if may_cross[i] != 0 && !*occluded {
-                *occluded = query.primitives().plane(index, &packet.ray(i)).is_some();
+                *occluded = query.primitives().with_ray(&packet.ray(i)).plane(index).is_some();
             }
         }
     }

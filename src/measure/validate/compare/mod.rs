@@ -156,7 +156,9 @@ impl Comparer<'_> {
         for light in lights {
             let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
                 .iter()
-                .filter_map(|(x, s)| Some((*x, s.shadow_ray(&light.incident(s.position)?))))
+                .filter_map(|(x, s)| {
+                    Some((*x, s.shadow_ray(rays[*x].direction, &light.incident(s.position)?)))
+                })
                 .unzip();
             let [tested, reference] = [self.tested, self.reference]
                 .map(|intersector| occluded(intersector, &shadow, Coherence::Coherent));
