@@ -194,7 +194,7 @@ impl RayBatch {
     ///
     /// # Panics
     /// When there is no ray `i`.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, i: usize) -> Ray {
         assert!(i < self.len, "ray {i} of {}", self.len);
         let (block, lane) = (&self.blocks[i / LANES], i % LANES);

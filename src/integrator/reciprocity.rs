@@ -67,11 +67,15 @@ fn trace_path(
         // The chosen one of at most two secondary rays.
         let params = shading_params_at(integrator, &ray, &hit, &surface, &path.cone);
         let specular = SpecularHit { ray: 0, surface, params };
-        let [reflected, refracted] = spawn_at_hit(integrator, &ray, &hit, &specular, &path);
-        let next = if refract { refracted.or(reflected) } else { reflected.or(refracted) }?;
-        hits.push((surface.id, next.is_refracted));
+        let mut spawned = Vec::new();
+        spawn_at_hit(integrator, &ray, &hit, &specular, &path, |ray, is_refracted, path| {
+            spawned.push((is_refracted, *ray, path));
+        });
+        spawned.sort_by_key(|&(is_refracted, ..)| is_refracted != refract);
+        let (is_refracted, next_ray, next_path) = spawned.into_iter().next()?;
+        hits.push((surface.id, is_refracted));
         position = surface.position;
-        (ray, path) = (next.ray, next.path);
+        (ray, path) = (next_ray, next_path);
     }
     let mut next = [None];
     integrator.intersector.closest(&[ray], Coherence::Incoherent, &mut next);

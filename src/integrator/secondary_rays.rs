@@ -9,17 +9,6 @@ use crate::integrator::wave::{PathState, Wave};
 use crate::integrator::{Counts, Integrator};
 use crate::shading::{DielectricInterface, reflect};
 
-/// A ray that a surface sends on.
-#[derive(Clone, Debug)]
-pub(super) struct SpawnedRay {
-    /// The ray.
-    pub ray: Ray,
-    /// True if it went through the surface.
-    pub is_refracted: bool,
-    /// The path that it continues.
-    pub path: PathState,
-}
-
 /// The greatest throughput that changes no sum: times the greatest f32 it is less than half of the
 /// least one.
 const NEGLIGIBLE: f64 = 1.0 / (1u128 << 127) as f64 / (1u128 << 127) as f64 / (1u64 << 26) as f64;
@@ -37,30 +26,29 @@ pub(super) fn spawn(
         let i = specular.ray as usize;
         let Some(hit) = wave.hits.get(i) else { continue };
         let path = wave.path(i, integrator);
-        let spawned = spawn_at_hit(integrator, &wave.rays.ray(i), &hit, specular, &path);
-        for SpawnedRay { ray, is_refracted, path } in spawned.into_iter().flatten() {
-            if is_refracted {
-                counts.rays.refraction += 1;
-            } else {
-                counts.rays.reflection += 1;
-            }
-            next.rays.push(&ray);
+        let ray = wave.rays.ray(i);
+        spawn_at_hit(integrator, &ray, &hit, specular, &path, |ray, is_refracted, path| {
+            let count = &mut counts.rays;
+            *(if is_refracted { &mut count.refraction } else { &mut count.reflection }) += 1;
+            next.rays.push(ray);
             next.paths.push(path);
-        }
+        });
     }
 }
 
-/// Returns the reflected and the refracted ray that a surface, which `ray` hit, sends on.
+/// Hands on the reflected and then the refracted ray that a surface, which `ray` hit, sends on: each
+/// with whether it is refracted, and the path that it continues.
 pub(super) fn spawn_at_hit(
     integrator: &Integrator<'_>,
     ray: &Ray,
     hit: &Hit,
     specular: &SpecularHit,
     path: &PathState,
-) -> [Option<SpawnedRay>; 2] {
+    mut emit: impl FnMut(&Ray, bool, PathState),
+) {
     let (scene, surface) = (integrator.scene, &specular.surface);
     if path.depth >= scene.film.max_depth {
-        return [None, None];
+        return;
     }
     // The directions, and the shares of the light.
     let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
@@ -76,27 +64,24 @@ pub(super) fn spawn_at_hit(
         Some(direction) => departing(direction, opposite),
         None => ray.continue_past(hit, opposite),
     };
-    // A ray whose light would change no pixel is not traced.
     let length = hit.t * ray.direction.length();
-    let spawned = |ray: Ray, share: DVec3, is_refracted: bool, interior| {
+    let mut emit = |ray: &Ray, share: DVec3, is_refracted: bool, interior| {
+        // A ray whose light would change no pixel is not traced.
         let throughput = path.throughput * share;
-        let is_visible = throughput.max_element() > scene.film.cutoff.max(NEGLIGIBLE);
-        is_visible.then(|| {
-            let lod = &integrator.texture_lod;
-            let cone = if ray.continuation.is_some() {
-                path.cone
-            } else {
-                lod.spawned_cone(&path.cone, length, scene, surface, is_refracted)
-            };
-            let (sample, depth) = (path.sample, path.depth + 1);
-            let path = PathState { sample, depth, throughput, interior, cone };
-            SpawnedRay { ray, is_refracted, path }
-        })
+        if throughput.max_element() <= scene.film.cutoff.max(NEGLIGIBLE) {
+            return;
+        }
+        let lod = &integrator.texture_lod;
+        let cone = if ray.continuation.is_some() {
+            path.cone
+        } else {
+            lod.spawned_cone(&path.cone, length, scene, surface, is_refracted)
+        };
+        let (sample, depth) = (path.sample, path.depth + 1);
+        emit(ray, is_refracted, PathState { sample, depth, throughput, interior, cone });
     };
-    [
-        spawned(reflected, scattered.reflected_share, false, media.incident),
-        spawned(refracted, scattered.refracted_share, true, media.transmitted),
-    ]
+    emit(&reflected, scattered.reflected_share, false, media.incident);
+    emit(&refracted, scattered.refracted_share, true, media.transmitted);
 }
 
 /// The directions into which a surface sends light, and the shares that go there.

@@ -45,14 +45,17 @@ impl<'s> BruteForce<'s> {
 
     /// Returns every hit of a ray, in no particular order.
     pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
-        let (scene, tests) = (self.primitives.scene, self.primitives.with_ray(ray));
-        let spheres =
-            (0..scene.spheres.len() as u32).filter_map(move |i| tests.sphere(i, f64::INFINITY));
-        let planes = (0..scene.planes.len() as u32).filter_map(move |i| tests.plane(i));
+        let (primitives, ray) = (self.primitives, *ray);
+        let scene = primitives.scene;
+        let spheres = (0..scene.spheres.len() as u32)
+            .filter_map(move |i| primitives.with_ray(&ray).sphere(i, f64::INFINITY));
+        let planes =
+            (0..scene.planes.len() as u32).filter_map(move |i| primitives.with_ray(&ray).plane(i));
         let triangles = (0..scene.instances.len() as u32).flat_map(move |instance| {
             let mesh = scene.instances[instance as usize].mesh.0;
             (0..scene.meshes[mesh as usize].triangles.len() as u32).filter_map(move |t| {
-                tests.triangle(PrimitiveId::triangle(mesh, t, instance), f64::INFINITY)
+                let id = PrimitiveId::triangle(mesh, t, instance);
+                primitives.with_ray(&ray).triangle(id, f64::INFINITY)
             })
         });
         spheres.chain(planes).chain(triangles)

@@ -23,11 +23,12 @@ pub struct Primitives<'s> {
 impl<'s> Primitives<'s> {
     /// The tests of one ray against these primitives.
     #[inline(always)]
-    pub fn with_ray(&self, ray: &Ray) -> RayTests<'s> {
+    pub fn with_ray<'a>(&self, ray: &'a Ray) -> RayTests<'a>
+    where
+        's: 'a,
+    {
         let Primitives { scene, precision } = *self;
-        let inverse_length_squared = sphere::inverse_length_squared(ray.direction);
-        let ends = RayEnds::new(scene, ray);
-        RayTests { scene, precision, ray: *ray, ends, inverse_length_squared }
+        RayTests { scene, precision, ray, ends: RayEnds::new(scene, ray) }
     }
 }
 
@@ -35,14 +36,12 @@ impl<'s> Primitives<'s> {
 pub(super) const ORIGIN_T: f64 = f64::from_bits(1);
 
 /// The tests of one ray against the primitives of a scene.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RayTests<'a> {
     pub(super) scene: &'a Scene,
     pub(super) precision: Precision,
-    pub(super) ray: Ray,
+    pub(super) ray: &'a Ray,
     pub(super) ends: RayEnds<'a>,
-    /// The reciprocal 1 / |direction|².
-    inverse_length_squared: f64,
 }
 
 impl RayTests<'_> {
@@ -126,8 +125,8 @@ impl RayTests<'_> {
     #[inline(always)]
     pub(super) fn sphere_root(&self, index: u32, limit: f64, far: bool) -> Option<Hit> {
         let s = &self.scene.spheres[index as usize];
-        let Ray { origin, direction, tmax, .. } = self.ray;
-        let inverse = self.inverse_length_squared;
+        let Ray { origin, direction, tmax, .. } = *self.ray;
+        let inverse = sphere::inverse_length_squared(direction);
         let t = match self.precision {
             Precision::Fast => {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
@@ -159,7 +158,7 @@ impl RayTests<'_> {
     #[inline(always)]
     fn plane_crossing(&self, index: u32) -> Option<Hit> {
         let p = &self.scene.planes[index as usize];
-        let Ray { origin, direction, tmax, .. } = self.ray;
+        let Ray { origin, direction, tmax, .. } = *self.ray;
         let t = match self.precision {
             Precision::Fast => plane::intersect(p.point, p.normal, origin, direction)
                 .filter(|&t| t > 0.0 && t < tmax)?,
@@ -184,7 +183,7 @@ impl RayTests<'_> {
     /// The crossing with the triangle `id` that a ray hits, whatever surface its end lies on.
     #[inline(always)]
     fn triangle_crossing(&self, id: PrimitiveId, limit: f64) -> Option<Hit> {
-        let Ray { origin, direction, tmax, departure, .. } = self.ray;
+        let Ray { origin, direction, tmax, departure, .. } = *self.ray;
         if departure.is_some_and(|departure| departure.id == id) {
             return None;
         }

@@ -22,16 +22,18 @@
 //! - 3 √3 ε S on a triangle: a + (b − a) u + (c − a) v rounds differences of up to 2 S, their
 //!   products and two sums;
 //! - 4 ε S on a sphere (the length of the normal, its product with the radius, the sum);
-//! - 2 ε S on a plane: the height that is taken off is computed in double-double numbers, wherever
-//!   the plane's point lies, and so only taking it off rounds.
+//! - 16 ε S on a plane (the height that is taken off, and taking it off), wherever the plane's point
+//!   lies: the height over a plane with a far point is computed in double-double numbers.
 //!
 //! Two faces that coincide may have been baked by different transforms, each of which rounds a
 //! vertex by at most 6 √3 ε S as long as no greater numbers cancel in it. All in all 3 √3 + 2 · 6 √3
-//! = 26, and 32 ε S is what is allowed. Whether an end lies within that of a surface is decided exactly,
+//! = 26 at most, and 32 ε S is what is allowed. Whether an end lies within that of a surface is decided exactly,
 //! also over flat triangles, whose normals lose their digits.
 //!
 //! Surfaces that are farther apart than that are two, such as a vertex stored in f32 and a plane at
 //! the same decimal number.
+
+use std::cell::OnceCell;
 
 use glam::DVec3;
 
@@ -58,24 +60,20 @@ pub enum SphereDeparture {
 }
 
 /// The ends of a ray in a scene: the surfaces on which they lie to within rounding.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct RayEnds<'a> {
     scene: &'a Scene,
-    ray: Ray,
-    /// The largest absolute coordinate of the origin and of the surface that was left, if any.
-    departure_size: f64,
+    ray: &'a Ray,
+    /// The largest absolute coordinate of the origin and of the surface that was left, once somebody
+    /// has asked for it.
+    departure_size: OnceCell<f64>,
 }
 
 impl<'a> RayEnds<'a> {
-    /// Makes the ends of a ray.
-    ///
-    /// # Panics
-    /// When what the ray left is not in the scene.
+    /// Makes the ends of a ray. What it left must be in the scene.
     #[inline(always)]
-    pub fn new(scene: &'a Scene, ray: &Ray) -> Self {
-        let size = |id| ray.origin.abs().max_element().max(extent(scene, id));
-        let departure_size = ray.departure.map_or(0.0, |departure| size(departure.id));
-        Self { scene, ray: *ray, departure_size }
+    pub fn new(scene: &'a Scene, ray: &'a Ray) -> Self {
+        Self { scene, ray, departure_size: OnceCell::new() }
     }
 
     /// Returns how the ray leaves sphere `index`: the one it was spawned on, or one on which its origin
@@ -90,7 +88,7 @@ impl<'a> RayEnds<'a> {
                 Side::Back => SphereDeparture::Inward,
             };
         }
-        let (Ray { origin, direction, .. }, distance) = (self.ray, self.distance(id));
+        let (Ray { origin, direction, .. }, distance) = (*self.ray, self.distance(id));
         let Sphere { center, radius, .. } = self.scene.spheres[index as usize];
         if !near_sphere(center, radius, origin, distance) {
             return SphereDeparture::No;
@@ -127,7 +125,7 @@ impl<'a> RayEnds<'a> {
     /// left another, and the surface separates the light from the viewer there.
     #[inline]
     pub fn is_blocked_by(&self, id: PrimitiveId) -> bool {
-        let Ray { origin: point, direction, departure, shadow, .. } = self.ray;
+        let Ray { origin: point, direction, departure, shadow, .. } = *self.ray;
         let (Some(ends), Some(departure)) = (shadow, departure) else { return false };
         if departure.id == id {
             return false;
@@ -186,7 +184,11 @@ impl<'a> RayEnds<'a> {
     /// The distance up to which the origin lies on a surface.
     #[inline(always)]
     fn distance(&self, id: PrimitiveId) -> f64 {
-        tolerance(self.departure_size.max(extent(self.scene, id)))
+        let departure_size = *self.departure_size.get_or_init(|| {
+            let left = self.ray.departure.map_or(0.0, |from| extent(self.scene, from.id));
+            self.ray.origin.abs().max_element().max(left)
+        });
+        tolerance(departure_size.max(extent(self.scene, id)))
     }
 }
 

@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::{Surface, project_to_plane, smooth_normal, sphere_normal, triangle_point};
-use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId, PrimitiveId16, Ray16, RayBatch, Side};
+use crate::geometry::{
+    Hit16, LANES, Lanes, PrimitiveId, PrimitiveId16, Ray16, RayBatch, Side, plane,
+};
 use crate::scene::{MaterialId, Plane, Scene, Sphere, Triangles};
 
 /// The surfaces that sixteen rays hit; any numbers where a ray hit nothing. The fields are those of
@@ -122,11 +124,23 @@ impl Surface16 {
                 normal[axis][i] = planes[i].normal[axis];
             }
         }
+        // Nearly always no plane is given by a point far away.
+        let mut is_far = [false; LANES];
         for i in 0..LANES {
             let (origin, direction) = ray16.origin_and_direction(i);
             let (point, normal) = (lane(&point, i), lane(&normal, i));
-            let position = project_to_plane(point, normal, origin + direction * hits.t[i]);
+            let on_ray = origin + direction * hits.t[i];
+            let position = on_ray - normal * normal.dot(on_ray - point);
+            is_far[i] = plane::is_far(point, on_ray) & is_plane(i);
             if is_plane(i) {
+                self.set_lane(i, position, normal);
+            }
+        }
+        if is_far.contains(&true) {
+            for i in (0..LANES).filter(|&i| is_far[i]) {
+                let (origin, direction) = ray16.origin_and_direction(i);
+                let (point, normal) = (lane(&point, i), lane(&normal, i));
+                let position = project_to_plane(point, normal, origin + direction * hits.t[i]);
                 self.set_lane(i, position, normal);
             }
         }

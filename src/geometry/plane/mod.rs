@@ -30,11 +30,22 @@ pub fn quotient(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) ->
     normal.dot(point - origin) / normal.dot(direction)
 }
 
-/// The height of `position` over the plane, in units of the length of `normal`, right to one rounding:
-/// the plane's point may lie far away.
+/// The height of `position` over the plane, in units of the length of `normal`, right to 8 ε of the
+/// coordinates of `position`: the plane's point may lie far away.
 #[inline(always)]
 pub fn height(point: DVec3, normal: DVec3, position: DVec3) -> f64 {
-    double_double::dot(difference(position, point), normal.to_array()).hi
+    if is_far(point, position) {
+        double_double::dot(difference(position, point), normal.to_array()).hi
+    } else {
+        normal.dot(position - point)
+    }
+}
+
+/// True if a plane's point is so far away that [`height`] needs more than f64: farther from the origin of
+/// coordinates than `position`.
+#[inline(always)]
+pub fn is_far(point: DVec3, position: DVec3) -> bool {
+    point.abs().max_element() > position.abs().max_element()
 }
 
 #[cfg(test)]

@@ -103,7 +103,7 @@ impl<'s> Bvh<'s> {
         limit: &mut f64,
         mut visit: impl FnMut(Hit, &mut f64) -> bool,
     ) {
-        let ray = &tests.ray;
+        let ray = tests.ray;
         if is_extreme(ray.origin, ray.direction) {
             let brute = BruteForce::new(self.primitives.scene, self.primitives.precision);
             brute.all_hits(ray).any(|hit| visit(hit, limit));

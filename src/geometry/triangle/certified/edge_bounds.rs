@@ -39,8 +39,6 @@ pub struct EdgeBounds {
     numerator_error: f64,
     denominator: f64,
     denominator_error: f64,
-    /// The product w of the largest components of two sides.
-    area: f64,
 }
 
 impl EdgeBounds {
@@ -63,7 +61,6 @@ impl EdgeBounds {
             numerator_error: 64.0 * U * area * size,
             denominator: normal.dot(direction),
             denominator_error: 64.0 * U * area * direction_size,
-            area,
         }
     }
 
@@ -84,15 +81,6 @@ impl EdgeBounds {
         let above = (a > error) | (b > error) | (c > error);
         let below = (a < -error) | (b < -error) | (c < -error);
         !(above & below)
-    }
-
-    /// True if a point, the line's origin, within `distance` of the triangle may be on it, whatever the
-    /// line does: false only where its distance from the triangle's plane is certainly greater.
-    #[inline(always)]
-    pub fn may_start_within(&self, distance: f64) -> bool {
-        // The normal is at most 2 √3 w long. Negated for what is not a number.
-        let apart = self.numerator.abs() > self.numerator_error + 4.0 * self.area * distance;
-        !apart
     }
 
     /// The signs of the edge functions where they are certain, `Equal` where they are not.

@@ -38,7 +38,8 @@ pub trait Shape {
         inverse_length_squared: f64,
     ) -> bool;
 
-    /// False if the distance of a point from it is certainly more than `distance`; `true` may be wrong.
+    /// False if a point certainly lies farther off than `distance`, at least 128 u times the largest
+    /// coordinate; `true` may be wrong.
     fn may_contain(&self, point: DVec3, distance: f64) -> bool;
 
     /// The estimate of the first t > 0, for a ray that left no surface.
@@ -214,8 +215,15 @@ impl Shape for CertifiedTriangle {
 
     #[inline(always)]
     fn may_contain(&self, point: DVec3, distance: f64) -> bool {
-        triangle::certified::EdgeBounds::new(self.vertices, point, DVec3::X)
-            .may_start_within(distance)
+        // With the product w of the sides' largest components, the normal is at most 2 √3 w long, and
+        // the height off by 64 u w times a coordinate, of which the distance is 128 u.
+        let [a, b, c] = self.vertices;
+        let (first, second) = (b - a, c - a);
+        let area = first.abs().max_element() * second.abs().max_element();
+        let height = first.cross(second).dot(point - a).abs();
+        // Negated for what is not a number.
+        let apart = height > 5.0 * area * distance;
+        !apart
     }
 
     #[inline(always)]

@@ -4,7 +4,6 @@
 use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
 use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
 use crate::intersect::embree::packet::QueryContext;
-use crate::intersect::ray_ends::RayEnds;
 
 impl<const W: usize> QueryContext<'_, W> {
     /// Records the primitive as the hit of those active rays that it is the closest hit of.
@@ -42,7 +41,7 @@ impl<const W: usize> QueryContext<'_, W> {
             if !certain
                 || primitive.is_masked
                 || (self.departures.any && primitive.shape.may_start_on(self, i))
-                || self.ends_at(i, e.t, primitive.id)
+                || self.may_end_on(i, primitive)
             {
                 self.resolve_exactly(i, primitive.id);
             } else {
@@ -73,11 +72,8 @@ impl<const W: usize> QueryContext<'_, W> {
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
             let may_start_on = || self.departures.any && primitive.shape.may_start_on(self, i);
             let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
-            let certain = within
-                && has_plain_hit
-                && !at_origin[i]
-                && !may_start_on()
-                && !self.ends_at(i, e.t, primitive.id);
+            let certain =
+                within && has_plain_hit && !may_start_on() && !self.may_end_on(i, primitive);
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
@@ -107,26 +103,26 @@ impl<const W: usize> QueryContext<'_, W> {
             return may_start_on;
         }
         let distance = self.departures.tolerance;
+        let mut any = false;
         for i in 0..W {
             let origin = self.rays.origin_and_direction(i).0;
             may_start_on[i] = (active[i] != 0) & primitive.shape.may_contain(origin, distance);
+            any |= may_start_on[i];
         }
-        for i in 0..W {
-            may_start_on[i] = may_start_on[i] && !self.is_departure(i, primitive.id);
+        if any {
+            for i in 0..W {
+                may_start_on[i] = may_start_on[i] && !self.is_departure(i, primitive.id);
+            }
         }
         may_start_on
     }
 
-    /// True if a shadow ray ends on the primitive that it hits at `t`, which does not block its light.
+    /// True if a shadow ray may end on a primitive, which then does not block its light.
     #[inline(always)]
-    fn ends_at(&self, lane: usize, t: f64, id: PrimitiveId) -> bool {
-        self.are_shadow_rays
-            && RayEnds::new(self.scene, &self.packet.ray(lane)).ends_at(&Hit {
-                t,
-                u: 0.0,
-                v: 0.0,
-                id,
-            })
+    fn may_end_on(&self, lane: usize, primitive: &CertifiedPrimitive<impl Shape>) -> bool {
+        let (origin, direction) = self.rays.origin_and_direction(lane);
+        let end = origin + direction * self.rays.tmax[lane];
+        self.are_shadow_rays && primitive.shape.may_contain(end, self.departures.tolerance)
     }
 
     /// The estimates for the rays of a packet; `None` if all active ones certainly miss.

@@ -116,11 +116,22 @@ impl UserPrimitive for FastSphere<'_> {
             return;
         }
         let (context, active, tfar) = packet.parts();
-        let Some(ts) = self.distances(context, active) else { return };
-        for i in 0..W {
-            if ts[i] < context.rays.tmax[i] && !self.ends_at(context, i, ts[i]) {
-                tfar[i] = f32::NEG_INFINITY;
+        let Some(mut ts) = self.distances(context, active) else { return };
+        // Nearly always no light lies on the sphere.
+        let (mut may_end, mut any_may_end) = ([false; W], false);
+        if context.are_shadow_rays {
+            for i in 0..W {
+                may_end[i] = self.may_end(context, i) & (ts[i] < context.rays.tmax[i]);
+                any_may_end |= may_end[i];
             }
+        }
+        if any_may_end {
+            for i in (0..W).filter(|&i| may_end[i]) {
+                ts[i] = if self.ends_at(context, i, ts[i]) { f64::INFINITY } else { ts[i] };
+            }
+        }
+        for i in 0..W {
+            tfar[i] = if ts[i] < context.rays.tmax[i] { f32::NEG_INFINITY } else { tfar[i] };
         }
     }
 
@@ -132,15 +143,23 @@ impl UserPrimitive for FastSphere<'_> {
 }
 
 impl FastSphere<'_> {
-    /// True if ray `i`, a shadow ray that hits the sphere at `t`, ends on it there: its light lies on it.
+    /// True if ray `i` may end on the sphere, to within rounding.
     #[inline(always)]
+    fn may_end<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize) -> bool {
+        let (origin, direction) = context.rays.origin_and_direction(i);
+        let (radius, tolerance) = (self.sphere.radius, context.departures.tolerance);
+        let offset = origin + direction * context.rays.tmax[i] - self.sphere.center;
+        let power = offset.length_squared() - radius * radius;
+        power.abs() <= tolerance * (2.0 * radius + tolerance)
+    }
+
+    /// True if ray `i`, a shadow ray that hits the sphere at `t`, ends on it there: its light lies on it.
     fn ends_at<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize, t: f64) -> bool {
-        if !context.are_shadow_rays {
+        let Some(ray) = context.packet.get(i).filter(|ray| ray.shadow.is_some()) else {
             return false;
-        }
-        let (id, ray) = (PrimitiveId::sphere(self.index), context.packet.get(i));
-        let hit = Hit { t, u: 0.0, v: 0.0, id };
-        ray.is_some_and(|ray| RayEnds::new(context.scene, &ray).ends_at(&hit))
+        };
+        let hit = Hit { t, u: 0.0, v: 0.0, id: PrimitiveId::sphere(self.index) };
+        self.may_end(context, i) && RayEnds::new(context.scene, &ray).ends_at(&hit)
     }
 
     /// True if the sphere at distance `t` is closer than the hit of ray `i` so far; at the same distance

@@ -99,14 +99,15 @@ pub fn occlude<const W: usize>(context: &QueryContext<'_, W>, occluded: &mut [bo
             let tmax = rays.tmax[i];
             let misses = match query.precision {
                 Precision::Fast => misses(point, normal, origin, direction, tmax),
-                Precision::Certified => certainly_misses(point, normal, origin, direction, tmax),
+                Precision::Certified => {
+                    // A shadow ray may be blocked at its origin, by a plane on which it starts.
+                    let height = normal.dot(origin - point).abs();
+                    let is_apart = height > context.departures.tolerance;
+                    (!context.are_shadow_rays | is_apart)
+                        & certainly_misses(point, normal, origin, direction, tmax)
+                }
             };
-            // A shadow ray may be blocked at its origin, by a plane on which it starts.
-            let height = normal.dot(origin - point).abs();
-            let apart = height > context.departures.tolerance;
-            let may_start_on = context.are_shadow_rays & !apart;
-            let may_hit = !misses | may_start_on;
-            may_cross[i] = u64::from(may_hit & !departed[i] & (tmax > 0.0));
+            may_cross[i] = u64::from(!misses & !departed[i] & (tmax > 0.0));
         }
         if may_cross.iter().fold(0, |any, may| any | may) == 0 {
             continue;
