@@ -64,7 +64,7 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
         digits == 10
     };
     if bytes.iter().any(is_tenth_digit) {
-        large_indices::check(&value, &mut JsonPath::default(), false)?;
+        large_indices::check(&value, &JsonPath::Root, false)?;
     }
     Ok(Document { root, value: Some(value) })
 }
