@@ -16,8 +16,10 @@ use crate::load::uri::Uri;
 
 /// The buffers and buffer views of a file.
 pub struct Buffers<'a> {
-    root: &'a json::Root,
-    sandbox: &'a Sandbox,
+    /// The JSON of the file.
+    pub root: &'a json::Root,
+    /// The sandbox of the load.
+    pub sandbox: &'a Sandbox,
     folder: PathBuf,
     /// The binary chunk of a GLB.
     bin: Option<&'a [u8]>,
@@ -90,15 +92,14 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// Returns the bytes of a view that EXT_meshopt_compression has compressed.
+    /// Returns the bytes of a view of the file that EXT_meshopt_compression has compressed.
     fn decompressed_view(
         &self,
         index: usize,
         extension: &json::Value,
         path: &str,
     ) -> Result<&[u8]> {
-        let missing = || error_at(path, "the view is not there");
-        let cell = self.decompressed_views.get(index).ok_or_else(missing)?;
+        let cell = &self.decompressed_views[index];
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
@@ -129,8 +130,7 @@ impl<'a> Buffers<'a> {
                 error_at(format_args!("buffers[{index}]"), message)
             });
         };
-        let missing = || error_at(&path, "the buffer is not there");
-        let cell = self.buffers.get(index).ok_or_else(missing)?;
+        let cell = &self.buffers[index];
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }

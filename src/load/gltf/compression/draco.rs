@@ -47,7 +47,7 @@ pub fn decompress(
     let path = format!("{path}.extensions.{NAME}");
     let view = extension.get("bufferView").and_then(as_index);
     let view = view.ok_or_else(|| error_at(&path, "`bufferView` must be the number of a view"))?;
-    let bytes = accessors.buffers().view(view, &format!("{path}.bufferView"))?;
+    let bytes = accessors.buffers.view(view, &format!("{path}.bufferView"))?;
 
     // Decode all of the mesh, within the limits.
     let ids = extension.get("attributes").and_then(Value::as_object);

@@ -15,7 +15,6 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::lookup;
 use crate::load::limits::Limit;
-use crate::load::sandbox::Sandbox;
 use crate::load::spelling;
 use crate::scene::animation::{
     Animated, Animation, Curve, Interpolate, Interpolation, Keyframes, MAX_FRAMES, Motion, Node,
@@ -26,6 +25,7 @@ use crate::scene::animation::{
 const FPS: f64 = 24.0;
 
 /// The animation of a file that is imported.
+#[derive(Default)]
 pub struct AnimationClip {
     /// The curves of nodes, by the index of the node in the file.
     nodes: HashMap<usize, NodeCurves>,
@@ -53,19 +53,12 @@ impl AnimationClip {
     /// # Errors
     /// When there is none of that name.
     pub fn read(
-        root: &json::Root,
-        sandbox: &Sandbox,
         accessors: &Accessors,
         name: Option<&str>,
         diagnostics: &mut Diagnostics,
     ) -> Result<Self> {
-        let mut clip = Self {
-            nodes: HashMap::new(),
-            weights: HashMap::new(),
-            duration: 0.0,
-            scene_nodes: Vec::new(),
-            objects: Vec::new(),
-        };
+        let mut clip = Self::default();
+        let root = accessors.buffers.root;
         let index = name.map_or(Ok(0), |name| find_animation(root, name))?;
         let Some(animation) = root.animations.get(index) else { return Ok(clip) };
         let path = format!("animations[{index}]");
@@ -73,8 +66,7 @@ impl AnimationClip {
             let at = format!("{path}.channels[{i}]");
             let sampler = lookup(&animation.samplers, channel.sampler.value(), "sampler", &at);
             let read = sampler.and_then(|sampler| {
-                let reader = SamplerReader { accessors, sandbox, sampler, path: &path };
-                clip.add_channel(root, channel, &reader)
+                clip.add_channel(channel, &SamplerReader { accessors, sampler, path: &path })
             });
             if let Err(error) = read {
                 let reason = "{} animation channels are left out: they are damaged";
@@ -85,15 +77,12 @@ impl AnimationClip {
         Ok(clip)
     }
 
-    fn add_channel(
-        &mut self,
-        root: &json::Root,
-        channel: &Channel,
-        reader: &SamplerReader,
-    ) -> Result<()> {
+    /// Adds the curve of a node's property, or of the weights of its morph targets.
+    fn add_channel(&mut self, channel: &Channel, reader: &SamplerReader) -> Result<()> {
         let Checked::Valid(property) = channel.target.path else {
             return Err(Error::input("it moves something unknown"));
         };
+        let root = reader.accessors.buffers.root;
         let index = channel.target.node.value();
         let node = lookup(&root.nodes, index, "node", reader.path)?;
         if node.matrix.is_some() && property != Property::MorphTargetWeights {
@@ -211,7 +200,6 @@ fn find_animation(root: &json::Root, name: &str) -> Result<usize> {
 /// A sampler of an animation.
 struct SamplerReader<'a> {
     accessors: &'a Accessors<'a>,
-    sandbox: &'a Sandbox,
     sampler: &'a Sampler,
     /// The JSON path of the animation.
     path: &'a str,
@@ -237,7 +225,9 @@ impl SamplerReader<'_> {
         // A small file can name the same times for any number of curves.
         let Sampler { input, output, .. } = self.sampler;
         let keys = self.accessors.count(input.value()).saturating_mul(count.max(1) as u64);
-        self.sandbox.consume(Limit::Keys, keys)?;
+        self.accessors.buffers.sandbox.consume(Limit::Keys, keys)?;
+
+        // Times and values, of which a spline has three for each time.
         let path = |property: &str| format!("{}.samplers.{property}", self.path);
         let times = self.accessors.floats(input.value(), &path("input"))?;
         let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();
@@ -252,6 +242,7 @@ impl SamplerReader<'_> {
             return Err(Error::input(message));
         }
 
+        // Each curve takes its own column of the values.
         let curve = |i: usize| {
             let row = |row: usize, is_value: bool| {
                 let values = values.iter().skip(row * count + i).step_by(rows * count);

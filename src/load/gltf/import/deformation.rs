@@ -100,7 +100,7 @@ impl Importer<'_> {
         if let Some(known) = self.joints.get(&skin) {
             return Ok(known.clone());
         }
-        let joints = skin::read_joints(self.root, &self.accessors, self.nodes, skin, by)?;
+        let joints = skin::read_joints(&self.accessors, self.nodes, skin, by)?;
         self.joints.insert(skin, joints.clone());
         Ok(joints)
     }

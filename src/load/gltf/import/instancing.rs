@@ -10,7 +10,6 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{as_index, at_path, error_at};
 use crate::load::limits::Limit;
-use crate::load::sandbox::Sandbox;
 
 /// Returns the transforms of the instances of a node's mesh, in the node's space; `None` if the
 /// node does not use the extension.
@@ -19,7 +18,6 @@ use crate::load::sandbox::Sandbox;
 /// When the extension's accessors cannot be read, or are not equally long.
 pub fn transforms(
     node: &SceneNode,
-    sandbox: &Sandbox,
     accessors: &Accessors,
     diagnostics: &mut Diagnostics,
 ) -> Result<Option<Vec<DAffine3>>> {
@@ -37,7 +35,7 @@ pub fn transforms(
         let accessor = as_index(value)
             .ok_or_else(|| error_at(path_of(name), format!("{value} is no accessor")))?;
         let found = accessors.count(accessor);
-        sandbox.check(Limit::Instances, found).map_err(at_path(path_of(name)))?;
+        accessors.buffers.sandbox.check(Limit::Instances, found).map_err(at_path(path_of(name)))?;
         if *count.get_or_insert(found) != found {
             let message = format!("{found} values, where others have another number");
             return Err(error_at(path_of(name), message));

@@ -58,13 +58,12 @@ pub fn import(
 ) -> Result<Loaded> {
     let root = &document.root;
     let buffers = Buffers::new(root, sandbox, path, bin);
-    let accessors = Accessors::new(root, sandbox, &buffers);
-    let mut clip =
-        AnimationClip::read(root, sandbox, &accessors, options.animation, &mut diagnostics)?;
+    let accessors = Accessors::new(&buffers);
+    let mut clip = AnimationClip::read(&accessors, options.animation, &mut diagnostics)?;
     let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
-    let textures = Textures::new(root, sandbox, &buffers, options.needs_images);
+    let textures = Textures::new(&buffers, options.needs_images);
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
@@ -144,14 +143,13 @@ impl Importer<'_> {
             }
             self.scene.lights.push(light);
         }
-        if let Some(shape) = implicit_shapes::shape(self.root, node)? {
-            self.add_shape(shape, node)?;
+        if let Some((shape, material)) = implicit_shapes::shape(self.root, node)? {
+            self.add_shape(shape, material, node)?;
         }
         let Some(mesh) = node.node.mesh else { return Ok(()) };
         let by = format!("nodes[{}].mesh", node.index);
         let primitives = self.primitives(mesh.value(), &by)?;
-        let (sandbox, accessors) = (self.sandbox, &self.accessors);
-        let instances = instancing::transforms(node, sandbox, accessors, &mut self.diagnostics)?
+        let instances = instancing::transforms(node, &self.accessors, &mut self.diagnostics)?
             .unwrap_or_else(|| vec![DAffine3::IDENTITY]);
         if instances.is_empty() {
             return Ok(());
@@ -172,10 +170,9 @@ impl Importer<'_> {
         for (i, primitive) in source.primitives.iter().enumerate() {
             let path = format!("meshes[{index}].primitives[{i}]");
             // The material says which attributes are read.
-            let reference = self.variants.material(primitive, &path);
+            let (material, by) = self.variants.material(primitive, &path);
             let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-            let material =
-                self.materials.material(reference.index, &reference.path, scene, diagnostics)?;
+            let material = self.materials.material(material, &by, scene, diagnostics)?;
             let read =
                 mesh::read(primitive, &self.accessors, &material.needed, diagnostics, &path)?;
             let unsupported = self
@@ -203,7 +200,7 @@ impl Importer<'_> {
     /// Returns the scene and the load report, once all nodes are added.
     fn into_loaded(mut self, path: &Path) -> Loaded {
         self.scene.animation = self.clip.into_animation();
-        self.materials.decode_images(&mut self.scene, &mut self.diagnostics);
+        self.materials.textures.decode_images(&mut self.scene, &mut self.diagnostics);
         let Scene { instances, spheres, planes, .. } = &self.scene;
         if instances.is_empty() && spheres.is_empty() && planes.is_empty() {
             self.diagnostics.note("there is no triangle in the scene that the file shows");

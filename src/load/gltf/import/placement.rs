@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::implicit_shapes::{self, ImplicitShape, NodeShape};
+use super::implicit_shapes::ImplicitShape;
 use super::mesh::PrimitiveMesh;
 use super::nodes::SceneNode;
 use super::{ImportedPrimitive, Importer};
@@ -50,30 +50,31 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Adds the implicit shape of a node to the scene.
-    pub(super) fn add_shape(&mut self, shape: NodeShape, node: &SceneNode) -> Result<()> {
-        let NodeShape { shape, material } = shape;
+    /// Adds the implicit shape of a node to the scene, with the material of an index in the file.
+    pub(super) fn add_shape(
+        &mut self,
+        shape: ImplicitShape,
+        material: Option<usize>,
+        node: &SceneNode,
+    ) -> Result<()> {
         let path = format!("nodes[{}].extensions.KHR_implicit_shapes", node.index);
         let by = format!("{path}.material");
         let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
         let material = self.materials.material(material, &by, scene, diagnostics)?.id;
+
+        // Spheres and planes are added as what they are.
         let mesh = match shape {
             ImplicitShape::Sphere(radius) => {
-                match implicit_shapes::transformed_sphere(&node.to_world, radius) {
-                    Some(sphere) => {
-                        if node.animated.is_some() {
-                            self.clip.objects.push(Animated::Sphere {
-                                sphere: scene.spheres.len(),
-                                node: node.animated,
-                                center: node.to_animated.translation,
-                                radius: None,
-                            });
-                        }
-                        scene.spheres.push(Sphere::new(sphere.center, sphere.radius, material));
-                        return Ok(());
-                    }
-                    None => implicit_shapes::sphere_mesh(radius),
+                if node.animated.is_some() {
+                    self.clip.objects.push(Animated::Sphere {
+                        sphere: scene.spheres.len(),
+                        node: node.animated,
+                        center: node.to_animated.translation,
+                        radius: None,
+                    });
                 }
+                scene.spheres.push(Sphere::new(node.to_world.translation, radius, material));
+                return Ok(());
             }
             ImplicitShape::Plane => {
                 let is_animated = u64::from(node.animated.is_some());

@@ -27,7 +27,8 @@ use crate::scene::{
 /// The materials of a file, each imported when a primitive first uses it.
 pub struct Materials<'a> {
     root: &'a json::Root,
-    textures: Textures<'a>,
+    /// The textures of the materials.
+    pub textures: Textures<'a>,
     imported: HashMap<Option<usize>, ImportedMaterial>,
 }
 
@@ -81,11 +82,6 @@ impl<'a> Materials<'a> {
         let imported = ImportedMaterial { id: scene.add_material(material), needed };
         self.imported.insert(index, imported.clone());
         Ok(imported)
-    }
-
-    /// Decodes the images of the materials' textures.
-    pub fn decode_images(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
-        self.textures.decode_images(scene, diagnostics);
     }
 }
 

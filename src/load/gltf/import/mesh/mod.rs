@@ -11,7 +11,6 @@ use gltf::json::validation::Checked;
 
 use self::compact::{compact, retain_vertices};
 use super::material::NeededAttributes;
-use super::{morph_targets, skin};
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
@@ -70,12 +69,15 @@ pub fn read(
 }
 
 /// A primitive that is being read.
-struct PrimitiveReader<'a> {
-    primitive: &'a Primitive,
-    accessors: &'a Accessors<'a>,
+pub struct PrimitiveReader<'a> {
+    /// The primitive.
+    pub primitive: &'a Primitive,
+    /// The accessors of the file, or of what is decompressed.
+    pub accessors: &'a Accessors<'a>,
     /// Its JSON path.
-    path: &'a str,
-    diagnostics: &'a mut Diagnostics,
+    pub path: &'a str,
+    /// The diagnostics of the load.
+    pub diagnostics: &'a mut Diagnostics,
 }
 
 impl PrimitiveReader<'_> {
@@ -124,9 +126,8 @@ impl PrimitiveReader<'_> {
         if needed.tangents && !mesh.normals.is_empty() {
             mesh.tangents = self.attribute(Semantic::Tangents, count)?;
         }
-        let mut targets = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
-        let mut influences =
-            skin::read_influences(primitive, accessors, count, self.diagnostics, path)?;
+        let mut targets = self.morph_targets(count)?;
+        let mut influences = self.influences(count)?;
 
         // Faces that are left are counted when the mesh is stored, which may be more than once.
         let before = mesh.triangles.len() as u64;
@@ -149,7 +150,7 @@ impl PrimitiveReader<'_> {
     }
 
     /// The index of an attribute's accessor.
-    fn accessor(&self, semantic: Semantic) -> Option<usize> {
+    pub fn accessor(&self, semantic: Semantic) -> Option<usize> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).map(json::Index::value)
     }
 
