@@ -32,7 +32,7 @@ impl InstanceAnimation<'_> {
     pub fn add(mut self) {
         let model = self.model;
         let mut animated = AnimatedObjects::default();
-        if let Some(own) = &model.animation {
+        if let Some(own) = &model.model.animation {
             // The model's nodes, of which the outermost stand in the instance's space.
             let first_node = self.animation.nodes.len() as u32;
             self.animation.nodes.extend(own.nodes.iter().map(|node| match node.parent {
@@ -116,8 +116,10 @@ impl InstanceAnimation<'_> {
     /// Makes the objects that the model's own animation leaves where they are move with the node of
     /// the instance.
     fn add_still_objects(&mut self, node: NodeId, animated: &AnimatedObjects) {
-        let Self { model, indices, animation, .. } = self;
+        let Self { model: MergedModel { model, .. }, indices, animation, .. } = self;
         let transform = self.instance.transform;
+
+        // All of them stand in the space of the node as the instance's transform places them there.
         for (i, instance) in still(&model.instances, &animated.instances) {
             animation.objects.push(Animated::Instance {
                 instance: indices.first_instance + i,
