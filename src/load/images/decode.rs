@@ -28,20 +28,15 @@ pub enum Source<'a> {
     File(OpenedFile),
 }
 
-/// An image that is about to be decoded, or only named.
-enum PreparedImage<'a> {
-    Unread(String),
-    Encoded(EncodedImage<'a>),
-}
-
-/// The bytes of an image, within the limits.
-struct EncodedImage<'a> {
+/// An image that is about to be decoded, within the limits, or only named.
+struct PreparedImage<'a> {
+    /// The encoded image; of a file that is only named nothing.
     bytes: Cow<'a, [u8]>,
     name: String,
     /// The path, if it is a file.
     path: Option<PathBuf>,
-    /// The number of pixels of 8-bit numbers that take as much memory.
-    pixels: u64,
+    /// The number of pixels of 8-bit numbers that take as much memory; none if it is only named.
+    pixels: Option<u64>,
 }
 
 /// Decodes the images that are needed, in parallel; the others are only named, and their files only
@@ -63,10 +58,7 @@ pub fn decode_all<'a, T: Sync>(
         let prepare =
             |image| open(image).and_then(|source| prepare(source, sandbox, is_needed(image)));
         let prepared: Vec<_> = batch.iter().map(prepare).collect();
-        decoded.par_extend(prepared.into_par_iter().map(|image| match image? {
-            PreparedImage::Unread(name) => Ok(Image::unread(name)),
-            PreparedImage::Encoded(image) => image.decode(),
-        }));
+        decoded.par_extend(prepared.into_par_iter().map(|image| image?.decode()));
     }
     decoded
 }
@@ -78,23 +70,21 @@ fn prepare<'a>(
     is_needed: bool,
 ) -> Result<PreparedImage<'a>> {
     let (bytes, name, path) = match source {
-        Source::Bytes(_, name) if !is_needed => return Ok(PreparedImage::Unread(name)),
         Source::Bytes(bytes, name) => (bytes, name, None),
         Source::File(file) => {
             let path = file.path.clone();
-            let name = path.display().to_string();
-            if !is_needed {
-                return Ok(PreparedImage::Unread(name));
-            }
-            (file.read(sandbox)?.into(), name, Some(path))
+            let bytes = if is_needed { file.read(sandbox)? } else { Vec::new() };
+            (bytes.into(), path.display().to_string(), Some(path))
         }
     };
-    let mut image = EncodedImage { bytes, name, path, pixels: 0 };
-    image.pixels = image.charge_limits(sandbox).map_err(|e| image.locate(e))?;
-    Ok(PreparedImage::Encoded(image))
+    let mut image = PreparedImage { bytes, name, path, pixels: None };
+    if is_needed {
+        image.pixels = Some(image.charge_limits(sandbox).map_err(|e| image.locate(e))?);
+    }
+    Ok(image)
 }
 
-impl EncodedImage<'_> {
+impl PreparedImage<'_> {
     /// Adds the path to an error, if the image is a file.
     fn locate(&self, error: Error) -> Error {
         match &self.path {
@@ -136,6 +126,7 @@ impl EncodedImage<'_> {
     }
 
     fn decode(self) -> Result<Image> {
+        let Some(pixels) = self.pixels else { return Ok(Image::unread(self.name)) };
         let decode = || {
             if ktx2::is_ktx(&self.bytes) {
                 return Ok((ktx2::header(&self.bytes)?.size, ktx2::decode(&self.bytes)?));
@@ -145,7 +136,7 @@ impl EncodedImage<'_> {
             limits.max_image_width = Some(MAX_SIDE);
             limits.max_image_height = Some(MAX_SIDE);
             // Four channels, more than twice, and room for what decoders need besides.
-            limits.max_alloc = Some((16 * self.pixels).saturating_add(1 << 26));
+            limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
             reader.limits(limits);
             let image = reader.decode().map_err(undecodable)?;
             Ok(([image.width(), image.height()], texels(image)))

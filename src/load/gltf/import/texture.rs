@@ -147,10 +147,10 @@ impl<'a> Textures<'a> {
             };
             Ok(decode::Source::Bytes(bytes, image.path.clone()))
         };
-        for decoded in cache.decode(buffers.sandbox, open, |_| reads_images) {
-            let path = decoded.source.path;
-            let image = decoded.image.map_err(at_path(&path));
-            set_image_or_placeholder(image, &path, &decoded.textures, scene, diagnostics);
+        for (cached, image) in cache.decode(buffers.sandbox, open, |_| reads_images) {
+            let path = cached.source.path;
+            let image = image.map_err(at_path(&path));
+            set_image_or_placeholder(image, &path, &cached.textures, scene, diagnostics);
         }
     }
 }
