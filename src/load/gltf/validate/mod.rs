@@ -23,9 +23,12 @@ use crate::load::diagnostics::Diagnostics;
 
 /// Warns of what is not valid in a file; `bin` is the length of a GLB's binary chunk.
 pub fn validate(root: &Value, bin: Option<usize>, diagnostics: &mut Diagnostics) {
-    let mut validator = Validator::new(root, |kind, path, message| {
-        diagnostics.add(kind, 1, || format!("{path} ({message})"));
-    });
+    let mut validator = Validator::new(
+        root,
+        Box::new(|kind, path, message| {
+            diagnostics.add(kind, 1, || format!("{path} ({message})"));
+        }),
+    );
     validator.check_properties();
     validator.check_buffers(bin);
     validator.check_rules();
@@ -34,11 +37,14 @@ pub fn validate(root: &Value, bin: Option<usize>, diagnostics: &mut Diagnostics)
 /// Returns the path of the first property that is missing or of the wrong type, and what is wrong.
 pub fn first_missing_or_mistyped(root: &Value) -> Option<(String, String)> {
     let mut first = None;
-    Validator::new(root, |kind, path, message| {
-        if first.is_none() && (kind == MISSING || kind == TYPE) {
-            first = Some((path.to_string(), message.to_string()));
-        }
-    })
+    Validator::new(
+        root,
+        Box::new(|kind, path, message| {
+            if first.is_none() && (kind == MISSING || kind == TYPE) {
+                first = Some((path.to_string(), message.to_string()));
+            }
+        }),
+    )
     .check_properties();
     first
 }
@@ -62,26 +68,19 @@ struct Validator<'a> {
     root: &'a Value,
     /// The names of the extensions that the file declares.
     used: HashSet<&'a str>,
-    report: Box<dyn FnMut(IssueKind, &dyn Display, &dyn Display) + 'a>,
+    report: Report<'a>,
 }
 
+type Report<'a> = Box<dyn FnMut(IssueKind, &dyn Display, &dyn Display) + 'a>;
+
 impl<'a> Validator<'a> {
-    fn new(
-        root: &'a Value,
-        report: impl FnMut(IssueKind, &dyn Display, &dyn Display) + 'a,
-    ) -> Self {
-        Self { root, used: names(root, "extensionsUsed"), report: Box::new(report) }
+    fn new(root: &'a Value, report: Report<'a>) -> Self {
+        Self { root, used: names(root, "extensionsUsed"), report }
     }
 
-    /// Reports an issue of a kind if `is_valid` is false.
-    fn check(
-        &mut self,
-        kind: IssueKind,
-        is_valid: bool,
-        path: impl Display,
-        message: impl Display,
-    ) {
-        if !is_valid {
+    /// Reports an issue of a kind, unless what is checked holds.
+    fn check(&mut self, kind: IssueKind, holds: bool, path: impl Display, message: impl Display) {
+        if !holds {
             (self.report)(kind, &path, &message);
         }
     }

@@ -64,6 +64,8 @@ impl CompressedView {
             Some("EXPONENTIAL") => Filter::Exponential,
             Some(_) => return Err(Error::input("the filter is not known")),
         };
+
+        // Each mode and filter has its own strides.
         let (stride, count) = (required("byteStride")?, required("count")?);
         let is_valid = match (&mode, &filter) {
             (Mode::Attributes, Filter::None | Filter::Exponential) => {
@@ -101,15 +103,12 @@ impl CompressedView {
     /// When the stream is damaged, or claims to hold more elements than it can.
     pub fn decompress(&self, bytes: &[u8]) -> Result<Vec<u8>> {
         let Self { stride, count, .. } = *self;
-        // A stream has at least two header bits for 16 deltas, or a byte for a triangle.
-        let most = match self.mode {
-            Mode::Attributes => bytes.len().saturating_mul(64),
-            Mode::Triangles => bytes.len().saturating_mul(3),
-            Mode::Indices => bytes.len(),
-        };
-        let total = match self.mode {
-            Mode::Attributes => count.checked_mul(stride),
-            _ => Some(count),
+        // A stream has at least two header bits for 16 deltas, a byte for a triangle, or a byte for
+        // an index.
+        let (total, most) = match self.mode {
+            Mode::Attributes => (count.checked_mul(stride), bytes.len().saturating_mul(64)),
+            Mode::Triangles => (Some(count), bytes.len().saturating_mul(3)),
+            Mode::Indices => (Some(count), bytes.len()),
         };
         if total.is_none_or(|total| total > most) {
             let found = bytes.len();
