@@ -29,8 +29,9 @@ const FPS: f64 = 24.0;
 pub struct AnimationClip {
     /// The curves of nodes, by the index of the node in the file.
     nodes: HashMap<usize, NodeCurves>,
-    /// The weights of morph targets, by the index of the node in the file.
-    weights: HashMap<usize, Vec<Curve<f64>>>,
+    /// The weights of each morph target over time, where they change, by the index of the node in
+    /// the file.
+    pub weights: HashMap<usize, Vec<Curve<f64>>>,
     /// The time of the last key, in seconds.
     duration: f64,
     /// The animated nodes of the scene that is shown.
@@ -97,9 +98,7 @@ impl AnimationClip {
                 let count = targets.map_or(0, Vec::len);
                 let curves = reader.curves(count, |[weight], _| f64::from(weight))?;
                 let last = curves.first().map_or(0.0, last_time);
-                if self.weights.insert(index, curves).is_some() {
-                    return Err(duplicate_channel());
-                }
+                check_first(self.weights.insert(index, curves))?;
                 last
             }
             Property::Translation => {
@@ -117,11 +116,6 @@ impl AnimationClip {
         };
         self.duration = self.duration.max(last);
         Ok(())
-    }
-
-    /// The weights of each morph target of a node's mesh over time, where they change.
-    pub fn weights(&self, index: usize) -> Option<&[Curve<f64>]> {
-        self.weights.get(&index).map(Vec::as_slice)
     }
 
     /// The period after which the animation begins again, in seconds.
@@ -178,11 +172,13 @@ fn last_time<T>(curve: &Curve<T>) -> f64 {
 /// When there was one before.
 fn set_curve<T>(slot: &mut Option<Curve<T>>, curve: Curve<T>) -> Result<f64> {
     let last = last_time(&curve);
-    slot.replace(curve).map_or(Ok(last), |_| Err(duplicate_channel()))
+    check_first(slot.replace(curve))?;
+    Ok(last)
 }
 
-fn duplicate_channel() -> Error {
-    Error::input("another one moves the same")
+/// Checks that the curves of a channel replace no others.
+fn check_first<T>(replaced: Option<T>) -> Result<()> {
+    replaced.map_or(Ok(()), |_| Err(Error::input("another one moves the same")))
 }
 
 /// Returns the index of the animation with a name.

@@ -11,8 +11,8 @@ use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{as_index, at_path, error_at};
 use crate::load::limits::Limit;
 
-/// Returns the transforms of the instances of a node's mesh, in the node's space; `None` if the
-/// node does not use the extension.
+/// Returns the transforms of the instances of a node's mesh, in the node's space: one that changes
+/// nothing if the node does not use the extension.
 ///
 /// # Errors
 /// When the extension's accessors cannot be read, or are not equally long.
@@ -20,10 +20,10 @@ pub fn transforms(
     node: &SceneNode,
     accessors: &Accessors,
     diagnostics: &mut Diagnostics,
-) -> Result<Option<Vec<DAffine3>>> {
+) -> Result<Vec<DAffine3>> {
     let extensions = node.node.extensions.as_ref();
     let Some(extension) = extensions.and_then(|e| e.others.get("EXT_mesh_gpu_instancing")) else {
-        return Ok(None);
+        return Ok(vec![DAffine3::IDENTITY]);
     };
     let path = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing.attributes", node.index);
     let path_of = |name: &str| format!("{path}.{name}");
@@ -65,5 +65,5 @@ pub fn transforms(
     let dropped = (before - transforms.len()) as u64;
     let reason = "{} instances of a node are left out: a number is not finite";
     diagnostics.add(reason, dropped, || path);
-    Ok(Some(transforms))
+    Ok(transforms)
 }

@@ -21,7 +21,6 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use gltf::json;
 
 use self::animation::AnimationClip;
@@ -41,7 +40,7 @@ use crate::load::limits::Limit;
 use crate::load::report::{LoadReport, Loaded};
 use crate::load::sandbox::Sandbox;
 use crate::scene::animation::Animated;
-use crate::scene::{MaterialId, MeshId, Scene};
+use crate::scene::{MaterialId, Mesh, MeshId, Scene};
 
 /// Imports the scene that a file shows.
 ///
@@ -61,6 +60,8 @@ pub fn import(
     let accessors = Accessors::new(&buffers);
     let mut clip = AnimationClip::read(&accessors, options.animation, &mut diagnostics)?;
     let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
+
+    // Nodes are added in the order of the file; joints of skins refer to any of them.
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
     let textures = Textures::new(&buffers, options.needs_images);
@@ -72,6 +73,7 @@ pub fn import(
         materials: Materials::new(root, textures),
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
+        mesh_ids: HashMap::new(),
         nodes: &nodes,
         joints: HashMap::new(),
         scene: Scene::default(),
@@ -89,8 +91,6 @@ pub fn import(
 struct ImportedPrimitive {
     mesh: PrimitiveMesh,
     material: MaterialId,
-    /// The id of its mesh as it was modelled, once that is in the scene.
-    id: Option<MeshId>,
 }
 
 /// The state of an import, node by node.
@@ -104,6 +104,8 @@ struct Importer<'a> {
     variants: Variants<'a>,
     /// The primitives of the file's meshes so far, which nodes share.
     meshes: HashMap<usize, Vec<ImportedPrimitive>>,
+    /// The ids of meshes that are in the scene as they were modelled, by their address.
+    mesh_ids: HashMap<*const Mesh, MeshId>,
     /// The nodes, by their index in the file.
     nodes: &'a HashMap<usize, SceneNode<'a>>,
     /// The joints of the skins so far.
@@ -146,11 +148,12 @@ impl Importer<'_> {
         if let Some((shape, material)) = implicit_shapes::shape(self.root, node)? {
             self.add_shape(shape, material, node)?;
         }
+
+        // The mesh, at each of the instances that an extension may give it.
         let Some(mesh) = node.node.mesh else { return Ok(()) };
         let by = format!("nodes[{}].mesh", node.index);
         let primitives = self.primitives(mesh.value(), &by)?;
-        let instances = instancing::transforms(node, &self.accessors, &mut self.diagnostics)?
-            .unwrap_or_else(|| vec![DAffine3::IDENTITY]);
+        let instances = instancing::transforms(node, &self.accessors, &mut self.diagnostics)?;
         if instances.is_empty() {
             return Ok(());
         }
@@ -173,6 +176,8 @@ impl Importer<'_> {
             let (material, by) = self.variants.material(primitive, &path);
             let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
             let material = self.materials.material(material, &by, scene, diagnostics)?;
+
+            // The mesh, and what of it cannot be shown.
             let read =
                 mesh::read(primitive, &self.accessors, &material.needed, diagnostics, &path)?;
             let unsupported = self
@@ -180,18 +185,17 @@ impl Importer<'_> {
                 .map_or(0, |value| morph_targets::unsupported_attributes(value, index, i));
             let reason = "{} texture coordinates and colours of morph targets are not morphed";
             diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
+
+            // It is stored once, whatever the number of nodes that show it.
             let Some(mut read) = read else { continue };
-            let sizes = [
-                (Limit::Vertices, read.mesh.positions.len()),
-                (Limit::Triangles, read.mesh.triangles.len()),
-            ];
-            for (limit, count) in sizes {
+            let (vertices, triangles) = (read.mesh.positions.len(), read.mesh.triangles.len());
+            for (limit, count) in [(Limit::Vertices, vertices), (Limit::Triangles, triangles)] {
                 self.sandbox.consume(limit, count as u64).map_err(at_path(&path))?;
             }
             if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
                 mesh.name.clone_from(name);
             }
-            primitives.push(ImportedPrimitive { mesh: read, material: material.id, id: None });
+            primitives.push(ImportedPrimitive { mesh: read, material: material.id });
         }
         self.meshes.insert(index, primitives.clone());
         Ok(primitives)

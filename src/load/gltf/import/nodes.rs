@@ -44,16 +44,9 @@ impl SceneNode<'_> {
     }
 }
 
-/// A node that is still to be visited.
-struct PendingNode {
-    index: usize,
-    /// The JSON path of the reference to it.
-    by: String,
-    parent: Parent,
-}
-
-/// The parent of a node, or the scene; its fields are as in [`SceneNode`].
-#[derive(Clone, Copy)]
+/// The parent of a node, or by default what stands above nodes that are not shown; the fields are as
+/// in [`SceneNode`].
+#[derive(Clone, Copy, Default)]
 struct Parent {
     to_world: DAffine3,
     animated: Option<NodeId>,
@@ -83,26 +76,19 @@ pub fn collect_nodes<'a>(
 
     // The stack begins with the roots of the scene, the first on top; below them are the roots of
     // what the scene does not show, since joints are posed whether they are shown or not.
-    let scene = Parent {
-        to_world: DAffine3::IDENTITY,
-        animated: None,
-        to_animated: DAffine3::IDENTITY,
-        is_shown: true,
-        depth: 0,
-    };
+    // Each node has its index, the JSON path of the reference to it, and its parent.
+    let mut stack: Vec<(usize, String, Parent)> = Vec::new();
     let shown: HashSet<usize> = roots.iter().map(|(i, _)| *i).collect();
-    let mut stack = Vec::new();
     if !root.skins.is_empty() {
         let hidden = (0..parents.len()).filter(|i| parents[*i].is_none() && !shown.contains(i));
-        let parent = Parent { is_shown: false, ..scene };
-        stack.extend(hidden.map(|index| PendingNode { index, by: String::new(), parent }));
+        stack.extend(hidden.map(|index| (index, String::new(), Parent::default())));
     }
-    let roots = roots.into_iter().rev();
-    stack.extend(roots.map(|(index, by)| PendingNode { index, by, parent: scene }));
+    let scene = Parent { is_shown: true, ..Parent::default() };
+    stack.extend(roots.into_iter().rev().map(|(index, by)| (index, by, scene)));
 
     let mut nodes = Vec::new();
     let mut is_visited = vec![false; root.nodes.len()];
-    while let Some(PendingNode { index, by, parent }) = stack.pop() {
+    while let Some((index, by, parent)) = stack.pop() {
         let node = lookup(&root.nodes, index, "node", &by)?;
         let path = format!("nodes[{index}]");
         let depth = parent.depth + 1;
@@ -132,11 +118,8 @@ pub fn collect_nodes<'a>(
         // The children come next, the first of them on top of the stack.
         let parent = Parent { to_world, animated, to_animated, is_shown, depth };
         let children = node.children.as_deref().unwrap_or_default().iter().enumerate().rev();
-        stack.extend(children.map(|(i, child)| PendingNode {
-            index: child.value(),
-            by: format!("{path}.children[{i}]"),
-            parent,
-        }));
+        let path = |i: usize| format!("{path}.children[{i}]");
+        stack.extend(children.map(|(i, child)| (child.value(), path(i), parent)));
         nodes.push(SceneNode { node, index, to_world, animated, to_animated, is_shown });
     }
     Ok(nodes)

@@ -21,18 +21,18 @@ impl Importer<'_> {
         transforms: &[DAffine3],
         by: &str,
     ) -> Result<()> {
-        let mesh = self.mesh_at_node(primitive, node)?;
-        if mesh.is_skinned {
+        let (mesh, is_skinned) = self.mesh_at_node(primitive, node)?;
+        if is_skinned {
             let instanced = u64::from(transforms.len() > 1);
             let reason = "{} skinned meshes stand once, whatever the instances of their node";
             self.diagnostics.unsupported(reason, instanced, || by.to_owned());
             // The joints place the mesh, whatever the transform of the node.
-            let instance = Instance::new(mesh.id, DAffine3::IDENTITY, primitive.material);
+            let instance = Instance::new(mesh, DAffine3::IDENTITY, primitive.material);
             self.scene.instances.push(instance);
             return Ok(());
         }
         for &transform in transforms {
-            let instance = Instance::new(mesh.id, node.to_world * transform, primitive.material);
+            let instance = Instance::new(mesh, node.to_world * transform, primitive.material);
             // An instance that moves may be flat at one time and not at another.
             if let Some(animated) = node.animated {
                 self.clip.objects.push(Animated::Instance {
@@ -94,7 +94,7 @@ impl Importer<'_> {
         };
         let mesh =
             PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
-        let primitive = ImportedPrimitive { mesh, material, id: None };
+        let primitive = ImportedPrimitive { mesh, material };
         self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
     }
 }

@@ -70,6 +70,7 @@ impl<'a> Materials<'a> {
                 let source = lookup(&self.root.materials, i, "material", by)?;
                 let mut reader = MaterialReader {
                     source,
+                    extensions: source.extensions.as_ref(),
                     path: format!("materials[{i}]"),
                     needed: NeededAttributes::default(),
                     textures: &mut self.textures,
@@ -87,8 +88,7 @@ impl<'a> Materials<'a> {
 
 /// Reads a material.
 fn read(reader: &mut MaterialReader) -> Result<Material> {
-    let source = reader.source;
-    let extensions = source.extensions.as_ref();
+    let MaterialReader { source, extensions, .. } = *reader;
     let mut material =
         Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
 
@@ -110,10 +110,10 @@ fn read(reader: &mut MaterialReader) -> Result<Material> {
             ..Material::default()
         };
     } else {
-        emission(reader, &mut material)?;
-        normal_map(reader, &mut material)?;
-        occlusion(reader, &mut material)?;
+        emission_and_relief(reader, &mut material)?;
     }
+
+    // The alpha of the base covers the surface.
     let base = source.pbr_metallic_roughness.base_color_factor.0;
     let [.., alpha] = glossy.map_or(base, |glossy| glossy.diffuse_factor.0);
     coverage(reader, clamped(alpha), base_map, &mut material);
@@ -143,33 +143,33 @@ fn specular_glossiness(
     Ok(material.diffuse_map)
 }
 
-fn emission(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+/// Sets the emission, the normal map and the occlusion, which go with either base.
+fn emission_and_relief(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+    // The light that the surface gives by itself. A factor of 0 leaves nothing of the map.
     let source = reader.source;
-    let extension = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+    let extension = reader.extensions.and_then(|e| e.emissive_strength.as_ref());
     let strength = extension.map_or(1.0, |e| e.emissive_strength.0);
     material.emission =
         reader.color(source.emissive_factor.0.map(|f| f * strength), "emissiveFactor");
     let info = source.emissive_texture.as_ref().filter(|_| material.emission != Vec3::ZERO);
     material.emission_map = reader.color_texture(info, "emissiveTexture")?;
-    Ok(())
-}
 
-fn normal_map(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
-    let Some(info) = &reader.source.normal_texture else { return Ok(()) };
-    let reference = TextureReference::from_normal(info);
-    let texture = reader.texture(reference, Transfer::None, "normalTexture")?;
-    let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
-    material.normal_map = Some(NormalMap { texture, scale });
-    reader.needed.tangents = true;
-    Ok(())
-}
+    // A normal map follows the tangents of the mesh.
+    if let Some(info) = &source.normal_texture {
+        let reference = TextureReference::from_normal(info);
+        let texture = reader.texture(reference, Transfer::None, "normalTexture")?;
+        let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
+        material.normal_map = Some(NormalMap { texture, scale });
+        reader.needed.tangents = true;
+    }
 
-fn occlusion(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
-    let Some(info) = &reader.source.occlusion_texture else { return Ok(()) };
-    let reference = TextureReference::from_occlusion(info);
-    let texture = reader.texture(reference, Transfer::None, "occlusionTexture")?;
-    let map = Channel { texture, channel: 0 };
-    material.occlusion_map = Some(OcclusionMap { map, strength: clamped(info.strength.0) });
+    // Occlusion is in the red channel.
+    if let Some(info) = &source.occlusion_texture {
+        let reference = TextureReference::from_occlusion(info);
+        let texture = reader.texture(reference, Transfer::None, "occlusionTexture")?;
+        let map = Channel { texture, channel: 0 };
+        material.occlusion_map = Some(OcclusionMap { map, strength: clamped(info.strength.0) });
+    }
     Ok(())
 }
 

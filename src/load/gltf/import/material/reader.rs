@@ -27,6 +27,8 @@ pub struct NeededAttributes {
 pub struct MaterialReader<'m, 'a> {
     /// The material.
     pub source: &'a json::Material,
+    /// Its extensions.
+    pub extensions: Option<&'a json::extensions::material::Material>,
     /// Its JSON path.
     pub path: String,
     /// The vertex attributes that it needs, as far as it has been read.
