@@ -59,11 +59,8 @@ impl Sandbox {
     /// # Errors
     /// When the folder of the file is not there.
     pub fn new(path: &Path, allow_outside: bool, limits: Limits) -> Result<Self> {
-        let mut folder = None;
-        if !allow_outside {
-            let canonical = parent(path).canonicalize();
-            folder = Some(canonical.map_err(|error| Error::io("read", path, &error))?);
-        }
+        let folder = (!allow_outside).then(|| parent(path).canonicalize()).transpose();
+        let folder = folder.map_err(|error| Error::io("read", path, &error))?;
         Ok(Self { folder, limits, used: Default::default() })
     }
 
