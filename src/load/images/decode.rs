@@ -8,7 +8,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageReader};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::load::images::ktx2;
+use crate::load::images::ktx2::{self, undecodable};
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Image, Texels};
@@ -144,10 +144,6 @@ impl PreparedImage<'_> {
         let (size, texels) = decode().map_err(|e| self.locate(e))?;
         Ok(Image::new(self.name, size, with_valid_floats(texels)))
     }
-}
-
-fn undecodable(error: image::ImageError) -> Error {
-    Error::input(format!("the image cannot be decoded: {error}"))
 }
 
 /// The number of bytes of a channel, for the memory that pixels take.

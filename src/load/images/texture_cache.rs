@@ -40,11 +40,8 @@ impl<ImageKey, Source, TextureKey> Default for TextureCache<ImageKey, Source, Te
     }
 }
 
-impl<ImageKey, Source, TextureKey> TextureCache<ImageKey, Source, TextureKey>
-where
-    ImageKey: Eq + Hash,
-    Source: Sync,
-    TextureKey: Eq + Hash,
+impl<ImageKey: Eq + Hash, Source: Sync, TextureKey: Eq + Hash>
+    TextureCache<ImageKey, Source, TextureKey>
 {
     /// Returns the index of the image with this key, which is added with its `source` if it is new.
     pub fn image(&mut self, key: ImageKey, source: impl FnOnce() -> Source) -> ImageIndex {

@@ -2,10 +2,7 @@
 
 /// Decodes `count` elements of `stride` bytes; `None` if the stream is damaged.
 pub fn decode(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xa0 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xa0])?;
     // The tail, of 32 bytes or more, ends with the element that the first delta refers to.
     let (mut data, tail) = rest.split_at_checked(rest.len().checked_sub(stride.max(32))?)?;
     let mut last = tail.get(tail.len() - stride..)?.to_vec();

@@ -2,10 +2,7 @@
 
 /// Decodes the indices of triangles; `None` if the stream is damaged.
 pub fn decode(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xe1 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xe1])?;
     let (codes, rest) = rest.split_at_checked(count / 3)?;
     let (data, table) = rest.split_at_checked(rest.len().checked_sub(16)?)?;
     let mut decoder = Decoder { data, ..Decoder::default() };
@@ -18,10 +15,7 @@ pub fn decode(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
 
 /// Decodes indices that need not be of triangles; `None` if the stream is damaged.
 pub fn decode_indices(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xd1 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xd1])?;
     let (mut data, _) = rest.split_at_checked(rest.len().checked_sub(4)?)?;
     let mut last = [0u32; 2];
     let mut decoded = Vec::with_capacity(count);
