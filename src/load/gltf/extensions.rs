@@ -2,7 +2,8 @@
 
 use gltf::json;
 
-use crate::error::{Error, Location, Result};
+use super::json::error_at;
+use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are accepted.
@@ -35,9 +36,9 @@ pub fn check(root: &json::Root, diagnostics: &mut Diagnostics) -> Result<()> {
     };
     for (i, name) in root.extensions_required.iter().enumerate() {
         if !is_accepted(name) {
-            return Err(Error::input(format!("the file requires {name}, which is not read"))
-                .with_location(Location::Json(format!("extensionsRequired[{i}]")))
-                .help(advice(name)));
+            let path = format_args!("extensionsRequired[{i}]");
+            let error = error_at(path, format!("the file requires {name}, which is not read"));
+            return Err(error.help(advice(name)));
         }
     }
     for name in root.extensions_used.iter().filter(|name| !is_accepted(name)) {

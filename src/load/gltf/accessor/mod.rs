@@ -196,7 +196,8 @@ impl<'a> Accessors<'a> {
         let mut elements = match view {
             Some((view, bytes)) => {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
-                let stride = self.stride(view).unwrap_or(size);
+                let stride = self.buffers.root.buffer_views[view].byte_stride.map(|s| s.0);
+                let stride = stride.filter(|&s| s > 0).unwrap_or(size);
                 let bytes = element_range(bytes, offset, stride, size, count)
                     .ok_or_else(|| beyond_view(&path, count, view, bytes.len()))?;
                 let all = if stride == size { decode_all(encoding, bytes) } else { None };
@@ -215,11 +216,6 @@ impl<'a> Accessors<'a> {
             }
         }
         Ok(elements)
-    }
-
-    /// The distance between elements in bytes, where the view gives one.
-    fn stride(&self, view: usize) -> Option<usize> {
-        self.buffers.root.buffer_views.get(view)?.byte_stride.map(|s| s.0).filter(|&s| s > 0)
     }
 
     /// Returns the indices of the elements that a sparse accessor replaces, of `total` elements of

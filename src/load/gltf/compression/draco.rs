@@ -6,10 +6,7 @@
 use std::collections::HashMap;
 
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, PointAttribute, PointIndex};
-use gltf::json::Value;
-use gltf::json::accessor::ComponentType;
-use gltf::json::mesh::Primitive;
-use gltf::json::validation::Checked;
+use gltf::json::{Value, accessor::ComponentType, mesh::Primitive, validation::Checked};
 
 use crate::error::{Error, Remedy, Result};
 use crate::load::gltf::accessor::{Accessors, DecompressedAttribute};
@@ -20,30 +17,22 @@ const NAME: &str = "KHR_draco_mesh_compression";
 /// The bytes of attributes that are allowed for each triangle that is.
 const BYTES_PER_FACE: u64 = 64;
 
-/// The decompressed data of a primitive.
-pub struct DecompressedPrimitive {
-    /// The corners of its triangles.
-    pub corners: Vec<u32>,
-    /// The attributes that replace its accessors, by the index of the accessor.
-    pub attributes: HashMap<usize, DecompressedAttribute>,
-}
+/// The corners of a primitive's triangles, and the attributes that replace its accessors, by the
+/// index of the accessor.
+type DecompressedPrimitive = (Vec<u32>, HashMap<usize, DecompressedAttribute>);
 
-/// The extension's object in a primitive that is compressed.
-pub fn extension(primitive: &Primitive) -> Option<&Value> {
-    primitive.extensions.as_ref()?.others.get(NAME)
-}
-
-/// Decompresses a primitive, by the extension's object in it.
+/// Decompresses a primitive; `None` if it is not compressed.
 ///
 /// # Errors
 /// When the extension's object or its bytes are damaged, or hold more triangles than the limits
 /// allow.
 pub fn decompress(
     primitive: &Primitive,
-    extension: &Value,
     accessors: &Accessors,
     path: &str,
-) -> Result<DecompressedPrimitive> {
+) -> Result<Option<DecompressedPrimitive>> {
+    let extension = primitive.extensions.as_ref().and_then(|e| e.others.get(NAME));
+    let Some(extension) = extension else { return Ok(None) };
     let path = format!("{path}.extensions.{NAME}");
     let view = extension.get("bufferView").and_then(as_index);
     let view = view.ok_or_else(|| error_at(&path, "`bufferView` must be the number of a view"))?;
@@ -73,7 +62,7 @@ pub fn decompress(
         attributes.insert(accessor, values);
     }
     let corners = mesh.faces().iter().flatten().map(|corner| corner.0).collect();
-    Ok(DecompressedPrimitive { corners, attributes })
+    Ok(Some((corners, attributes)))
 }
 
 /// Decodes a mesh, if it has at most `max_faces` faces.

@@ -5,9 +5,8 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DQuat, DVec3};
-use gltf::json;
 use gltf::json::animation::{Channel, Interpolation as SamplerInterpolation, Property, Sampler};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::vectors::vector;
 use crate::error::{Error, Result};

@@ -3,9 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use gltf::json;
-use gltf::json::camera::Type;
-use gltf::json::validation::Checked;
+use gltf::json::{self, camera::Type, validation::Checked};
 
 use super::nodes::SceneNode;
 use crate::error::Result;

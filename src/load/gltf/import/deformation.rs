@@ -51,9 +51,8 @@ impl Importer<'_> {
 
         // The mesh as it is deformed at rest.
         let path = format_args!("nodes[{}]", node.index);
-        self.sandbox
-            .consume(Limit::Deformed, base.positions.len() as u64)
-            .map_err(at_path(path))?;
+        let (sandbox, count) = (self.accessors.buffers.sandbox, base.positions.len() as u64);
+        sandbox.consume(Limit::Deformed, count).map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
             morph_targets: morph_targets.clone(),

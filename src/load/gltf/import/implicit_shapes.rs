@@ -7,8 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DAffine3, DVec3};
-use gltf::json;
-use gltf::json::Value;
+use gltf::json::{self, Value};
 
 use super::nodes::SceneNode;
 use crate::error::{Error, Result};

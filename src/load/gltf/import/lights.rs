@@ -3,9 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DVec3, Vec3};
-use gltf::json;
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as Source, Type};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::nodes::SceneNode;
 use crate::error::Result;

@@ -25,7 +25,7 @@ use gltf::json;
 
 use self::animation::AnimationClip;
 use self::material::Materials;
-use self::mesh::PrimitiveMesh;
+use self::mesh::{PrimitiveMesh, PrimitiveReader};
 use self::nodes::{SceneNode, collect_nodes};
 use self::skin::SkinJoints;
 use self::texture::Textures;
@@ -68,7 +68,6 @@ pub fn import(
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
-        sandbox,
         accessors,
         materials: Materials::new(root, textures),
         variants: Variants::read(root, options.variant),
@@ -98,7 +97,6 @@ struct Importer<'a> {
     root: &'a json::Root,
     /// The values of the JSON, unless they are too large.
     value: Option<&'a json::Value>,
-    sandbox: &'a Sandbox,
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     variants: Variants<'a>,
@@ -159,7 +157,8 @@ impl Importer<'_> {
         }
         let added = (primitives.len() * instances.len()) as u64;
         let count = self.scene.instances.len() as u64 + added;
-        self.sandbox.check(Limit::Instances, count).map_err(at_path(&by))?;
+        let Buffers { sandbox, .. } = self.accessors.buffers;
+        sandbox.check(Limit::Instances, count).map_err(at_path(&by))?;
         primitives.iter().try_for_each(|primitive| self.add_mesh(primitive, node, &instances, &by))
     }
 
@@ -175,27 +174,25 @@ impl Importer<'_> {
             // The material says which attributes are read.
             let (material, by) = self.variants.material(primitive, &path);
             let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-            let material = self.materials.material(material, &by, scene, diagnostics)?;
+            let (material, needed) = self.materials.material(material, &by, scene, diagnostics)?;
 
             // The mesh, and what of it cannot be shown.
-            let read =
-                mesh::read(primitive, &self.accessors, &material.needed, diagnostics, &path)?;
-            let unsupported = self
-                .value
-                .map_or(0, |value| morph_targets::unsupported_attributes(value, index, i));
+            let (accessors, path) = (&self.accessors, &*path);
+            let read = PrimitiveReader { primitive, accessors, path, diagnostics }.read(&needed)?;
+            let unsupported = morph_targets::unsupported_attributes(self.value, index, i);
             let reason = "{} texture coordinates and colours of morph targets are not morphed";
-            diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
+            self.diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
 
             // It is stored once, whatever the number of nodes that show it.
             let Some(mut read) = read else { continue };
             let (vertices, triangles) = (read.mesh.positions.len(), read.mesh.triangles.len());
             for (limit, count) in [(Limit::Vertices, vertices), (Limit::Triangles, triangles)] {
-                self.sandbox.consume(limit, count as u64).map_err(at_path(&path))?;
+                accessors.buffers.sandbox.consume(limit, count as u64).map_err(at_path(path))?;
             }
             if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
                 mesh.name.clone_from(name);
             }
-            primitives.push(ImportedPrimitive { mesh: read, material: material.id });
+            primitives.push(ImportedPrimitive { mesh: read, material });
         }
         self.meshes.insert(index, primitives.clone());
         Ok(primitives)

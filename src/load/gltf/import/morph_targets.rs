@@ -1,7 +1,6 @@
 //! Morph targets.
 
-use gltf::json;
-use gltf::json::Value;
+use gltf::json::{self, Value};
 
 use super::mesh::PrimitiveReader;
 use crate::error::Result;
@@ -42,8 +41,9 @@ impl PrimitiveReader<'_> {
 }
 
 /// Returns the number of attributes of a primitive's targets that are not supported.
-pub fn unsupported_attributes(root: &Value, mesh: usize, primitive: usize) -> u64 {
-    let primitive = root.pointer(&format!("/meshes/{mesh}/primitives/{primitive}"));
+pub fn unsupported_attributes(root: Option<&Value>, mesh: usize, primitive: usize) -> u64 {
+    let pointer = format!("/meshes/{mesh}/primitives/{primitive}");
+    let primitive = root.and_then(|root| root.pointer(&pointer));
     let targets = primitive.map_or(&[][..], |primitive| list(primitive, "targets"));
     let names = targets.iter().filter_map(Value::as_object).flat_map(|target| target.keys());
     names.filter(|n| n.starts_with("TEXCOORD_") || n.starts_with("COLOR_")).count() as u64

@@ -4,8 +4,7 @@
 use std::collections::HashSet;
 
 use glam::{DAffine3, DMat3, DQuat};
-use gltf::json;
-use gltf::json::Node;
+use gltf::json::{self, Node};
 
 use super::animation::AnimationClip;
 use super::vectors::{unit_quaternion, vector};

@@ -60,7 +60,7 @@ impl Importer<'_> {
         let path = format!("nodes[{}].extensions.KHR_implicit_shapes", node.index);
         let by = format!("{path}.material");
         let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-        let material = self.materials.material(material, &by, scene, diagnostics)?.id;
+        let (material, _) = self.materials.material(material, &by, scene, diagnostics)?;
 
         // Spheres and planes are added as what they are.
         let mesh = match shape {

@@ -4,9 +4,8 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use glam::Affine2;
-use gltf::json;
 use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::texture_reference::TextureReference;
 use crate::error::{Error, Result};
@@ -180,15 +179,12 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 /// Returns the magnification filter; if there is only a minification filter, that.
 fn filter(sampler: &json::texture::Sampler) -> Filter {
     use MinFilter::{Nearest, NearestMipmapLinear, NearestMipmapNearest};
-    match sampler.mag_filter {
-        Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
-        Some(_) => Filter::Linear,
-        None => match sampler.min_filter {
-            Some(Checked::Valid(Nearest | NearestMipmapLinear | NearestMipmapNearest)) => {
-                Filter::Nearest
-            }
-            _ => Filter::Linear,
-        },
+    match (sampler.mag_filter, sampler.min_filter) {
+        (Some(Checked::Valid(MagFilter::Nearest)), _) => Filter::Nearest,
+        (None, Some(Checked::Valid(Nearest | NearestMipmapLinear | NearestMipmapNearest))) => {
+            Filter::Nearest
+        }
+        _ => Filter::Linear,
     }
 }
 

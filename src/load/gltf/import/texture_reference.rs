@@ -1,9 +1,7 @@
 //! The references of materials to textures.
 
 use glam::{Affine2, Mat2, Vec2};
-use gltf::json;
-use gltf::json::extensions::texture::TextureTransform;
-use gltf::json::texture::Info;
+use gltf::json::{self, extensions::texture::TextureTransform, texture::Info};
 
 /// A reference to a texture, with the transform of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

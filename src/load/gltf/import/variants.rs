@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gltf::json;
-use gltf::json::Value;
-use gltf::json::mesh::Primitive;
+use gltf::json::{self, Value, mesh::Primitive};
 
 use crate::load::gltf::json::{as_index, list};
 
@@ -31,22 +29,17 @@ impl<'a> Variants<'a> {
     /// and the path of the reference to it. A primitive that does not mention the variant keeps its
     /// default.
     pub fn material(&self, primitive: &Primitive, path: &str) -> (Option<usize>, String) {
+        let of_variant = || {
+            let shown = Value::from(self.shown?);
+            let extension = primitive.extensions.as_ref()?.others.get(EXTENSION)?;
+            let mut mappings = list(extension, "mappings").iter().enumerate();
+            let (i, mapping) = mappings.find(|(_, m)| list(m, "variants").contains(&shown))?;
+            // A value that is no index becomes one that no file has.
+            let index = mapping.get("material").and_then(as_index).unwrap_or(usize::MAX);
+            Some((Some(index), format!("{path}.extensions.{EXTENSION}.mappings[{i}].material")))
+        };
         let default = || (primitive.material.map(|m| m.value()), format!("{path}.material"));
-        self.variant_material(primitive, path).unwrap_or_else(default)
-    }
-
-    fn variant_material(
-        &self,
-        primitive: &Primitive,
-        path: &str,
-    ) -> Option<(Option<usize>, String)> {
-        let shown = Value::from(self.shown?);
-        let extension = primitive.extensions.as_ref()?.others.get(EXTENSION)?;
-        let mut mappings = list(extension, "mappings").iter().enumerate();
-        let (i, mapping) = mappings.find(|(_, m)| list(m, "variants").contains(&shown))?;
-        // A value that is no index becomes one that no file has.
-        let index = mapping.get("material").and_then(as_index).unwrap_or(usize::MAX);
-        Some((Some(index), format!("{path}.extensions.{EXTENSION}.mappings[{i}].material")))
+        of_variant().unwrap_or_else(default)
     }
 
     /// The names of the variants.

@@ -1,8 +1,7 @@
 //! The parser of a file's JSON, more lenient than the types of the `gltf` crate where these refuse
 //! a file for no reason, and stricter where they let pass what would mean something else.
 
-use gltf::json;
-use gltf::json::Value;
+use gltf::json::{self, Value};
 
 use super::super::container::wrong_version;
 use super::super::validate;

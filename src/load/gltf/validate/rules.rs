@@ -86,8 +86,7 @@ impl Validator<'_> {
         self.rule(are_alike, path, "its primitives have different numbers of morph targets");
         self.check_weights(mesh, first, path);
         for (i, primitive) in primitives.iter().enumerate() {
-            let path = format!("{path}.primitives[{i}]");
-            self.check_primitive(primitive, &path);
+            self.check_primitive(primitive, &format!("{path}.primitives[{i}]"));
         }
     }
 
@@ -104,8 +103,7 @@ impl Validator<'_> {
         let accessor = |name: &str| referenced(root, attributes, name, "accessors");
         let count = |name: &str| integer(accessor(name)?, "count");
         let vertices = count("POSITION");
-        let is_count =
-            |found: Option<u64>| vertices.is_none() || found.is_none() || found == vertices;
+        let is_count = |found: Option<u64>| vertices.zip(found).is_none_or(|(v, n)| v == n);
 
         for name in attributes.as_object().into_iter().flat_map(|a| a.keys()) {
             let path = format_args!("{path}.attributes.{name}");

@@ -6,10 +6,9 @@ mod reader;
 use std::collections::HashMap;
 
 use glam::Vec3;
-use gltf::json;
 use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::material::AlphaMode as Mode;
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use self::metallic_roughness::base_color;
 pub use self::reader::NeededAttributes;
@@ -29,16 +28,8 @@ pub struct Materials<'a> {
     root: &'a json::Root,
     /// The textures of the materials.
     pub textures: Textures<'a>,
-    imported: HashMap<Option<usize>, ImportedMaterial>,
-}
-
-/// A material of the scene.
-#[derive(Clone)]
-pub struct ImportedMaterial {
-    /// Its id.
-    pub id: MaterialId,
-    /// The vertex attributes that it needs.
-    pub needed: NeededAttributes,
+    /// The materials so far, each with the vertex attributes that it needs.
+    imported: HashMap<Option<usize>, (MaterialId, NeededAttributes)>,
 }
 
 impl<'a> Materials<'a> {
@@ -47,8 +38,8 @@ impl<'a> Materials<'a> {
         Self { root, textures, imported: HashMap::new() }
     }
 
-    /// Returns the material with an index, or that of primitives that name none. The reference to
-    /// it is at the JSON path `by`.
+    /// Returns the material with an index, or that of primitives that name none, and the vertex
+    /// attributes that it needs. The reference to it is at the JSON path `by`.
     ///
     /// # Errors
     /// When the reference, or one that it leads to, leads nowhere.
@@ -58,7 +49,7 @@ impl<'a> Materials<'a> {
         by: &str,
         scene: &mut Scene,
         diagnostics: &mut Diagnostics,
-    ) -> Result<ImportedMaterial> {
+    ) -> Result<(MaterialId, NeededAttributes)> {
         if let Some(known) = self.imported.get(&index) {
             return Ok(known.clone());
         }
@@ -80,7 +71,7 @@ impl<'a> Materials<'a> {
                 (read(&mut reader)?, reader.needed)
             }
         };
-        let imported = ImportedMaterial { id: scene.add_material(material), needed };
+        let imported = (scene.add_material(material), needed);
         self.imported.insert(index, imported.clone());
         Ok(imported)
     }

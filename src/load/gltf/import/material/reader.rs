@@ -3,8 +3,7 @@
 use std::fmt::Display;
 
 use glam::Vec3;
-use gltf::json;
-use gltf::json::texture::Info;
+use gltf::json::{self, texture::Info};
 
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;

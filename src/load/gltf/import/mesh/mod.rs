@@ -5,16 +5,15 @@ mod topology;
 
 use std::sync::Arc;
 
-use gltf::json;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use self::compact::{compact, retain_vertices};
 use super::material::NeededAttributes;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
-use crate::load::gltf::compression::draco::{self, DecompressedPrimitive};
+use crate::load::gltf::compression::draco;
 use crate::load::gltf::json::error_at;
 use crate::load::mesh_repair::repair;
 use crate::load::report::DropReason;
@@ -32,42 +31,6 @@ pub struct PrimitiveMesh {
     pub influences: Option<Arc<Influences>>,
 }
 
-/// Reads the mesh of a primitive, with the attributes that its material needs; `None` if it has no
-/// triangle.
-///
-/// # Errors
-/// When its indices or a needed attribute cannot be read.
-pub fn read(
-    primitive: &Primitive,
-    accessors: &Accessors,
-    needed: &NeededAttributes,
-    diagnostics: &mut Diagnostics,
-    path: &str,
-) -> Result<Option<PrimitiveMesh>> {
-    let Checked::Valid(mode) = primitive.mode else {
-        let error = error_at(format_args!("{path}.mode"), "this is no known mode");
-        return Err(error.help("0 to 6; 4 is triangles"));
-    };
-    let extension = draco::extension(primitive);
-    match extension.map(|e| draco::decompress(primitive, e, accessors, path)) {
-        Some(Ok(DecompressedPrimitive { corners, attributes })) => {
-            let accessors = &accessors.with_decompressed(attributes);
-            let reader = PrimitiveReader { primitive, accessors, path, diagnostics };
-            // Strips are decompressed as triangles, too.
-            return reader.read(Mode::Triangles, Some(corners), needed);
-        }
-        Some(Err(error)) => {
-            let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
-            if !positions.is_some_and(|index| accessors.has_view(index.value())) {
-                return Err(error);
-            }
-            diagnostics.note(format!("{error}; what is not compressed is read instead"));
-        }
-        None => {}
-    }
-    PrimitiveReader { primitive, accessors, path, diagnostics }.read(mode, None, needed)
-}
-
 /// A primitive that is being read.
 pub struct PrimitiveReader<'a> {
     /// The primitive.
@@ -81,8 +44,40 @@ pub struct PrimitiveReader<'a> {
 }
 
 impl PrimitiveReader<'_> {
+    /// Reads the mesh of the primitive, with the attributes that its material needs; `None` if it has
+    /// no triangle.
+    ///
+    /// # Errors
+    /// When its indices or a needed attribute cannot be read.
+    pub fn read(self, needed: &NeededAttributes) -> Result<Option<PrimitiveMesh>> {
+        let Self { primitive, accessors, path, .. } = self;
+        let Checked::Valid(mode) = primitive.mode else {
+            let error = error_at(format_args!("{path}.mode"), "this is no known mode");
+            return Err(error.help("0 to 6; 4 is triangles"));
+        };
+        match draco::decompress(primitive, accessors, path) {
+            // Strips are decompressed as triangles, too.
+            Ok(Some((corners, attributes))) => {
+                let accessors = &accessors.with_decompressed(attributes);
+                let reader = PrimitiveReader { accessors, ..self };
+                return reader.read_mesh(Mode::Triangles, Some(corners), needed);
+            }
+            Ok(None) => {}
+            // Some files have the same without compression as well.
+            Err(error) => {
+                let positions = self.accessor(Semantic::Positions);
+                if !positions.is_some_and(|index| accessors.has_view(index)) {
+                    return Err(error);
+                }
+                let warning = format!("{error}; what is not compressed is read instead");
+                self.diagnostics.note(warning);
+            }
+        }
+        self.read_mesh(mode, None, needed)
+    }
+
     /// Reads the mesh, from `corners` if they are decompressed.
-    fn read(
+    fn read_mesh(
         mut self,
         mode: Mode,
         corners: Option<Vec<u32>>,
