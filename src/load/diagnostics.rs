@@ -138,6 +138,8 @@ impl Diagnostics {
                 self.entries.push(CountedWarning { kind, reason, count, first_place });
             }
         }
+
+        // Each warning is in the list of all, and some are in a list of their kind as well.
         for entry in self.entries {
             let sentence = entry.sentence(file);
             match entry.kind {

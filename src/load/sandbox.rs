@@ -132,6 +132,7 @@ impl Sandbox {
     /// # Errors
     /// When that is more than the limit, together with what was used before.
     pub fn consume(&self, limit: Limit, more: u64) -> Result<()> {
+        // The amount is added in one step, since threads share the limit.
         let add = |used: u64| Some(used.saturating_add(more));
         let (set, get) = (Ordering::Relaxed, Ordering::Relaxed);
         let before = self.used[limit as usize].fetch_update(set, get, add);

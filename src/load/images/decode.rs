@@ -55,6 +55,7 @@ pub fn decode_all<'a, T: Sync>(
 ) -> Vec<Result<Image>> {
     let mut decoded = Vec::with_capacity(images.len());
     for batch in images.chunks(BATCH) {
+        // Images are read and charged one by one, in order; only the decoding is parallel.
         let prepare =
             |image| open(image).and_then(|source| prepare(source, sandbox, is_needed(image)));
         let prepared: Vec<_> = batch.iter().map(prepare).collect();
@@ -108,6 +109,7 @@ impl PreparedImage<'_> {
     /// Charges the limits for an image, and returns how many pixels of 8-bit numbers take as much
     /// memory.
     fn charge_limits(&self, sandbox: &Sandbox) -> Result<u64> {
+        // The header tells the size, so that the limits are checked before any pixel is decoded.
         sandbox.consume(Limit::Pictures, 1)?;
         let ([width, height], depth) = if ktx2::is_ktx(&self.bytes) {
             let ktx2::Header { size, is_float } = ktx2::header(&self.bytes)?;
@@ -120,6 +122,7 @@ impl PreparedImage<'_> {
             (decoder.dimensions().into(), channel_bytes(decoder.color_type()))
         };
         let pixels = u64::from(width) * u64::from(height) * depth;
+        // Pixels for which the size of the file accounts are free.
         let free = FREE_PIXELS_PER_BYTE * self.bytes.len() as u64;
         sandbox.consume(Limit::Pixels, pixels.saturating_sub(free))?;
         Ok(pixels)

@@ -51,6 +51,7 @@ pub fn undecodable(reason: impl Display) -> Error {
 /// When it is cut short or points beyond the file, or the image is not a single flat one that Basis
 /// Universal has compressed.
 pub fn header(bytes: &[u8]) -> Result<Header> {
+    // Numbers at a position of the header, if the file reaches so far.
     let u32_at = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
     let u64_at = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
 

@@ -46,6 +46,8 @@ pub fn set_image_or_placeholder(
             material.normal_map.take_if(|map| map.texture == id);
         }
     }
+
+    // One warning says what stands in the place of the image.
     let instead = if is_color {
         "a magenta checker takes its place"
     } else {

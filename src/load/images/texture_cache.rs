@@ -68,6 +68,7 @@ impl<ImageKey: Eq + Hash, Source: Sync, TextureKey: Eq + Hash>
         build: impl FnOnce(Arc<Image>) -> Texture,
     ) -> TextureId {
         *self.textures.entry(key).or_insert_with(|| {
+            // An unread image stands for the one that is decoded later.
             let id = scene.add_texture(build(Arc::new(Image::unread(""))));
             self.images[image.0].textures.push(id);
             id

@@ -92,6 +92,7 @@ impl MergedModel {
         warnings: &mut Vec<String>,
     ) {
         let transform = &instance.transform;
+        // The animation refers to the objects of this instance by their indices in the scene.
         let mut indices = SceneIndices {
             first_instance: scene.instances.len(),
             first_sphere: scene.spheres.len(),
@@ -133,6 +134,7 @@ impl MergedModel {
     /// the mean scale, with a warning.
     fn add_spheres(&self, scene: &mut Scene, instance: &ModelInstance, warnings: &mut Vec<String>) {
         let transform = &instance.transform;
+        // The mean scale is that which keeps the volume.
         let axes = [0, 1, 2].map(|i| transform.matrix3.col(i).length());
         let mean = transform.matrix3.determinant().abs().cbrt();
         let is_uneven = axes.iter().any(|axis| (axis - mean).abs() > 1e-6 * mean);
@@ -156,6 +158,7 @@ impl MergedModel {
         if instance.node.is_some() && !self.model.planes.is_empty() {
             warnings.push("planes of a model that moves stand still".to_owned());
         }
+        // Normals are transformed by the inverse transpose, so that they stay perpendicular.
         let cofactors = transform.matrix3.inverse().transpose();
         scene.planes.extend(self.model.planes.iter().map(|plane| Plane {
             point: transform.transform_point3(plane.point),

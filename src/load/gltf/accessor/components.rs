@@ -21,6 +21,7 @@ impl Encoding {
         let scale = |value: f32, greatest: f32| {
             if self.normalized { (value / greatest).max(-1.0) } else { value }
         };
+        // The number of bytes tells integers apart by size, and the type by sign.
         match *bytes {
             [a] if self.component_type == ComponentType::I8 => scale(f32::from(a as i8), 127.0),
             [a] => scale(f32::from(a), 255.0),

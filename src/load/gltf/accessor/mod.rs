@@ -164,6 +164,7 @@ impl<'a> Accessors<'a> {
         let accessor = lookup(&self.buffers.root.accessors, index, "accessor", by)?;
         let path = format!("accessors[{index}]");
         check_type::<N>(accessor, &path, by)?;
+        // The type of the components is that of the decompressed values, where there are some.
         let decompressed = self.decompressed.get(&index);
         let component_type = match decompressed {
             Some(attribute) => attribute.component_type,

@@ -53,6 +53,7 @@ pub fn decompress(
         });
         // An attribute that the primitive itself does not name is not part of it.
         let Some(accessor) = accessor else { continue };
+        // The extension gives each attribute a number in the compressed mesh.
         let id = as_index(id).and_then(|id| u32::try_from(id).ok());
         let attribute = id.and_then(|id| mesh.attribute_by_unique_id(id)).ok_or_else(|| {
             error_at(&path, format!("its data have no attribute with the number that {name} gives"))
@@ -67,6 +68,7 @@ pub fn decompress(
 
 /// Decodes a mesh, if it has at most `max_faces` faces.
 fn decode(bytes: &[u8], max_faces: u64) -> Result<draco_core::Mesh> {
+    // A few bytes can describe any number of triangles, so that all is limited beforehand.
     let limits = DecodeLimits::default()
         .with_max_faces(max_faces)
         .with_max_points(3 * max_faces)
@@ -98,6 +100,8 @@ fn values_of_points(attribute: &PointAttribute, points: usize) -> Result<Decompr
         DataType::Float32 => ComponentType::F32,
         other => return Err(Error::input(format!("{other:?} is no type of numbers in glTF"))),
     };
+
+    // Points share values: each point names its own by an index.
     let size = width * component_type.size();
     let stride = usize::try_from(attribute.byte_stride()).unwrap_or(0);
     let data = attribute.buffer().data();

@@ -59,8 +59,11 @@ impl AnimationClip {
     ) -> Result<Self> {
         let mut clip = Self::default();
         let root = accessors.buffers.root;
+        // The first animation is played, unless another one is chosen.
         let index = name.map_or(Ok(0), |name| find_animation(root, name))?;
         let Some(animation) = root.animations.get(index) else { return Ok(clip) };
+
+        // Each channel moves one property of one node; damaged ones are left out.
         let path = format!("animations[{index}]");
         for (i, channel) in animation.channels.iter().enumerate() {
             let at = format!("{path}.channels[{i}]");
@@ -79,6 +82,7 @@ impl AnimationClip {
 
     /// Adds the curve of a node's property, or of the weights of its morph targets.
     fn add_channel(&mut self, channel: &Channel, reader: &SamplerReader) -> Result<()> {
+        // The property and the node that it moves.
         let Checked::Valid(property) = channel.target.path else {
             return Err(Error::input("it moves something unknown"));
         };
@@ -93,6 +97,7 @@ impl AnimationClip {
             Property::MorphTargetWeights => {
                 let mesh = node.mesh.and_then(|mesh| root.meshes.get(mesh.value()));
                 let mesh = mesh.ok_or_else(|| Error::input("it morphs a node without a mesh"))?;
+                // All primitives of a mesh have as many targets as the first.
                 let targets = mesh.primitives.first().and_then(|p| p.targets.as_ref());
                 let count = targets.map_or(0, Vec::len);
                 let curves = reader.curves(count, |[weight], _| f64::from(weight))?;
@@ -132,6 +137,7 @@ impl AnimationClip {
         base: DAffine3,
     ) -> Option<NodeId> {
         let NodeCurves { translation, rotation, scale } = self.nodes.get(&index)?;
+        // Properties without a curve keep the value of the node.
         let still = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
         let still = if still.length() > 0.0 { still.normalize() } else { DQuat::IDENTITY };
         let constant = |v: [f32; 3]| Curve::constant(vector(v));
@@ -145,6 +151,7 @@ impl AnimationClip {
             scale: scale.clone().unwrap_or_else(|| constant(node.scale.unwrap_or([1.0; 3]))),
             period: self.period(),
         };
+        // The node stands where its parent's space places it.
         self.scene_nodes.push(Node { parent, base, motion: Motion::Keyframes(keys) });
         Some(NodeId(self.scene_nodes.len() as u32 - 1))
     }
@@ -231,6 +238,7 @@ impl SamplerReader<'_> {
             return Err(Error::input("the interpolation is of no known kind"));
         };
         let rows = if kind == SamplerInterpolation::CubicSpline { 3 } else { 1 };
+        // There must be a value for each curve, time and row.
         if count == 0 || values.len() != times.len() * count * rows {
             let (found, times) = (values.len(), times.len());
             let message = format!("{found} values for {count} curves at {times} times");
@@ -239,6 +247,7 @@ impl SamplerReader<'_> {
 
         // Each curve takes its own column of the values.
         let curve = |i: usize| {
+            // The values of a row, of which a spline has three: slope before, value, slope after.
             let row = |row: usize, is_value: bool| {
                 let values = values.iter().skip(row * count + i).step_by(rows * count);
                 let convert = &convert;

@@ -23,6 +23,8 @@ pub fn camera(
     let Some(index) = node.node.camera.map(|c| c.value()) else { return Ok(None) };
     let by = format_args!("nodes[{}].camera", node.index);
     let source = lookup(&root.cameras, index, "camera", by)?;
+
+    // A camera looks along −Z of its node, whose scale does not count.
     let axes = node.to_world.matrix3;
     let position = node.to_world.translation;
     let target = position + axes.mul_vec3(DVec3::NEG_Z).normalize_or_zero();

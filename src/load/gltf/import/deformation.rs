@@ -45,6 +45,7 @@ impl Importer<'_> {
         let weights: Vec<_> = (0..morph_targets.len()).map(weight).collect();
         let curves = self.clip.weights.get(&node.index).filter(|c| c.len() == morph_targets.len());
         let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
+        // Without either the mesh is shared by all nodes that show it.
         if skin.is_none() && !is_morphed {
             return Ok((self.add_mesh_once(base), false));
         }
@@ -58,6 +59,7 @@ impl Importer<'_> {
             morph_targets: morph_targets.clone(),
             weights: weights.into_iter().map(Curve::constant).collect(),
             period: None,
+            // The joints stand as the file places them, in world space.
             skin: skin.as_ref().map(|(joints, influences)| Skin {
                 joints: joints.still.clone(),
                 influences: influences.clone(),
@@ -74,6 +76,7 @@ impl Importer<'_> {
 
         // The same as it moves.
         if curves.is_some() || skin.as_ref().is_some_and(|(joints, _)| joints.is_animated) {
+            // Weights without curves stay as they are.
             if let Some(curves) = curves {
                 deformation.weights.clone_from(curves);
             }

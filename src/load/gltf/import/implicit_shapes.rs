@@ -72,6 +72,8 @@ fn parse(source: &Value) -> Result<ImplicitShape> {
             .filter(|x| x.is_finite() && *x >= 0.0 && *x < 1e30)
             .ok_or_else(|| Error::input(format!("`{kind}.{name}` must be a number from 0 on")))
     };
+
+    // Spheres and infinite planes are kept as what they are, all others become meshes.
     let mesh = |mesh: Mesh| Ok(ImplicitShape::Mesh(mesh.into()));
     match kind {
         "sphere" => match number("radius", 0.5)? {
@@ -107,6 +109,7 @@ fn parse(source: &Value) -> Result<ImplicitShape> {
 fn transformed_radius(transform: &DAffine3, radius: f64) -> Option<f64> {
     let [x, y, z] = [0, 1, 2].map(|i| transform.matrix3.col(i));
     let scale = x.length();
+    // A sphere stays one if the axes are still equally long, and perpendicular.
     let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * scale;
     let is_uniform = is_near(y.length(), scale) && is_near(z.length(), scale);
     let is_orthogonal =
@@ -123,6 +126,7 @@ const AROUND: usize = 64;
 const UP: usize = 16;
 
 fn cylinder_profile(half: f64, bottom: f64, top: f64) -> Vec<[ProfilePoint; 2]> {
+    // The normal of the side leans by as much as the radius changes over the height.
     let slope = (bottom - top) / (2.0 * half).max(f64::MIN_POSITIVE);
     let length = slope.hypot(1.0);
     let (nr, ny) = (1.0 / length, slope / length);
@@ -145,6 +149,7 @@ fn capsule_profile(half: f64, bottom: f64, top: f64) -> Vec<[ProfilePoint; 2]> {
         let angle = move |i: usize| from + (to - from) * i as f64 / UP as f64;
         (0..UP).map(move |i| [on(center, radius, angle(i)), on(center, radius, angle(i + 1))])
     };
+    // From bottom to top: a cap, the cone between the caps if there is room for one, and a cap.
     let mut profile: Vec<[ProfilePoint; 2]> = cap(-half, bottom, -FRAC_PI_2, rise).collect();
     if half > 0.0 {
         profile.push([on(-half, bottom, rise), on(half, top, rise)]);
@@ -159,13 +164,16 @@ fn surface_of_revolution(profile: &[[ProfilePoint; 2]]) -> Mesh {
     for segment in profile {
         let first = mesh.positions.len() as u32;
         for i in 0..=AROUND {
-            // The seam is one place.
+            // Each step around the axis has a vertex at either end of the segment. The last step is
+            // at the place of the first, so that the seam is closed.
             let (sin, cos) = (TAU * (i % AROUND) as f64 / AROUND as f64).sin_cos();
             for [r, y, nr, ny] in segment {
                 mesh.positions.push([r * cos, *y, r * sin].map(|x| x as f32));
                 mesh.normals.push([nr * cos, *ny, nr * sin].map(|x| x as f32));
             }
         }
+
+        // Two triangles join two steps; at a pole one of them would have no area.
         for i in 0..AROUND as u32 {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + 2 * i + k);
             let [low, high] = segment.map(|[r, ..]| r > 1e-12);

@@ -35,6 +35,7 @@ pub fn transforms(
         let accessor = as_index(value)
             .ok_or_else(|| error_at(path_of(name), format!("{value} is no accessor")))?;
         let found = accessors.count(accessor);
+        // The number of instances is limited before any of them is read.
         accessors.buffers.sandbox.check(Limit::Instances, found).map_err(at_path(path_of(name)))?;
         if *count.get_or_insert(found) != found {
             let message = format!("{found} values, where others have another number");
@@ -54,6 +55,8 @@ pub fn transforms(
         Some(index) => accessors.floats::<4>(index, &path_of("ROTATION"))?,
         None => vec![[0.0, 0.0, 0.0, 1.0]; count],
     };
+
+    // The transforms, without those that are not finite.
     let parts = translations.into_iter().zip(rotations).zip(scales);
     let transforms = parts.map(|((translation, rotation), scale)| {
         let rotation = unit_quaternion(rotation).unwrap_or(DQuat::IDENTITY);

@@ -55,6 +55,7 @@ pub fn import(
     options: &ModelOptions,
     mut diagnostics: Diagnostics,
 ) -> Result<Loaded> {
+    // The readers of the parts of the file, each by way of the one before.
     let root = &document.root;
     let buffers = Buffers::new(root, sandbox, path, bin);
     let accessors = Accessors::new(&buffers);
@@ -123,6 +124,8 @@ impl Importer<'_> {
         // those of the first time.
         let mut ignored = Diagnostics::default();
         let at_rest = node.animated.map(|_| node.in_animated_space());
+
+        // Camera, light and shape.
         if let Some(camera) = cameras::camera(self.root, node, &mut self.diagnostics)? {
             if let Some(at_rest) = &at_rest
                 && let Some(rest) = cameras::camera(self.root, at_rest, &mut ignored)?
@@ -155,6 +158,9 @@ impl Importer<'_> {
         if instances.is_empty() {
             return Ok(());
         }
+
+        // Each primitive has an instance at each transform; the number is limited before they are
+        // added.
         let added = (primitives.len() * instances.len()) as u64;
         let count = self.scene.instances.len() as u64 + added;
         let Buffers { sandbox, .. } = self.accessors.buffers;
@@ -167,6 +173,7 @@ impl Importer<'_> {
         if let Some(known) = self.meshes.get(&index) {
             return Ok(known.clone());
         }
+        // Each primitive is a mesh of its own, since it has its own material.
         let source = lookup(&self.root.meshes, index, "mesh", by)?;
         let mut primitives = Vec::new();
         for (i, primitive) in source.primitives.iter().enumerate() {

@@ -16,6 +16,7 @@ impl PrimitiveReader<'_> {
         let mut targets = Vec::new();
         for (i, target) in self.primitive.targets.iter().flatten().enumerate() {
             let path = format!("{}.targets[{i}]", self.path);
+            // Each attribute has an offset for every vertex, or is left out.
             let read = |index: &Option<json::Index<json::Accessor>>, name: &str| {
                 let Some(index) = index else { return Ok(Vec::new()) };
                 let path = format!("{path}.{name}");
@@ -30,6 +31,8 @@ impl PrimitiveReader<'_> {
                 positions: read(&target.positions, "POSITION")?,
                 normals: read(&target.normals, "NORMAL")?,
             };
+
+            // What is not finite does not move its vertex.
             let values = target.positions.iter_mut().chain(&mut target.normals).flatten();
             let bad = values.filter(|x| !x.is_finite()).map(|x| *x = 0.0).count() as u64;
             let reason = "{} numbers of morph targets are not finite and become 0";

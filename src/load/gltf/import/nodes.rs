@@ -85,6 +85,7 @@ pub fn collect_nodes<'a>(
     let scene = Parent { is_shown: true, ..Parent::default() };
     stack.extend(roots.into_iter().rev().map(|(index, by)| (index, by, scene)));
 
+    // Each node is visited once, so that cycles end and no node is drawn twice.
     let mut nodes = Vec::new();
     let mut is_visited = vec![false; root.nodes.len()];
     while let Some((index, by, parent)) = stack.pop() {
@@ -107,6 +108,7 @@ pub fn collect_nodes<'a>(
             let message = "the transforms of the node and those above it overflow";
             return Err(error_at(&path, message));
         }
+        // A node that moves begins a space of its own; others stand still in that of an ancestor.
         let (animated, to_animated) =
             match clip.add_node(index, node, parent.animated, parent.to_animated) {
                 Some(own) => (Some(own), DAffine3::IDENTITY),
@@ -135,6 +137,7 @@ fn is_hidden(node: &Node) -> bool {
 /// # Errors
 /// When a child is missing, or a node is its own ancestor.
 fn parents(root: &json::Root) -> Result<Vec<Option<usize>>> {
+    // A node with several parents belongs to the first.
     let mut parents: Vec<Option<usize>> = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
         for (i, child) in node.children.iter().flatten().enumerate() {
@@ -173,6 +176,7 @@ fn scene_roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usiz
         }
         None => 0,
     };
+    // The scene that the file names, or else the first.
     let scene = lookup(&root.scenes, index, "scene", "scene")?;
     let path = |i: usize| format!("scenes[{index}].nodes[{i}]");
     Ok(scene.nodes.iter().enumerate().map(|(i, node)| (node.value(), path(i))).collect())
@@ -187,8 +191,10 @@ fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Re
         let error = error_at(format_args!("{path}.{key}"), "a number is too large");
         Err(error.help("at most about 3.4e38"))
     };
+    // A matrix, by columns.
     if let Some(m) = &node.matrix {
         check_finite(m, "matrix")?;
+        // The last row of an affine transform is 0 0 0 1.
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             let reason = "{} matrices have a last row other than 0 0 0 1, which is ignored";
             diagnostics.add(reason, 1, || format!("{path}.matrix"));
@@ -196,12 +202,15 @@ fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Re
         let [x, y, z, translation] = [0, 4, 8, 12].map(|i| vector([m[i], m[i + 1], m[i + 2]]));
         return Ok(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation));
     }
+
+    // Or scale, rotation and translation, in this order.
     let rotation = node.rotation.unwrap_or_default().0;
     let scale = node.scale.unwrap_or([1.0; 3]);
     let translation = node.translation.unwrap_or_default();
     check_finite(&rotation, "rotation")?;
     check_finite(&scale, "scale")?;
     check_finite(&translation, "translation")?;
+    // Rounding in f32 must not make a rotation shear.
     let rotation = unit_quaternion(rotation).unwrap_or_else(|| {
         let reason = "{} rotations have length 0 and turn nothing";
         diagnostics.add(reason, 1, || format!("{path}.rotation"));

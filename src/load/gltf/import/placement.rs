@@ -58,6 +58,7 @@ impl Importer<'_> {
         node: &SceneNode,
     ) -> Result<()> {
         let path = format!("nodes[{}].extensions.KHR_implicit_shapes", node.index);
+        // The material is that which the node names beside the shape.
         let by = format!("{path}.material");
         let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
         let (material, _) = self.materials.material(material, &by, scene, diagnostics)?;
@@ -80,6 +81,7 @@ impl Importer<'_> {
                 let is_animated = u64::from(node.animated.is_some());
                 let reason = "{} planes stand still on nodes that move";
                 diagnostics.unsupported(reason, is_animated, || path.clone());
+                // The plane faces along Y of its node, however that is scaled.
                 let normal = node.to_world.matrix3.inverse().transpose() * DVec3::Y;
                 match normal.try_normalize() {
                     Some(normal) => {
@@ -92,6 +94,8 @@ impl Importer<'_> {
             }
             ImplicitShape::Mesh(mesh) => *mesh,
         };
+
+        // All other shapes are meshes, placed like those of the file.
         let mesh =
             PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
         let primitive = ImportedPrimitive { mesh, material };

@@ -36,6 +36,7 @@ impl PrimitiveReader<'_> {
             }
             read.push((joints, weights));
         }
+        // Without joints and weights the mesh is rigid.
         if read.is_empty() {
             return Ok(None);
         }
@@ -53,6 +54,7 @@ impl PrimitiveReader<'_> {
                     if is_valid { weight } else { 0.0 }
                 }));
             }
+            // A vertex without any weight hangs on its first joint.
             without_weight += u64::from(influences.weights[first..].iter().all(|w| *w == 0.0));
         }
         let path = || format!("{path}.attributes.WEIGHTS_0");
@@ -92,6 +94,7 @@ pub fn read_joints(
     let source = lookup(&root.skins, skin, "skin", by)?;
     let count = source.joints.len();
     let path = format!("skins[{skin}].inverseBindMatrices");
+    // The inverse bind matrices take the space of the mesh to that of each joint.
     let matrices = match source.inverse_bind_matrices {
         Some(index) => accessors.floats::<16>(index.value(), &path)?,
         None => vec![DMat4::IDENTITY.as_mat4().to_cols_array(); count],
@@ -103,6 +106,8 @@ pub fn read_joints(
         return Err(error_at(path, "a matrix has a number that is not finite"));
     }
     let mut joints = SkinJoints::default();
+
+    // Each joint as the file places it, and as it moves with the animation.
     for (i, (joint, matrix)) in source.joints.iter().zip(&matrices).enumerate() {
         let by = format_args!("skins[{skin}].joints[{i}]");
         lookup(&root.nodes, joint.value(), "node", by)?;

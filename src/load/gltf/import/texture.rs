@@ -96,10 +96,13 @@ impl<'a> Textures<'a> {
             }
         };
 
+        // Without a transform that is finite the coordinates would not be either.
         if !transform.is_finite() {
             diagnostics.note(format!("{path}: a transform that is not finite is left out"));
             transform = Affine2::IDENTITY;
         }
+
+        // A texture without a sampler repeats, is interpolated, and has mipmaps.
         Ok(self.cache.texture(key, image, scene, |image| Texture {
             transfer,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),

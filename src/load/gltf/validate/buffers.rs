@@ -123,6 +123,7 @@ impl Validator<'_> {
         let Some(view) = referenced(self.root, object, "bufferView", "bufferViews") else { return };
         let Some(length) = integer(view, "byteLength") else { return };
         let size = element.bytes();
+        // Without a stride, elements follow one another.
         let stride = integer(view, "byteStride").unwrap_or(size);
 
         // The last element takes no more than its own bytes.

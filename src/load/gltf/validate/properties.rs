@@ -19,6 +19,7 @@ impl Validator<'_> {
         let Some(object) = value.as_object() else {
             return self.check(TYPE, false, path, "not an object");
         };
+        // The properties that the schema lists; others may be anything.
         for Property { name, is_required, kind } in schema.properties {
             match object.get(*name) {
                 Some(value) => self.value(value, &JsonPath::Key(path, name), kind),

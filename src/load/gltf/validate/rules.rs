@@ -65,6 +65,7 @@ impl Validator<'_> {
         let Some(projection) = camera.get(kind) else {
             return self.rule(kind.is_empty(), path, format_args!("has no `{kind}`"));
         };
+        // The planes and the size of the frustum.
         let number = |key: &str| projection.get(key).and_then(Value::as_f64);
         let (near, far) = (number("znear"), number("zfar"));
         self.rule(far.is_none() || far > near, path, "zfar is not above znear");
@@ -80,6 +81,7 @@ impl Validator<'_> {
     }
 
     fn check_mesh(&mut self, mesh: &Value, path: &str) {
+        // All primitives morph together, by the weights of the mesh.
         let primitives = list(mesh, "primitives");
         let first = target_count(mesh);
         let are_alike = primitives.iter().all(|p| list(p, "targets").len() == first);
@@ -105,6 +107,7 @@ impl Validator<'_> {
         let vertices = count("POSITION");
         let is_count = |found: Option<u64>| vertices.zip(found).is_none_or(|(v, n)| v == n);
 
+        // All attributes have a value for each position, of a type that the standard allows.
         for name in attributes.as_object().into_iter().flat_map(|a| a.keys()) {
             let path = format_args!("{path}.attributes.{name}");
             self.rule(is_count(count(name)), path, "not as many as positions");
@@ -116,11 +119,13 @@ impl Validator<'_> {
             self.rule(is_valid, path, "of a type that it cannot have");
         }
 
+        // Indices are unsigned integers.
         let indices = referenced(root, primitive, "indices", "accessors");
         let element = indices.and_then(ElementType::from_accessor);
         let is_valid = element.is_none_or(ElementType::is_valid_for_indices);
         self.rule(is_valid, format_args!("{path}.indices"), "no unsigned integers");
 
+        // Morph targets move attributes that the primitive has.
         for (i, target) in list(primitive, "targets").iter().enumerate() {
             for name in target.as_object().into_iter().flat_map(|t| t.keys()) {
                 let path = format_args!("{path}.targets[{i}].{name}");
@@ -184,6 +189,7 @@ impl Validator<'_> {
         let mut targets = HashSet::new();
         for (i, channel) in list(animation, "channels").iter().enumerate() {
             let path = format!("{path}.channels[{i}]");
+            // The sampler is one of the same animation.
             let is_there = integer(channel, "sampler").is_none_or(|s| s < samplers as u64);
             let sampler = format_args!("{path}.sampler");
             let message = format_args!("there are {samplers} samplers");
@@ -196,6 +202,7 @@ impl Validator<'_> {
             let has_pointer = extension(target, "KHR_animation_pointer").is_some();
             let holds = !has_pointer || property == Some("pointer") && !has(target, "node");
             self.rule(holds, &path, "a pointer beside a node or another path");
+            // A property of a node has one channel, and there is something that it can move.
             let Some(node) = target.get("node") else { continue };
             let is_new =
                 targets.insert((node.to_string(), target.get("path").map(Value::to_string)));
@@ -217,6 +224,7 @@ impl Validator<'_> {
         let Some(spot) = light.get("spot") else {
             return self.rule(false, path, "has no `spot`");
         };
+        // Either cone has a default.
         let angle = |key: &str, default| spot.get(key).map_or(Some(default), Value::as_f64);
         let holds = angle("innerConeAngle", 0.0) < angle("outerConeAngle", FRAC_PI_4);
         self.rule(holds, format_args!("{path}.spot"), "the outer cone is not the wider one");

@@ -51,6 +51,7 @@ impl CompressedView {
             integer(name).ok_or_else(|| Error::input(format!("`{name}` must be a whole number")))
         };
         let text = |name: &str| object.get(name).and_then(Value::as_str);
+        // The way in which the bytes are compressed, and the filter that was applied before.
         let mode = match text("mode") {
             Some("ATTRIBUTES") => Mode::Attributes,
             Some("TRIANGLES") => Mode::Triangles,
@@ -80,6 +81,8 @@ impl CompressedView {
         if !is_valid {
             return Err(Error::input(format!("a stride of {stride} does not fit the mode")));
         }
+
+        // All numbers are checked again against the buffer, when the view is loaded.
         let to_usize = |x: u64| usize::try_from(x).map_err(|_| Error::input("too many elements"));
         Ok(Self {
             buffer: to_usize(required("buffer")?)?,
@@ -110,6 +113,7 @@ impl CompressedView {
             Mode::Triangles => (Some(count), bytes.len().saturating_mul(3)),
             Mode::Indices => (Some(count), bytes.len()),
         };
+        // A damaged count must not make us reserve more memory than the stream can fill.
         if total.is_none_or(|total| total > most) {
             let found = bytes.len();
             return Err(Error::input(format!("{found} bytes cannot hold {count} elements")));

@@ -70,12 +70,17 @@ impl Decoder<'_> {
         // The codes of the second and the third vertex are in the table, or in the data.
         let is_explicit = low >= 14;
         let codes = if is_explicit { *self.data.split_off_first()? } else { *table.get(low)? };
+        // A code of 0 begins the new indices anew.
         if is_explicit && codes == 0 {
             self.next = 0;
         }
+
+        // The three vertices, in order, since each changes what the next refers to.
         let a = if low == 15 { self.explicit_index()? } else { self.new_index() };
         let (b, is_new_b) = self.vertex(codes >> 4, is_explicit)?;
         let (c, is_new_c) = self.vertex(codes & 15, is_explicit)?;
+
+        // Later triangles refer to these edges and vertices.
         self.edges.push([b, a]);
         self.edges.push([c, b]);
         self.edges.push([a, c]);

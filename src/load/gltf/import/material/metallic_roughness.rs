@@ -104,6 +104,7 @@ fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -
 /// KHR_materials_volume, or nothing.
 fn volume(reader: &MaterialReader, material: &mut Material) {
     let absorption = reader.extensions.and_then(|e| e.volume.as_ref()).and_then(absorption);
+    // A surface without a volume behind it is a thin sheet, which does not refract.
     material.thin = absorption.is_none();
     material.absorption = absorption.unwrap_or_default();
     material.ior = f64::from(material.metallic.as_ref().map_or(DEFAULT_IOR, |m| m.factors.ior));

@@ -53,6 +53,7 @@ impl<'a> Materials<'a> {
         if let Some(known) = self.imported.get(&index) {
             return Ok(known.clone());
         }
+        // Each material is read once, when a primitive first uses it.
         let (material, needed) = match index {
             // The standard's default is a rough white metal, which nobody means who names no
             // material; ours is the neutral grey of an OBJ without one.
@@ -71,6 +72,7 @@ impl<'a> Materials<'a> {
                 (read(&mut reader)?, reader.needed)
             }
         };
+        // All primitives of the material share its id.
         let imported = (scene.add_material(material), needed);
         self.imported.insert(index, imported.clone());
         Ok(imported)
@@ -119,16 +121,21 @@ fn specular_glossiness(
     material: &mut Material,
 ) -> Result<Option<TextureId>> {
     let key = |key: &str| format!("extensions.KHR_materials_pbrSpecularGlossiness.{key}");
+    // The factors.
     let [r, g, b, _] = source.diffuse_factor.0;
     material.diffuse = reader.color([r, g, b], key("diffuseFactor"));
     material.specular = reader.color(source.specular_factor.0, key("specularFactor"));
     let gloss = clamped(source.glossiness_factor.0);
     material.shininess = shininess(1.0 - gloss);
+
+    // One texture has the specular colour, and the gloss in its alpha channel.
     let info = source.specular_glossiness_texture.as_ref();
     material.specular_map = reader.color_texture(info, key("specularGlossinessTexture"))?;
     material.shininess_map = material
         .specular_map
         .map(|texture| ShininessMap::Gloss(Channel { texture, channel: 3 }, gloss));
+
+    // The other has the diffuse colour.
     let info = source.diffuse_texture.as_ref();
     material.diffuse_map = reader.color_texture(info, key("diffuseTexture"))?;
     Ok(material.diffuse_map)
@@ -171,6 +178,7 @@ fn coverage(
     base_map: Option<TextureId>,
     material: &mut Material,
 ) {
+    // The mode says whether alpha counts, and how.
     let mode = match reader.source.alpha_mode {
         Checked::Valid(Mode::Opaque) | Checked::Invalid => return,
         Checked::Valid(Mode::Mask) => {
@@ -181,11 +189,14 @@ fn coverage(
             let reason = "{} materials transmit light and have alpha: the alpha is left out";
             return reader.report_unsupported(reason);
         }
+        // A blended surface lets light through, and does not refract it.
         Checked::Valid(Mode::Blend) => {
             (material.thin, material.ior) = (true, 1.0);
             AlphaMode::Blend
         }
     };
+
+    // Factor, map and vertex colours are multiplied when the surface is hit.
     reader.needed.alpha = true;
     let map = base_map.map(|texture| Channel { texture, channel: 3 });
     material.coverage = Some(Coverage { alpha, map, mode });

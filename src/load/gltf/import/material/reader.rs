@@ -51,6 +51,8 @@ impl MaterialReader<'_, '_> {
         transfer: Transfer,
         key: impl Display,
     ) -> Result<TextureId> {
+        // The mesh has two sets of texture coordinates at most: those that its material asks for
+        // first.
         let sets = &mut self.needed.uv_sets;
         let set = match sets.iter().position(|&set| set == reference.uv_set) {
             Some(known) => known,
@@ -65,6 +67,8 @@ impl MaterialReader<'_, '_> {
                 sets.len() - 1
             }
         };
+
+        // The texture refers to the set by its place among those two.
         let by = format!("{}.{key}.index", self.path);
         self.textures.texture(reference, set as u8, transfer, &by, self.scene, self.diagnostics)
     }

@@ -85,6 +85,7 @@ impl PrimitiveReader<'_> {
     ) -> Result<Option<PrimitiveMesh>> {
         let Self { primitive, accessors, path, .. } = self;
         let to_string = || path.to_owned();
+        // Only triangles can be drawn.
         if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             self.drop_all(mode, DropReason::UnsupportedMode);
             return Ok(None);
@@ -105,6 +106,7 @@ impl PrimitiveReader<'_> {
             }
             (None, None) => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
         };
+        // The faces that are incomplete are counted here, since none of them gets into the mesh.
         let triangles = topology::triangles(mode, &corners);
         let mut mesh = Mesh { triangles, positions, ..Mesh::default() };
         let incomplete = u64::from(topology::is_incomplete(mode, corners.len()));
@@ -118,6 +120,7 @@ impl PrimitiveReader<'_> {
         if let Some(second) = needed.uv_sets.get(1) {
             mesh.second_uvs = self.uvs(Some(second), count)?;
         }
+        // Tangents mean nothing without the normals that they belong to.
         if needed.tangents && !mesh.normals.is_empty() {
             mesh.tangents = self.attribute(Semantic::Tangents, count)?;
         }
@@ -128,6 +131,8 @@ impl PrimitiveReader<'_> {
         let before = mesh.triangles.len() as u64;
         repair(&mut mesh, self.diagnostics, path);
         self.diagnostics.read(before - mesh.triangles.len() as u64);
+
+        // What deforms the mesh has values for the same vertices.
         if let Some(kept) = compact(&mut mesh) {
             for target in &mut targets {
                 retain_vertices(&mut target.positions, &kept);
@@ -137,6 +142,7 @@ impl PrimitiveReader<'_> {
                 influences.retain_vertices(&kept);
             }
         }
+        // A primitive without faces is not shown; its warnings have been given.
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
@@ -157,6 +163,7 @@ impl PrimitiveReader<'_> {
     fn drop_all(&mut self, mode: Mode, reason: DropReason) {
         let any = self.primitive.attributes.values().next();
         let corners = self.primitive.indices.or(any.copied());
+        // Faces are counted from the indices or, without them, from any of the attributes.
         let corners = corners.map_or(0, |index| self.accessors.count(index.value()));
         let faces = topology::face_count(mode, corners);
         self.diagnostics.read(faces);
@@ -199,6 +206,7 @@ impl PrimitiveReader<'_> {
         if self.accessors.width(index) != 4 {
             return Ok((self.accessors.normalized_floats(index, &path)?, Vec::new()));
         }
+        // Alphas that are all 1 are not stored.
         let colors = self.accessors.normalized_floats::<4>(index, &path)?;
         let has_alpha = alpha && colors.iter().any(|color| color[3] != 1.0);
         let alphas =
