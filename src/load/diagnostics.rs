@@ -134,18 +134,15 @@ impl Diagnostics {
             let count = self.reasons[kind as usize].saturating_sub(MAX_WARNINGS);
             let reason = "{} more warnings like these are left out".to_owned();
             if count > 0 {
-                self.entries.push(CountedWarning {
-                    kind,
-                    reason,
-                    count,
-                    first_place: String::new(),
-                });
+                let first_place = String::new();
+                self.entries.push(CountedWarning { kind, reason, count, first_place });
             }
         }
+
+        // Each warning is in the list of all, and some are in a list of their kind as well.
         for entry in self.entries {
-            let kind = entry.kind;
             let sentence = entry.sentence(file);
-            match kind {
+            match entry.kind {
                 Kind::Note => {}
                 Kind::Unsupported => self.report.unsupported.push(sentence.clone()),
                 Kind::Placeholder => self.report.placeholders.push(sentence.clone()),
@@ -165,15 +162,14 @@ impl Diagnostics {
 impl CountedWarning {
     /// Returns the warning as a sentence.
     fn sentence(&self, file: &Path) -> String {
-        let text = match self.count {
+        let (text, at) = match self.count {
             // One place says it: "1 faces" would be wrong, and "first at" what there are more of.
-            1 => self.reason.replacen("{} ", "", 1),
-            count => self.reason.replacen("{}", &count.to_string(), 1),
+            1 => (self.reason.replacen("{} ", "", 1), "at"),
+            count => (self.reason.replacen("{}", &count.to_string(), 1), "first at"),
         };
-        match (self.first_place.is_empty(), self.count) {
-            (true, _) => format!("{}: {text}", file.display()),
-            (false, 1) => format!("{}: {text}, at {}", file.display(), self.first_place),
-            (false, _) => format!("{}: {text}, first at {}", file.display(), self.first_place),
+        match &*self.first_place {
+            "" => format!("{}: {text}", file.display()),
+            place => format!("{}: {text}, {at} {place}", file.display()),
         }
     }
 }

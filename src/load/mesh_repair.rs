@@ -32,6 +32,8 @@ pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, path: &str) {
             *position = [0.0; 3];
         }
     }
+
+    // Triangles with two corners at one position.
     let dropped = drop_degenerate(mesh);
     diagnostics.drop(DropReason::Degenerate, dropped, place);
 
@@ -39,12 +41,18 @@ pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, path: &str) {
     let bad = repair_normals(mesh);
     let reason = "{} normals have no direction; the surface's own take their place";
     diagnostics.add(reason, bad, place);
+
+    // Texture coordinates.
     let bad = repair_uvs(&mut mesh.uvs) + repair_uvs(&mut mesh.second_uvs);
     diagnostics.add("{} texture coordinates are not finite and become 0", bad, place);
+
+    // Colours and alphas.
     let colors = mesh.colors.iter_mut().flatten().chain(&mut mesh.alphas);
     let bad = colors.filter(|x| !(x.is_finite() && **x >= 0.0)).map(|x| *x = 0.0).count();
     let reason = "{} vertex colours are negative or not finite and become 0";
     diagnostics.add(reason, bad as u64, place);
+
+    // Tangents, which can be derived from the other attributes.
     let is_valid = |&[x, y, z, sign]: &[f32; 4]| {
         let length = Vec3::new(x, y, z).length_squared();
         length > 0.0 && length.is_finite() && sign.abs() == 1.0
@@ -98,6 +106,7 @@ fn repair_normals(mesh: &mut Mesh) -> u64 {
         let length = Vec3::from(*n).length_squared();
         !(length > 0.0 && length.is_finite())
     };
+    // Nearly always all are good, which is found in parallel.
     if !mesh.normals.par_chunks(GRAIN).any(|normals| normals.iter().any(is_bad)) {
         return 0;
     }
@@ -108,6 +117,8 @@ fn repair_normals(mesh: &mut Mesh) -> u64 {
             *normal = normal.map(|x| x / largest);
         }
     }
+
+    // What is left has no direction of its own.
     let bad = mesh.normals.iter().filter(|n| is_bad(n)).count();
     if bad == mesh.normals.len() {
         mesh.normals.clear();

@@ -87,6 +87,7 @@ impl LoadOptions {
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
         let path = path.as_ref();
         let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;
+        // The extension decides between a scene file and a bare model.
         let file = sandbox.open_named(path)?;
         let is_scene_file = extension(path) == "toml";
         let Loaded { mut scene, mut report } = if is_scene_file {
@@ -95,6 +96,8 @@ impl LoadOptions {
             let variant = self.variant.as_deref();
             model(file, &sandbox, &ModelOptions { animation: None, variant, needs_images: true })?
         };
+
+        // What the options ask for.
         if let Some(variant) = &self.variant {
             check_variant(variant, &report).map_err(|e| e.at(path))?;
         }
@@ -108,6 +111,8 @@ impl LoadOptions {
             defaults::auto_lighting::add_lights(&mut scene);
         }
         defaults::complete(&mut scene);
+
+        // What is handed on is valid.
         scene.check().map_err(|e| e.at(path))?;
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })

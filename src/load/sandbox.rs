@@ -59,11 +59,8 @@ impl Sandbox {
     /// # Errors
     /// When the folder of the file is not there.
     pub fn new(path: &Path, allow_outside: bool, limits: Limits) -> Result<Self> {
-        let mut folder = None;
-        if !allow_outside {
-            let canonical = parent(path).canonicalize();
-            folder = Some(canonical.map_err(|error| Error::io("read", path, &error))?);
-        }
+        let folder = (!allow_outside).then(|| parent(path).canonicalize()).transpose();
+        let folder = folder.map_err(|error| Error::io("read", path, &error))?;
         Ok(Self { folder, limits, used: Default::default() })
     }
 
@@ -135,6 +132,7 @@ impl Sandbox {
     /// # Errors
     /// When that is more than the limit, together with what was used before.
     pub fn consume(&self, limit: Limit, more: u64) -> Result<()> {
+        // The amount is added in one step, since threads share the limit.
         let add = |used: u64| Some(used.saturating_add(more));
         let (set, get) = (Ordering::Relaxed, Ordering::Relaxed);
         let before = self.used[limit as usize].fetch_update(set, get, add);

@@ -29,9 +29,13 @@ impl Uri {
     /// # Errors
     /// When it is an address elsewhere, or data that cannot be decoded.
     pub fn parse(uri: &str) -> Result<Self> {
-        if let Some(rest) = strip_prefix_ignoring_case(uri, "data:") {
-            return decode_data(rest).map(Self::Data);
+        if let Some((head, data)) = uri.split_at_checked(5)
+            && head.eq_ignore_ascii_case("data:")
+        {
+            return decode_data(data).map(Self::Data);
         }
+
+        // Anything else is a file: the path is the URI without its scheme.
         let path = match scheme(uri) {
             None => uri,
             // An absolute path like any other.
@@ -44,6 +48,8 @@ impl Uri {
                     .help("name a file beside the model, or embed the data"));
             }
         };
+
+        // The names that it may have.
         let mut names = Vec::new();
         if let Ok(decoded) = percent_decode_str(path).decode_utf8() {
             names.push(decoded.clone().into_owned());
@@ -71,11 +77,6 @@ fn decode_data(uri: &str) -> Result<Vec<u8>> {
     // Percent signs and line breaks are not base64, but stand in some files.
     let clean: Vec<u8> = percent_decode_str(payload).filter(|b| !b.is_ascii_whitespace()).collect();
     BASE64.decode(clean).map_err(|e| Error::input(format!("the base64 data is broken: {e}")))
-}
-
-fn strip_prefix_ignoring_case<'s>(text: &'s str, prefix: &str) -> Option<&'s str> {
-    let head = text.get(..prefix.len())?;
-    head.eq_ignore_ascii_case(prefix).then(|| &text[prefix.len()..])
 }
 
 /// Returns the scheme of a URI. One letter is a Windows drive, not a scheme.

@@ -13,6 +13,8 @@ pub fn remove_opaque_coverage(scene: &mut Scene) {
             *has_alpha |= mesh.is_some_and(|mesh| !mesh.alphas.is_empty());
         }
     }
+
+    // Coverage that neither a factor, a map nor a vertex makes less than 1 is removed.
     for (material, has_vertex_alpha) in scene.materials.iter_mut().zip(has_vertex_alpha) {
         let Some(coverage) = &mut material.coverage else { continue };
         // An image whose alpha is 1 everywhere says nothing.
@@ -35,6 +37,7 @@ pub fn remove_opaque_coverage(scene: &mut Scene) {
 /// Gives masked spheres and planes a copy of their material that is blended instead: masks are for
 /// meshes.
 pub fn blend_masked_shapes(scene: &mut Scene) {
+    // Each masked material is copied once, for all shapes that have it.
     let mut copies = vec![None; scene.materials.len()];
     let Scene { materials, spheres, planes, .. } = scene;
     let spheres = spheres.iter_mut().map(|sphere| &mut sphere.material);
@@ -46,6 +49,8 @@ pub fn blend_masked_shapes(scene: &mut Scene) {
         *id = *copies[at].get_or_insert_with(|| {
             let masked = &materials[at];
             let blend = |coverage| Coverage { mode: AlphaMode::Blend, ..coverage };
+            // What transmits light is left to its glass; all else becomes as thin as a blended
+            // mesh.
             materials.push(if masked.may_transmit() {
                 Material { coverage: None, ..masked.clone() }
             } else {

@@ -38,10 +38,14 @@ pub fn add_lights(scene: &mut Scene) {
         let camera = scene.cameras.first();
         scene.lights.extend(camera.map(key_and_fill).into_iter().flatten());
     }
+
+    // The background, which rough metals reflect, and the exposure that brings all back to normal.
     let background = Vec3::splat(BACKGROUND * scale);
     scene.film.background = background;
     scene.materials.iter_mut().for_each(|material| add_blurred_reflection(material, background));
     scene.film.exposure = -f64::from(scale).log2();
+
+    // Ambient light, so that no shadow is black.
     if !scene.lights.iter().any(is_ambient) {
         let ambient = if has_own { AMBIENT_BESIDE_OWN } else { AMBIENT };
         scene.lights.push(Light {
@@ -77,6 +81,7 @@ fn add_blurred_reflection(material: &mut Material, background: Vec3) {
 fn brightness(scene: &Scene) -> f32 {
     let bounds = scene.bounds();
     let center = bounds.center();
+    // Half of the way to a corner of the box, by the bits of its number.
     let halfway = |i: u32| {
         let side = |k: u32| if i >> k & 1 == 0 { bounds.lower } else { bounds.upper };
         center.midpoint(DVec3::new(side(0).x, side(1).y, side(2).z))

@@ -47,6 +47,7 @@ fn mesh_extents<const N: usize>(
     instance: &Instance,
     directions: [DVec3; N],
 ) -> [f64; N] {
+    // The directions are taken into the space of the mesh, which saves transforming each vertex.
     let none = [f64::NEG_INFINITY; N];
     let local = directions.map(|direction| instance.transform.matrix3.transpose() * direction);
     // Each vertex counts once, though several triangles have it, and only if one has it.
@@ -55,6 +56,8 @@ fn mesh_extents<const N: usize>(
         let used = triangles.as_flattened().iter().filter_map(|&i| is_used.get(i as usize));
         used.for_each(|is_used| is_used.store(true, Ordering::Relaxed));
     });
+
+    // The greatest coordinates of the vertices in use, chunk by chunk in parallel.
     let chunk_extents = |(positions, is_used): (&[[f32; 3]], &[AtomicBool])| {
         let used = positions.iter().zip(is_used).filter(|(_, used)| used.load(Ordering::Relaxed));
         used.fold(none, |extents, (position, _)| {

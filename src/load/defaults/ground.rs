@@ -29,10 +29,14 @@ pub fn add_ground(scene: &mut Scene) {
         }
         LightKind::Point { .. } | LightKind::Spot { .. } => None,
     });
+
+    // The diffuse colour that makes the ground as bright as the background.
     let diffuse = match white {
         Some(white) if white.min_element() > 0.0 => (scene.film.background / white).min(Vec3::ONE),
         _ => Vec3::splat(BACKGROUND),
     };
+
+    // The plane itself, a little lower than the lowest point.
     let material = Material { name: "ground".to_owned(), diffuse, ..Material::default() };
     let material = scene.add_material(material);
     let point = bounds.center().with_y(lowest - GAP * bounds.diagonal());

@@ -25,6 +25,8 @@ pub fn add_tangents(scene: &mut Scene) {
             slot.get_or_insert((texture.set, texture.transform));
         }
     }
+
+    // Each mesh by itself, if it has what tangents are made from.
     scene.meshes.par_iter_mut().zip(maps).for_each(|(mesh, map)| {
         let Some((set, transform)) = map else { return };
         let has_uvs = if set == 0 { !mesh.uvs.is_empty() } else { !mesh.second_uvs.is_empty() };
@@ -41,6 +43,8 @@ fn add_to_mesh(mesh: &mut Mesh, set: u8, transform: Affine2) {
     // It cannot fail: the error has no values.
     let _ = generate_tangents(&mut corners);
     let tangents = corners.tangents;
+
+    // A vertex has one tangent, but the corners at it may have several.
     let count = mesh.positions.len();
     // The first tangent of a vertex stays with it; others get copies of the vertex.
     let mut first: Vec<Option<[f32; 4]>> = vec![None; count];
@@ -60,6 +64,8 @@ fn add_to_mesh(mesh: &mut Mesh, set: u8, transform: Affine2) {
     const UNUSED: [f32; 4] = [1.0, 0.0, 0.0, 1.0];
     mesh.tangents = first.into_iter().map(|tangent| tangent.unwrap_or(UNUSED)).collect();
     mesh.tangents.extend(copied.iter().map(|(_, tangent)| tangent));
+
+    // The copies of the vertices, with all their attributes.
     let from: Vec<usize> = copied.into_iter().map(|(at, _)| at).collect();
     append_copies(&mut mesh.positions, &from);
     append_copies(&mut mesh.normals, &from);

@@ -16,8 +16,10 @@ use crate::load::uri::Uri;
 
 /// The buffers and buffer views of a file.
 pub struct Buffers<'a> {
-    root: &'a json::Root,
-    sandbox: &'a Sandbox,
+    /// The JSON of the file.
+    pub root: &'a json::Root,
+    /// The sandbox of the load.
+    pub sandbox: &'a Sandbox,
     folder: PathBuf,
     /// The binary chunk of a GLB.
     bin: Option<&'a [u8]>,
@@ -70,11 +72,14 @@ impl<'a> Buffers<'a> {
     pub fn view(&self, index: usize, by: &str) -> Result<&[u8]> {
         let path = format!("bufferViews[{index}]");
         let view = lookup(&self.root.buffer_views, index, "bufferView", by)?;
+        // A compressed view has its own buffer, which is decompressed when it is first needed.
         let others = view.extensions.as_ref().map(|extensions| &extensions.others);
         if let Some(compressed) = others.and_then(|others| others.get(meshopt::NAME)) {
             let path = format!("{path}.extensions.{}", meshopt::NAME);
             return self.decompressed_view(index, compressed, &path);
         }
+
+        // All other views are ranges of their buffer.
         let buffer = view.buffer.value();
         let bytes = self.buffer(buffer, &format!("{path}.buffer"))?;
         let offset = view.byte_offset.map_or(0, |o| o.0);
@@ -90,18 +95,19 @@ impl<'a> Buffers<'a> {
         })
     }
 
-    /// Returns the bytes of a view that EXT_meshopt_compression has compressed.
+    /// Returns the bytes of a view of the file that EXT_meshopt_compression has compressed.
     fn decompressed_view(
         &self,
         index: usize,
         extension: &json::Value,
         path: &str,
     ) -> Result<&[u8]> {
-        let missing = || error_at(path, "the view is not there");
-        let cell = self.decompressed_views.get(index).ok_or_else(missing)?;
+        let cell = &self.decompressed_views[index];
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
+
+        // The compressed bytes, from the buffer that the extension names.
         let view = CompressedView::from_json(extension).map_err(at_path(path))?;
         let CompressedView { buffer, offset, length, .. } = view;
         let bytes = self.buffer(buffer, &format!("{path}.buffer"))?;
@@ -123,14 +129,16 @@ impl<'a> Buffers<'a> {
     fn buffer(&self, index: usize, by: &str) -> Result<&[u8]> {
         let path = format!("buffers[{index}].uri");
         let buffer = lookup(&self.root.buffers, index, "buffer", by)?;
+        // Without a URI it is the binary chunk, which is the first buffer and no other.
         let Some(uri) = &buffer.uri else {
             return self.bin.filter(|_| index == 0).ok_or_else(|| {
                 let message = "the buffer has no data: neither a URI nor a GLB's chunk";
                 error_at(format_args!("buffers[{index}]"), message)
             });
         };
-        let missing = || error_at(&path, "the buffer is not there");
-        let cell = self.buffers.get(index).ok_or_else(missing)?;
+
+        // The data of a URI are loaded once, and files once for all buffers that name them.
+        let cell = &self.buffers[index];
         if let Some(bytes) = cell.get() {
             return Ok(bytes);
         }
@@ -180,6 +188,7 @@ pub fn unreadable(what: &str, uri: &str, error: &Error) -> Error {
         Some((cut, _)) => format!("{}…", &uri[..cut]),
         None => uri.to_owned(),
     };
+    // The advice and the remedy of the cause are those that help.
     let advice =
         error.advice().unwrap_or("keep a .gltf file together with the files that it names");
     let message = format!("the {what} `{uri}` cannot be loaded: {}", error.message());

@@ -31,6 +31,8 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     if version != 2 {
         return Err(wrong_version(&version.to_string()));
     }
+
+    // The header declares the length of the whole file.
     let length = length as usize;
     if length < HEADER + CHUNK_HEADER {
         return Err(Error::input(format!("the GLB header gives the file's length as {length}"))
@@ -38,6 +40,8 @@ fn split_glb(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>)> {
     }
     // What follows the declared length is no part of the GLB.
     let bytes = bytes.get(..length).ok_or_else(|| cut_short("the file", length, bytes.len()))?;
+
+    // The chunks: of each kind the first counts.
     let (mut json, mut bin) = (None, None);
     let mut at = HEADER;
     // Up to three bytes may be left: padding that some writers don't count.

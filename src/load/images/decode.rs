@@ -8,7 +8,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageReader};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::load::images::ktx2;
+use crate::load::images::ktx2::{self, undecodable};
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Image, Texels};
@@ -28,20 +28,15 @@ pub enum Source<'a> {
     File(OpenedFile),
 }
 
-/// An image that is about to be decoded, or only named.
-enum PreparedImage<'a> {
-    Unread(String),
-    Encoded(EncodedImage<'a>),
-}
-
-/// The bytes of an image, within the limits.
-struct EncodedImage<'a> {
+/// An image that is about to be decoded, within the limits, or only named.
+struct PreparedImage<'a> {
+    /// The encoded image; of a file that is only named nothing.
     bytes: Cow<'a, [u8]>,
     name: String,
     /// The path, if it is a file.
     path: Option<PathBuf>,
-    /// The number of pixels of 8-bit numbers that take as much memory.
-    pixels: u64,
+    /// The number of pixels of 8-bit numbers that take as much memory; none if it is only named.
+    pixels: Option<u64>,
 }
 
 /// Decodes the images that are needed, in parallel; the others are only named, and their files only
@@ -60,13 +55,11 @@ pub fn decode_all<'a, T: Sync>(
 ) -> Vec<Result<Image>> {
     let mut decoded = Vec::with_capacity(images.len());
     for batch in images.chunks(BATCH) {
+        // Images are read and charged one by one, in order; only the decoding is parallel.
         let prepare =
             |image| open(image).and_then(|source| prepare(source, sandbox, is_needed(image)));
         let prepared: Vec<_> = batch.iter().map(prepare).collect();
-        decoded.par_extend(prepared.into_par_iter().map(|image| match image? {
-            PreparedImage::Unread(name) => Ok(Image::unread(name)),
-            PreparedImage::Encoded(image) => image.decode(),
-        }));
+        decoded.par_extend(prepared.into_par_iter().map(|image| image?.decode()));
     }
     decoded
 }
@@ -78,23 +71,21 @@ fn prepare<'a>(
     is_needed: bool,
 ) -> Result<PreparedImage<'a>> {
     let (bytes, name, path) = match source {
-        Source::Bytes(_, name) if !is_needed => return Ok(PreparedImage::Unread(name)),
         Source::Bytes(bytes, name) => (bytes, name, None),
         Source::File(file) => {
             let path = file.path.clone();
-            let name = path.display().to_string();
-            if !is_needed {
-                return Ok(PreparedImage::Unread(name));
-            }
-            (file.read(sandbox)?.into(), name, Some(path))
+            let bytes = if is_needed { file.read(sandbox)? } else { Vec::new() };
+            (bytes.into(), path.display().to_string(), Some(path))
         }
     };
-    let mut image = EncodedImage { bytes, name, path, pixels: 0 };
-    image.pixels = image.charge_limits(sandbox).map_err(|e| image.locate(e))?;
-    Ok(PreparedImage::Encoded(image))
+    let mut image = PreparedImage { bytes, name, path, pixels: None };
+    if is_needed {
+        image.pixels = Some(image.charge_limits(sandbox).map_err(|e| image.locate(e))?);
+    }
+    Ok(image)
 }
 
-impl EncodedImage<'_> {
+impl PreparedImage<'_> {
     /// Adds the path to an error, if the image is a file.
     fn locate(&self, error: Error) -> Error {
         match &self.path {
@@ -118,6 +109,7 @@ impl EncodedImage<'_> {
     /// Charges the limits for an image, and returns how many pixels of 8-bit numbers take as much
     /// memory.
     fn charge_limits(&self, sandbox: &Sandbox) -> Result<u64> {
+        // The header tells the size, so that the limits are checked before any pixel is decoded.
         sandbox.consume(Limit::Pictures, 1)?;
         let ([width, height], depth) = if ktx2::is_ktx(&self.bytes) {
             let ktx2::Header { size, is_float } = ktx2::header(&self.bytes)?;
@@ -130,12 +122,14 @@ impl EncodedImage<'_> {
             (decoder.dimensions().into(), channel_bytes(decoder.color_type()))
         };
         let pixels = u64::from(width) * u64::from(height) * depth;
+        // Pixels for which the size of the file accounts are free.
         let free = FREE_PIXELS_PER_BYTE * self.bytes.len() as u64;
         sandbox.consume(Limit::Pixels, pixels.saturating_sub(free))?;
         Ok(pixels)
     }
 
     fn decode(self) -> Result<Image> {
+        let Some(pixels) = self.pixels else { return Ok(Image::unread(self.name)) };
         let decode = || {
             if ktx2::is_ktx(&self.bytes) {
                 return Ok((ktx2::header(&self.bytes)?.size, ktx2::decode(&self.bytes)?));
@@ -145,7 +139,7 @@ impl EncodedImage<'_> {
             limits.max_image_width = Some(MAX_SIDE);
             limits.max_image_height = Some(MAX_SIDE);
             // Four channels, more than twice, and room for what decoders need besides.
-            limits.max_alloc = Some((16 * self.pixels).saturating_add(1 << 26));
+            limits.max_alloc = Some((16 * pixels).saturating_add(1 << 26));
             reader.limits(limits);
             let image = reader.decode().map_err(undecodable)?;
             Ok(([image.width(), image.height()], texels(image)))
@@ -153,10 +147,6 @@ impl EncodedImage<'_> {
         let (size, texels) = decode().map_err(|e| self.locate(e))?;
         Ok(Image::new(self.name, size, with_valid_floats(texels)))
     }
-}
-
-fn undecodable(error: image::ImageError) -> Error {
-    Error::input(format!("the image cannot be decoded: {error}"))
 }
 
 /// The number of bytes of a channel, for the memory that pixels take.

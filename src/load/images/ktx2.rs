@@ -3,6 +3,8 @@
 //! The `basisu` crate transcodes them. It trusts some numbers of the header, so these are checked
 //! here first (the KTX 2.0 specification, section 3).
 
+use std::fmt::Display;
+
 use basisu::{DecodeFlags, SourceFormat, TargetFormat, Transcoder};
 use exr::prelude::f16;
 
@@ -38,13 +40,18 @@ pub fn is_ktx(bytes: &[u8]) -> bool {
     bytes.starts_with(IDENTIFIER)
 }
 
+/// The error that an image cannot be decoded.
+pub fn undecodable(reason: impl Display) -> Error {
+    Error::input(format!("the image cannot be decoded: {reason}"))
+}
+
 /// Reads and checks the header of a KTX 2 file.
 ///
 /// # Errors
 /// When it is cut short or points beyond the file, or the image is not a single flat one that Basis
 /// Universal has compressed.
 pub fn header(bytes: &[u8]) -> Result<Header> {
-    let fail = |message: &str| Error::input(format!("the image cannot be decoded: {message}"));
+    // Numbers at a position of the header, if the file reaches so far.
     let u32_at = |at: usize| Some(u32::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
     let u64_at = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?));
 
@@ -52,20 +59,20 @@ pub fn header(bytes: &[u8]) -> Result<Header> {
     let end = |at: usize| u64_at(at)?.checked_add(u64_at(at + 8)?);
     let is_within = |at: usize| end(at).is_some_and(|end| end <= bytes.len() as u64);
     let uncompressed = u64_at(LEVEL + 16).filter(|_| is_within(GLOBAL_DATA) && is_within(LEVEL));
-    let uncompressed = uncompressed.ok_or_else(|| fail("the KTX file is cut short"))?;
+    let uncompressed = uncompressed.ok_or_else(|| undecodable("the KTX file is cut short"))?;
 
     // One image, of a size that its data can have.
     let [format, width, height, depth, layers, faces, scheme] =
         [12, 20, 24, 28, 32, 36, 44].map(|at| u32_at(at).unwrap_or(0));
     if !matches!(format, UNDEFINED | FLOATS) || scheme > ZSTANDARD {
-        return Err(fail("the KTX file has no image that Basis Universal has compressed"));
+        return Err(undecodable("the KTX file has no image that Basis Universal has compressed"));
     }
     if width == 0 || height == 0 || depth > 0 || layers > 1 || faces != 1 {
-        return Err(fail("the KTX file has more or less than one flat image"));
+        return Err(undecodable("the KTX file has more or less than one flat image"));
     }
     let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4));
     if uncompressed > BLOCK * blocks {
-        return Err(fail("the KTX file has more data than its size in pixels asks for"));
+        return Err(undecodable("the KTX file has more data than its size in pixels asks for"));
     }
     Ok(Header { size: [width, height], is_float: format == FLOATS })
 }
@@ -75,8 +82,7 @@ pub fn header(bytes: &[u8]) -> Result<Header> {
 /// # Errors
 /// When it is damaged.
 pub fn decode(bytes: &[u8]) -> Result<Texels> {
-    let fail =
-        |error: basisu::Error| Error::input(format!("the image cannot be decoded: {error:?}"));
+    let fail = |error: basisu::Error| undecodable(format_args!("{error:?}"));
     // The key/value data do not matter, and the crate trusts their lengths.
     let mut bytes = bytes.to_vec();
     bytes.get_mut(KEY_VALUE_DATA).into_iter().for_each(|range| range.fill(0));

@@ -26,7 +26,13 @@ pub fn set_image_or_placeholder(
         }
         Err(error) => error,
     };
-    let (checker, white) = (Arc::new(checker(name)), Arc::new(white(name)));
+    // A checker of magenta and black, and one white pixel.
+    let name = format!("{name} (missing)");
+    let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
+    let checker = vec![magenta, black, black, magenta];
+    let checker = Arc::new(Image::from_bytes(name.clone(), [2, 2], checker));
+    let white = Arc::new(Image::from_bytes(name, [1, 1], vec![[255; 4]]));
+
     let mut is_color = false;
     for &id in textures {
         let texture = &mut scene.textures[id.0 as usize];
@@ -40,6 +46,8 @@ pub fn set_image_or_placeholder(
             material.normal_map.take_if(|map| map.texture == id);
         }
     }
+
+    // One warning says what stands in the place of the image.
     let instead = if is_color {
         "a magenta checker takes its place"
     } else {
@@ -47,15 +55,4 @@ pub fn set_image_or_placeholder(
     };
     diagnostics.placeholder(format!("{error}; {instead}"));
     false
-}
-
-/// A checker of magenta and black.
-fn checker(name: &str) -> Image {
-    let (magenta, black) = ([255, 0, 255, 255], [0, 0, 0, 255]);
-    Image::from_bytes(format!("{name} (missing)"), [2, 2], vec![magenta, black, black, magenta])
-}
-
-/// One white pixel.
-fn white(name: &str) -> Image {
-    Image::from_bytes(format!("{name} (missing)"), [1, 1], vec![[255; 4]])
 }

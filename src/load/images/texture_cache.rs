@@ -17,7 +17,7 @@ use crate::scene::{Image, Scene, Texture, TextureId};
 /// An `ImageKey` identifies an image, a `Source` says where its bytes are, and a `TextureKey`
 /// identifies a texture: its image and how that is sampled.
 pub struct TextureCache<ImageKey, Source, TextureKey> {
-    images: Vec<PendingImage<Source>>,
+    images: Vec<CachedImage<Source>>,
     indices: HashMap<ImageKey, ImageIndex>,
     textures: HashMap<TextureKey, TextureId>,
 }
@@ -26,18 +26,10 @@ pub struct TextureCache<ImageKey, Source, TextureKey> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ImageIndex(usize);
 
-/// An image that is still to be decoded, and the textures that show it.
-struct PendingImage<Source> {
-    source: Source,
-    textures: Vec<TextureId>,
-}
-
-/// An image that was decoded, only named, or could not be read; and the textures that show it.
-pub struct DecodedImage<Source> {
+/// An image of a [`TextureCache`].
+pub struct CachedImage<Source> {
     /// The source of its bytes, as it was given to the cache.
     pub source: Source,
-    /// The image, or the error that prevented it.
-    pub image: Result<Image>,
     /// The textures that show it.
     pub textures: Vec<TextureId>,
 }
@@ -48,11 +40,8 @@ impl<ImageKey, Source, TextureKey> Default for TextureCache<ImageKey, Source, Te
     }
 }
 
-impl<ImageKey, Source, TextureKey> TextureCache<ImageKey, Source, TextureKey>
-where
-    ImageKey: Eq + Hash,
-    Source: Sync,
-    TextureKey: Eq + Hash,
+impl<ImageKey: Eq + Hash, Source: Sync, TextureKey: Eq + Hash>
+    TextureCache<ImageKey, Source, TextureKey>
 {
     /// Returns the index of the image with this key, which is added with its `source` if it is new.
     pub fn image(&mut self, key: ImageKey, source: impl FnOnce() -> Source) -> ImageIndex {
@@ -79,33 +68,31 @@ where
         build: impl FnOnce(Arc<Image>) -> Texture,
     ) -> TextureId {
         *self.textures.entry(key).or_insert_with(|| {
+            // An unread image stands for the one that is decoded later.
             let id = scene.add_texture(build(Arc::new(Image::unread(""))));
             self.images[image.0].textures.push(id);
             id
         })
     }
 
-    /// Decodes the images that are needed, in parallel; the others are only named. `open` opens the
-    /// file of an image: few are open at a time.
+    /// Decodes the images that are needed, in parallel; the others are only named. Each comes with
+    /// the error that prevented it, if it could not be read. `open` opens the file of an image: few
+    /// are open at a time.
     pub fn decode<'b>(
         self,
         sandbox: &Sandbox,
         open: impl Fn(&Source) -> Result<decode::Source<'b>>,
         is_needed: impl Fn(&Source) -> bool,
-    ) -> impl Iterator<Item = DecodedImage<Source>> {
-        let open = |image: &PendingImage<Source>| open(&image.source);
-        let is_needed = |image: &PendingImage<Source>| is_needed(&image.source);
+    ) -> impl Iterator<Item = (CachedImage<Source>, Result<Image>)> {
+        let open = |image: &CachedImage<Source>| open(&image.source);
+        let is_needed = |image: &CachedImage<Source>| is_needed(&image.source);
         let decoded = decode_all(&self.images, sandbox, open, is_needed);
-        self.images.into_iter().zip(decoded).map(|(pending, image)| DecodedImage {
-            source: pending.source,
-            image,
-            textures: pending.textures,
-        })
+        self.images.into_iter().zip(decoded)
     }
 }
 
-fn add<Source>(images: &mut Vec<PendingImage<Source>>, source: Source) -> ImageIndex {
-    images.push(PendingImage { source, textures: Vec::new() });
+fn add<Source>(images: &mut Vec<CachedImage<Source>>, source: Source) -> ImageIndex {
+    images.push(CachedImage { source, textures: Vec::new() });
     ImageIndex(images.len() - 1)
 }
 

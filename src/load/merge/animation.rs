@@ -32,7 +32,7 @@ impl InstanceAnimation<'_> {
     pub fn add(mut self) {
         let model = self.model;
         let mut animated = AnimatedObjects::default();
-        if let Some(own) = &model.animation {
+        if let Some(own) = &model.model.animation {
             // The model's nodes, of which the outermost stand in the instance's space.
             let first_node = self.animation.nodes.len() as u32;
             self.animation.nodes.extend(own.nodes.iter().map(|node| match node.parent {
@@ -67,6 +67,7 @@ impl InstanceAnimation<'_> {
     ) -> Option<Animated> {
         let shift = |node: &mut NodeId| node.0 += first_node;
         match &mut object {
+            // All indices become those of the scene, and so do those of the nodes.
             Animated::Sphere { sphere, node, .. } => {
                 animated.spheres.insert(*sphere);
                 *sphere += self.indices.first_sphere;
@@ -81,12 +82,14 @@ impl InstanceAnimation<'_> {
                 animated.lights.insert(*light);
                 *light += self.indices.first_light;
                 node.iter_mut().for_each(shift);
+                // The lights of an instance can be left out.
                 if !self.instance.has_lights {
                     return None;
                 }
             }
             Animated::Camera { camera, node, .. } => {
                 animated.cameras.insert(*camera);
+                // So can a camera, if its scale leaves it no upward direction.
                 *camera = self.indices.cameras[*camera]?;
                 node.iter_mut().for_each(shift);
             }
@@ -98,6 +101,7 @@ impl InstanceAnimation<'_> {
                 if self.animation.objects.iter().any(is_same) {
                     return None;
                 }
+                // Joints that stand still in the model move with the instance.
                 let skin = deformation.skin.iter_mut();
                 for joint in skin.flat_map(|skin| skin.joints.iter_mut().chain([&mut skin.space])) {
                     match &mut joint.node {
@@ -116,8 +120,10 @@ impl InstanceAnimation<'_> {
     /// Makes the objects that the model's own animation leaves where they are move with the node of
     /// the instance.
     fn add_still_objects(&mut self, node: NodeId, animated: &AnimatedObjects) {
-        let Self { model, indices, animation, .. } = self;
+        let Self { model: MergedModel { model, .. }, indices, animation, .. } = self;
         let transform = self.instance.transform;
+
+        // All of them stand in the space of the node as the instance's transform places them there.
         for (i, instance) in still(&model.instances, &animated.instances) {
             animation.objects.push(Animated::Instance {
                 instance: indices.first_instance + i,

@@ -96,12 +96,11 @@ impl<'a> Textures<'a> {
             open_file(sandbox, &file.folder, &file.name).map(decode::Source::File)
         };
         let mut missing = HashSet::new();
-        for decoded in cache.decode(sandbox, open, |_| needs_images) {
-            let ImageFile { folder, name } = &decoded.source;
-            let (image, textures) = (decoded.image, &decoded.textures);
+        for (cached, image) in cache.decode(sandbox, open, |_| needs_images) {
+            let ImageFile { folder, name } = &cached.source;
             let image = image.map_err(|e| e.at(&folder.join(name)));
-            if !set_image_or_placeholder(image, name, textures, scene, diagnostics) {
-                missing.extend(decoded.textures);
+            if !set_image_or_placeholder(image, name, &cached.textures, scene, diagnostics) {
+                missing.extend(cached.textures);
             }
         }
         // Opacities that are in an alpha channel.

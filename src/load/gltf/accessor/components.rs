@@ -21,6 +21,7 @@ impl Encoding {
         let scale = |value: f32, greatest: f32| {
             if self.normalized { (value / greatest).max(-1.0) } else { value }
         };
+        // The number of bytes tells integers apart by size, and the type by sign.
         match *bytes {
             [a] if self.component_type == ComponentType::I8 => scale(f32::from(a as i8), 127.0),
             [a] => scale(f32::from(a), 255.0),
@@ -47,49 +48,20 @@ impl Encoding {
     }
 }
 
-/// An iterator over elements of `size` bytes, `stride` bytes apart, known to lie within a view.
-pub struct StridedElements<'a> {
-    bytes: &'a [u8],
+/// Returns the bytes from the first to the last of `count` elements of `size` bytes, `stride` bytes
+/// apart, from a byte `offset` of a view; `None` if the view has not that many.
+pub fn element_range(
+    bytes: &[u8],
+    offset: u64,
     stride: usize,
     size: usize,
-    left: usize,
-}
-
-impl<'a> StridedElements<'a> {
-    /// The `count` elements from a byte `offset`, if the view has that many.
-    pub fn new(
-        bytes: &'a [u8],
-        offset: u64,
-        stride: usize,
-        size: usize,
-        count: usize,
-    ) -> Option<Self> {
-        if count == 0 {
-            return Some(Self { bytes: &[], stride, size, left: 0 });
-        }
-        let length = (count as u64 - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
-        Some(Self { bytes: byte_range(bytes, offset, length)?, stride, size, left: count })
+    count: usize,
+) -> Option<&[u8]> {
+    if count == 0 {
+        return Some(&[]);
     }
-
-    /// Returns the bytes of all elements, if there are no others between them.
-    pub fn contiguous(&self) -> Option<&'a [u8]> {
-        (self.stride == self.size).then_some(self.bytes)
-    }
-}
-
-impl<'a> Iterator for StridedElements<'a> {
-    type Item = &'a [u8];
-
-    fn next(&mut self) -> Option<&'a [u8]> {
-        self.left = self.left.checked_sub(1)?;
-        let element = self.bytes.get(..self.size)?;
-        self.bytes = self.bytes.get(self.stride..).unwrap_or_default();
-        Some(element)
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        (self.left, Some(self.left))
-    }
+    let length = (count as u64 - 1).checked_mul(stride as u64)?.checked_add(size as u64)?;
+    byte_range(bytes, offset, length)
 }
 
 /// Decodes contiguous elements of `N` components of `SIZE` bytes each, in parallel where they are

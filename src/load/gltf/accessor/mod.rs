@@ -7,22 +7,19 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use gltf::json;
 use gltf::json::accessor::{Accessor, ComponentType, Type, sparse::Sparse};
 use gltf::json::validation::Checked;
 
-use self::components::{Encoding, StridedElements, decode_contiguous};
+use self::components::{Encoding, decode_contiguous, element_range};
 use super::buffers::Buffers;
 use super::json::{at_path, error_at, lookup};
 use crate::error::{Error, Result};
 use crate::load::limits::Limit;
-use crate::load::sandbox::Sandbox;
 
 /// The accessors of a file.
 pub struct Accessors<'a> {
-    root: &'a json::Root,
-    sandbox: &'a Sandbox,
-    buffers: &'a Buffers<'a>,
+    /// The buffers that the accessors read.
+    pub buffers: &'a Buffers<'a>,
     /// The number of elements read so far.
     elements_read: Rc<Cell<u64>>,
     /// The attributes that replace accessors, by the index of the accessor.
@@ -50,8 +47,8 @@ const INDEX_TYPES: &str = "unsigned byte (5121), short (5123) or int (5125)";
 
 impl<'a> Accessors<'a> {
     /// The accessors of a file.
-    pub fn new(root: &'a json::Root, sandbox: &'a Sandbox, buffers: &'a Buffers<'a>) -> Self {
-        Self { root, sandbox, buffers, elements_read: Rc::default(), decompressed: HashMap::new() }
+    pub fn new(buffers: &'a Buffers<'a>) -> Self {
+        Self { buffers, elements_read: Rc::default(), decompressed: HashMap::new() }
     }
 
     /// Returns the same accessors, some of which are replaced by decompressed attributes.
@@ -59,16 +56,12 @@ impl<'a> Accessors<'a> {
         Self { elements_read: self.elements_read.clone(), decompressed, ..*self }
     }
 
-    /// The buffers that the accessors read.
-    pub fn buffers(&self) -> &'a Buffers<'a> {
-        self.buffers
-    }
-
     /// The number of triangles that may still be decompressed.
     pub fn remaining_faces(&self) -> u64 {
-        let most = self.sandbox.limit(Limit::Elements).saturating_add(self.buffers.loaded_bytes());
+        let Buffers { sandbox, .. } = self.buffers;
+        let most = sandbox.limit(Limit::Elements).saturating_add(self.buffers.loaded_bytes());
         let remaining = most.saturating_sub(self.elements_read.get()) / ELEMENTS_PER_FACE;
-        remaining.min(self.sandbox.limit(Limit::Triangles))
+        remaining.min(sandbox.limit(Limit::Triangles))
     }
 
     /// Counts triangles and attribute values that were decompressed.
@@ -83,7 +76,7 @@ impl<'a> Accessors<'a> {
     fn count_elements(&self, elements: u64) -> Result<()> {
         let total = self.elements_read.get().saturating_add(elements);
         let beyond = total.saturating_sub(self.buffers.loaded_bytes());
-        self.sandbox.check(Limit::Elements, beyond)?;
+        self.buffers.sandbox.check(Limit::Elements, beyond)?;
         self.elements_read.set(total);
         Ok(())
     }
@@ -92,13 +85,13 @@ impl<'a> Accessors<'a> {
     pub fn count(&self, index: usize) -> u64 {
         match self.decompressed.get(&index) {
             Some(attribute) => attribute.count as u64,
-            None => self.root.accessors.get(index).map_or(0, |a| a.count.0),
+            None => self.buffers.root.accessors.get(index).map_or(0, |a| a.count.0),
         }
     }
 
     /// True if the elements of an accessor are in a buffer.
     pub fn has_view(&self, index: usize) -> bool {
-        self.root.accessors.get(index).is_some_and(|a| a.buffer_view.is_some())
+        self.buffers.root.accessors.get(index).is_some_and(|a| a.buffer_view.is_some())
     }
 
     /// The number of components of an element, 0 if there is no such accessor.
@@ -106,7 +99,7 @@ impl<'a> Accessors<'a> {
         if let Some(attribute) = self.decompressed.get(&index) {
             return attribute.width;
         }
-        match self.root.accessors.get(index).map(|a| a.type_) {
+        match self.buffers.root.accessors.get(index).map(|a| a.type_) {
             Some(Checked::Valid(t)) => t.multiplicity(),
             _ => 0,
         }
@@ -135,13 +128,18 @@ impl<'a> Accessors<'a> {
 
     /// Returns vertex indices.
     pub fn indices(&self, index: usize, by: &str) -> Result<Vec<u32>> {
-        let accessor = lookup(&self.root.accessors, index, "accessor", by)?;
-        let found = component_type(accessor, index)?;
-        if !matches!(found, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
+        let accessor = lookup(&self.buffers.root.accessors, index, "accessor", by)?;
+        let unsuitable = match component_type(accessor, index)? {
+            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => None,
+            ComponentType::I8 => Some("signed bytes"),
+            ComponentType::I16 => Some("signed shorts"),
+            ComponentType::F32 => Some("floats"),
+        };
+        if let Some(name) = unsuitable {
             let path = format_args!("accessors[{index}].componentType");
-            let message = format!("indices cannot be {}", component_name(found));
-            return Err(error_at(path, message).help(INDEX_TYPES));
+            return Err(error_at(path, format!("indices cannot be {name}")).help(INDEX_TYPES));
         }
+        // Contiguous indices are decoded without a look at the type of each.
         let decode_all = |encoding: Encoding, bytes: &[u8]| {
             Some(match encoding.component_type {
                 ComponentType::U8 => decode_contiguous(bytes, |[a]: [u8; 1]| u32::from(a)),
@@ -163,9 +161,10 @@ impl<'a> Accessors<'a> {
         decode_all: impl Fn(Encoding, &[u8]) -> Option<Vec<[T; N]>>,
     ) -> Result<Vec<[T; N]>> {
         // Check the type.
-        let accessor = lookup(&self.root.accessors, index, "accessor", by)?;
+        let accessor = lookup(&self.buffers.root.accessors, index, "accessor", by)?;
         let path = format!("accessors[{index}]");
         check_type::<N>(accessor, &path, by)?;
+        // The type of the components is that of the decompressed values, where there are some.
         let decompressed = self.decompressed.get(&index);
         let component_type = match decompressed {
             Some(attribute) => attribute.component_type,
@@ -173,13 +172,9 @@ impl<'a> Accessors<'a> {
         };
         let encoding = Encoding { component_type, normalized: accessor.normalized };
         let size = N * component_type.size();
-        let decode_element = |bytes: &[u8]| {
-            let mut element = [T::default(); N];
-            for (value, bytes) in element.iter_mut().zip(bytes.chunks_exact(component_type.size()))
-            {
-                *value = decode(encoding, bytes);
-            }
-            element
+        let width = component_type.size();
+        let decode_element = |bytes: &[u8]| -> [T; N] {
+            std::array::from_fn(|i| decode(encoding, &bytes[i * width..][..width]))
         };
 
         // Values that were decompressed replace those of the buffers.
@@ -190,26 +185,30 @@ impl<'a> Accessors<'a> {
             return Ok(bytes.chunks_exact(size).map(decode_element).collect());
         }
 
-        // Without a view all values are zero, apart from what a sparse part replaces.
+        // The view is loaded first, since its bytes allow as many elements.
         let view = accessor.buffer_view.map(|view| view.value());
-        let bytes = match view {
-            Some(view) => self.buffers.view(view, &format!("{path}.bufferView"))?,
-            None => &[],
-        };
+        let load = |view| Ok((view, self.buffers.view(view, &format!("{path}.bufferView"))?));
+        let view = view.map(load).transpose()?;
         let count = accessor.count.0;
         self.count_elements(count).map_err(at_path(format_args!("{path}.count")))?;
         let count = count as usize;
+
+        // Without a view all values are zero, apart from what a sparse part replaces.
         let mut elements = match view {
-            Some(view) => {
+            Some((view, bytes)) => {
                 let offset = accessor.byte_offset.map_or(0, |o| o.0);
-                let stride = self.stride(view).unwrap_or(size);
-                let strided = StridedElements::new(bytes, offset, stride, size, count)
+                let stride = self.buffers.root.buffer_views[view].byte_stride.map(|s| s.0);
+                let stride = stride.filter(|&s| s > 0).unwrap_or(size);
+                let bytes = element_range(bytes, offset, stride, size, count)
                     .ok_or_else(|| beyond_view(&path, count, view, bytes.len()))?;
-                let all = strided.contiguous().and_then(|bytes| decode_all(encoding, bytes));
-                all.unwrap_or_else(|| strided.map(decode_element).collect())
+                let all = if stride == size { decode_all(encoding, bytes) } else { None };
+                let element = |i: usize| decode_element(&bytes[i * stride..][..size]);
+                all.unwrap_or_else(|| (0..count).map(element).collect())
             }
             None => vec![[T::default(); N]; count],
         };
+
+        // The elements that a sparse part replaces.
         if let Some(sparse) = &accessor.sparse {
             for (target, bytes) in self.sparse(sparse, &path, count, size)? {
                 if let Some(element) = elements.get_mut(target) {
@@ -218,11 +217,6 @@ impl<'a> Accessors<'a> {
             }
         }
         Ok(elements)
-    }
-
-    /// The distance between elements in bytes, where the view gives one.
-    fn stride(&self, view: usize) -> Option<usize> {
-        self.root.buffer_views.get(view)?.byte_stride.map(|s| s.0).filter(|&s| s > 0)
     }
 
     /// Returns the indices of the elements that a sparse accessor replaces, of `total` elements of
@@ -234,6 +228,7 @@ impl<'a> Accessors<'a> {
         total: usize,
         size: usize,
     ) -> Result<impl Iterator<Item = (usize, &[u8])>> {
+        // As many elements as there are, at most, by indices of a type that is known.
         let path = format!("{path}.sparse");
         let count = usize::try_from(sparse.count.0).unwrap_or(usize::MAX);
         if count > total {
@@ -245,11 +240,14 @@ impl<'a> Accessors<'a> {
             return Err(error_at(path, "this is no type for indices").help(INDEX_TYPES));
         };
         let encoding = Encoding { component_type: component_type.0, normalized: false };
+
+        // The indices and the values, each tightly packed in a view.
         let elements = |part: &str, view: usize, offset: u64, size: usize| {
             let path = format!("{path}.{part}");
             let bytes = self.buffers.view(view, &format!("{path}.bufferView"))?;
-            StridedElements::new(bytes, offset, size, size, count)
-                .ok_or_else(|| beyond_view(&path, count, view, bytes.len()))
+            let range = element_range(bytes, offset, size, size, count);
+            let range = range.ok_or_else(|| beyond_view(&path, count, view, bytes.len()))?;
+            Ok(range.chunks_exact(size))
         };
         let (view, offset) = (sparse.indices.buffer_view.value(), sparse.indices.byte_offset.0);
         let targets = elements("indices", view, offset, component_type.0.size())?;
@@ -299,16 +297,4 @@ fn beyond_view(path: &str, count: usize, view: usize, length: usize) -> Error {
     let message =
         format!("its {count} elements do not fit in the {length} bytes of bufferViews[{view}]");
     error_at(path, message).help("the file is damaged or was written wrong; export it again")
-}
-
-/// The name of a component type, in the plural.
-fn component_name(component_type: ComponentType) -> &'static str {
-    match component_type {
-        ComponentType::I8 => "signed bytes",
-        ComponentType::U8 => "unsigned bytes",
-        ComponentType::I16 => "signed shorts",
-        ComponentType::U16 => "unsigned shorts",
-        ComponentType::U32 => "unsigned ints",
-        ComponentType::F32 => "floats",
-    }
 }

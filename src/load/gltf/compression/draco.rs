@@ -6,10 +6,7 @@
 use std::collections::HashMap;
 
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, PointAttribute, PointIndex};
-use gltf::json::Value;
-use gltf::json::accessor::ComponentType;
-use gltf::json::mesh::Primitive;
-use gltf::json::validation::Checked;
+use gltf::json::{Value, accessor::ComponentType, mesh::Primitive, validation::Checked};
 
 use crate::error::{Error, Remedy, Result};
 use crate::load::gltf::accessor::{Accessors, DecompressedAttribute};
@@ -20,34 +17,26 @@ const NAME: &str = "KHR_draco_mesh_compression";
 /// The bytes of attributes that are allowed for each triangle that is.
 const BYTES_PER_FACE: u64 = 64;
 
-/// The decompressed data of a primitive.
-pub struct DecompressedPrimitive {
-    /// The corners of its triangles.
-    pub corners: Vec<u32>,
-    /// The attributes that replace its accessors, by the index of the accessor.
-    pub attributes: HashMap<usize, DecompressedAttribute>,
-}
+/// The corners of a primitive's triangles, and the attributes that replace its accessors, by the
+/// index of the accessor.
+type DecompressedPrimitive = (Vec<u32>, HashMap<usize, DecompressedAttribute>);
 
-/// The extension's object in a primitive that is compressed.
-pub fn extension(primitive: &Primitive) -> Option<&Value> {
-    primitive.extensions.as_ref()?.others.get(NAME)
-}
-
-/// Decompresses a primitive, by the extension's object in it.
+/// Decompresses a primitive; `None` if it is not compressed.
 ///
 /// # Errors
 /// When the extension's object or its bytes are damaged, or hold more triangles than the limits
 /// allow.
 pub fn decompress(
     primitive: &Primitive,
-    extension: &Value,
     accessors: &Accessors,
     path: &str,
-) -> Result<DecompressedPrimitive> {
+) -> Result<Option<DecompressedPrimitive>> {
+    let extension = primitive.extensions.as_ref().and_then(|e| e.others.get(NAME));
+    let Some(extension) = extension else { return Ok(None) };
     let path = format!("{path}.extensions.{NAME}");
     let view = extension.get("bufferView").and_then(as_index);
     let view = view.ok_or_else(|| error_at(&path, "`bufferView` must be the number of a view"))?;
-    let bytes = accessors.buffers().view(view, &format!("{path}.bufferView"))?;
+    let bytes = accessors.buffers.view(view, &format!("{path}.bufferView"))?;
 
     // Decode all of the mesh, within the limits.
     let ids = extension.get("attributes").and_then(Value::as_object);
@@ -64,6 +53,7 @@ pub fn decompress(
         });
         // An attribute that the primitive itself does not name is not part of it.
         let Some(accessor) = accessor else { continue };
+        // The extension gives each attribute a number in the compressed mesh.
         let id = as_index(id).and_then(|id| u32::try_from(id).ok());
         let attribute = id.and_then(|id| mesh.attribute_by_unique_id(id)).ok_or_else(|| {
             error_at(&path, format!("its data have no attribute with the number that {name} gives"))
@@ -73,11 +63,12 @@ pub fn decompress(
         attributes.insert(accessor, values);
     }
     let corners = mesh.faces().iter().flatten().map(|corner| corner.0).collect();
-    Ok(DecompressedPrimitive { corners, attributes })
+    Ok(Some((corners, attributes)))
 }
 
 /// Decodes a mesh, if it has at most `max_faces` faces.
 fn decode(bytes: &[u8], max_faces: u64) -> Result<draco_core::Mesh> {
+    // A few bytes can describe any number of triangles, so that all is limited beforehand.
     let limits = DecodeLimits::default()
         .with_max_faces(max_faces)
         .with_max_points(3 * max_faces)
@@ -109,6 +100,8 @@ fn values_of_points(attribute: &PointAttribute, points: usize) -> Result<Decompr
         DataType::Float32 => ComponentType::F32,
         other => return Err(Error::input(format!("{other:?} is no type of numbers in glTF"))),
     };
+
+    // Points share values: each point names its own by an index.
     let size = width * component_type.size();
     let stride = usize::try_from(attribute.byte_stride()).unwrap_or(0);
     let data = attribute.buffer().data();

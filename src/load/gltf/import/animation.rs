@@ -5,9 +5,8 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DQuat, DVec3};
-use gltf::json;
 use gltf::json::animation::{Channel, Interpolation as SamplerInterpolation, Property, Sampler};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::vectors::vector;
 use crate::error::{Error, Result};
@@ -15,7 +14,6 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::lookup;
 use crate::load::limits::Limit;
-use crate::load::sandbox::Sandbox;
 use crate::load::spelling;
 use crate::scene::animation::{
     Animated, Animation, Curve, Interpolate, Interpolation, Keyframes, MAX_FRAMES, Motion, Node,
@@ -26,11 +24,13 @@ use crate::scene::animation::{
 const FPS: f64 = 24.0;
 
 /// The animation of a file that is imported.
+#[derive(Default)]
 pub struct AnimationClip {
     /// The curves of nodes, by the index of the node in the file.
     nodes: HashMap<usize, NodeCurves>,
-    /// The weights of morph targets, by the index of the node in the file.
-    weights: HashMap<usize, Vec<Curve<f64>>>,
+    /// The weights of each morph target over time, where they change, by the index of the node in
+    /// the file.
+    pub weights: HashMap<usize, Vec<Curve<f64>>>,
     /// The time of the last key, in seconds.
     duration: f64,
     /// The animated nodes of the scene that is shown.
@@ -53,28 +53,23 @@ impl AnimationClip {
     /// # Errors
     /// When there is none of that name.
     pub fn read(
-        root: &json::Root,
-        sandbox: &Sandbox,
         accessors: &Accessors,
         name: Option<&str>,
         diagnostics: &mut Diagnostics,
     ) -> Result<Self> {
-        let mut clip = Self {
-            nodes: HashMap::new(),
-            weights: HashMap::new(),
-            duration: 0.0,
-            scene_nodes: Vec::new(),
-            objects: Vec::new(),
-        };
+        let mut clip = Self::default();
+        let root = accessors.buffers.root;
+        // The first animation is played, unless another one is chosen.
         let index = name.map_or(Ok(0), |name| find_animation(root, name))?;
         let Some(animation) = root.animations.get(index) else { return Ok(clip) };
+
+        // Each channel moves one property of one node; damaged ones are left out.
         let path = format!("animations[{index}]");
         for (i, channel) in animation.channels.iter().enumerate() {
             let at = format!("{path}.channels[{i}]");
             let sampler = lookup(&animation.samplers, channel.sampler.value(), "sampler", &at);
             let read = sampler.and_then(|sampler| {
-                let reader = SamplerReader { accessors, sandbox, sampler, path: &path };
-                clip.add_channel(root, channel, &reader)
+                clip.add_channel(channel, &SamplerReader { accessors, sampler, path: &path })
             });
             if let Err(error) = read {
                 let reason = "{} animation channels are left out: they are damaged";
@@ -85,15 +80,13 @@ impl AnimationClip {
         Ok(clip)
     }
 
-    fn add_channel(
-        &mut self,
-        root: &json::Root,
-        channel: &Channel,
-        reader: &SamplerReader,
-    ) -> Result<()> {
+    /// Adds the curve of a node's property, or of the weights of its morph targets.
+    fn add_channel(&mut self, channel: &Channel, reader: &SamplerReader) -> Result<()> {
+        // The property and the node that it moves.
         let Checked::Valid(property) = channel.target.path else {
             return Err(Error::input("it moves something unknown"));
         };
+        let root = reader.accessors.buffers.root;
         let index = channel.target.node.value();
         let node = lookup(&root.nodes, index, "node", reader.path)?;
         if node.matrix.is_some() && property != Property::MorphTargetWeights {
@@ -104,13 +97,12 @@ impl AnimationClip {
             Property::MorphTargetWeights => {
                 let mesh = node.mesh.and_then(|mesh| root.meshes.get(mesh.value()));
                 let mesh = mesh.ok_or_else(|| Error::input("it morphs a node without a mesh"))?;
+                // All primitives of a mesh have as many targets as the first.
                 let targets = mesh.primitives.first().and_then(|p| p.targets.as_ref());
                 let count = targets.map_or(0, Vec::len);
                 let curves = reader.curves(count, |[weight], _| f64::from(weight))?;
                 let last = curves.first().map_or(0.0, last_time);
-                if self.weights.insert(index, curves).is_some() {
-                    return Err(duplicate_channel());
-                }
+                check_first(self.weights.insert(index, curves))?;
                 last
             }
             Property::Translation => {
@@ -130,11 +122,6 @@ impl AnimationClip {
         Ok(())
     }
 
-    /// The weights of each morph target of a node's mesh over time, where they change.
-    pub fn weights(&self, index: usize) -> Option<&[Curve<f64>]> {
-        self.weights.get(&index).map(Vec::as_slice)
-    }
-
     /// The period after which the animation begins again, in seconds.
     pub fn period(&self) -> Option<f64> {
         (self.duration > 0.0).then_some(self.duration)
@@ -150,6 +137,7 @@ impl AnimationClip {
         base: DAffine3,
     ) -> Option<NodeId> {
         let NodeCurves { translation, rotation, scale } = self.nodes.get(&index)?;
+        // Properties without a curve keep the value of the node.
         let still = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
         let still = if still.length() > 0.0 { still.normalize() } else { DQuat::IDENTITY };
         let constant = |v: [f32; 3]| Curve::constant(vector(v));
@@ -163,6 +151,7 @@ impl AnimationClip {
             scale: scale.clone().unwrap_or_else(|| constant(node.scale.unwrap_or([1.0; 3]))),
             period: self.period(),
         };
+        // The node stands where its parent's space places it.
         self.scene_nodes.push(Node { parent, base, motion: Motion::Keyframes(keys) });
         Some(NodeId(self.scene_nodes.len() as u32 - 1))
     }
@@ -189,11 +178,13 @@ fn last_time<T>(curve: &Curve<T>) -> f64 {
 /// When there was one before.
 fn set_curve<T>(slot: &mut Option<Curve<T>>, curve: Curve<T>) -> Result<f64> {
     let last = last_time(&curve);
-    slot.replace(curve).map_or(Ok(last), |_| Err(duplicate_channel()))
+    check_first(slot.replace(curve))?;
+    Ok(last)
 }
 
-fn duplicate_channel() -> Error {
-    Error::input("another one moves the same")
+/// Checks that the curves of a channel replace no others.
+fn check_first<T>(replaced: Option<T>) -> Result<()> {
+    replaced.map_or(Ok(()), |_| Err(Error::input("another one moves the same")))
 }
 
 /// Returns the index of the animation with a name.
@@ -211,7 +202,6 @@ fn find_animation(root: &json::Root, name: &str) -> Result<usize> {
 /// A sampler of an animation.
 struct SamplerReader<'a> {
     accessors: &'a Accessors<'a>,
-    sandbox: &'a Sandbox,
     sampler: &'a Sampler,
     /// The JSON path of the animation.
     path: &'a str,
@@ -237,7 +227,9 @@ impl SamplerReader<'_> {
         // A small file can name the same times for any number of curves.
         let Sampler { input, output, .. } = self.sampler;
         let keys = self.accessors.count(input.value()).saturating_mul(count.max(1) as u64);
-        self.sandbox.consume(Limit::Keys, keys)?;
+        self.accessors.buffers.sandbox.consume(Limit::Keys, keys)?;
+
+        // Times and values, of which a spline has three for each time.
         let path = |property: &str| format!("{}.samplers.{property}", self.path);
         let times = self.accessors.floats(input.value(), &path("input"))?;
         let times: Vec<f64> = times.into_iter().map(|[t]| f64::from(t)).collect();
@@ -246,13 +238,16 @@ impl SamplerReader<'_> {
             return Err(Error::input("the interpolation is of no known kind"));
         };
         let rows = if kind == SamplerInterpolation::CubicSpline { 3 } else { 1 };
+        // There must be a value for each curve, time and row.
         if count == 0 || values.len() != times.len() * count * rows {
             let (found, times) = (values.len(), times.len());
             let message = format!("{found} values for {count} curves at {times} times");
             return Err(Error::input(message));
         }
 
+        // Each curve takes its own column of the values.
         let curve = |i: usize| {
+            // The values of a row, of which a spline has three: slope before, value, slope after.
             let row = |row: usize, is_value: bool| {
                 let values = values.iter().skip(row * count + i).step_by(rows * count);
                 let convert = &convert;

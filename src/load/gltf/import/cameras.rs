@@ -3,9 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use gltf::json;
-use gltf::json::camera::Type;
-use gltf::json::validation::Checked;
+use gltf::json::{self, camera::Type, validation::Checked};
 
 use super::nodes::SceneNode;
 use crate::error::Result;
@@ -25,6 +23,8 @@ pub fn camera(
     let Some(index) = node.node.camera.map(|c| c.value()) else { return Ok(None) };
     let by = format_args!("nodes[{}].camera", node.index);
     let source = lookup(&root.cameras, index, "camera", by)?;
+
+    // A camera looks along −Z of its node, whose scale does not count.
     let axes = node.to_world.matrix3;
     let position = node.to_world.translation;
     let target = position + axes.mul_vec3(DVec3::NEG_Z).normalize_or_zero();

@@ -11,26 +11,18 @@ use super::{ImportedPrimitive, Importer};
 use crate::error::Result;
 use crate::load::gltf::json::at_path;
 use crate::load::limits::Limit;
-use crate::scene::MeshId;
 use crate::scene::animation::{Animated, Curve, Deformation, Joint, Skin};
-
-/// The mesh of a primitive at a node.
-pub(super) struct MeshAtNode {
-    pub(super) id: MeshId,
-    /// True if joints determine its position, whatever the transform of the node.
-    pub(super) is_skinned: bool,
-}
+use crate::scene::{Mesh, MeshId};
 
 impl Importer<'_> {
     /// Returns the mesh of a primitive as it is at a node, which is added to the scene if it is
-    /// new.
+    /// new; and true if joints determine its position, whatever the transform of the node.
     pub(super) fn mesh_at_node(
         &mut self,
         primitive: &ImportedPrimitive,
         node: &SceneNode,
-    ) -> Result<MeshAtNode> {
+    ) -> Result<(MeshId, bool)> {
         let PrimitiveMesh { mesh: base, morph_targets, influences } = &primitive.mesh;
-        let mesh = node.node.mesh.map_or(usize::MAX, |mesh| mesh.value());
 
         // The joints of the skin, if there is one.
         let by = format!("nodes[{}].skin", node.index);
@@ -46,26 +38,28 @@ impl Importer<'_> {
         };
 
         // The weights of the morph targets: those of the node, or else of the mesh.
-        let of_mesh = self.root.meshes.get(mesh).and_then(|mesh| mesh.weights.as_ref());
+        let mesh = node.node.mesh.and_then(|mesh| self.root.meshes.get(mesh.value()));
+        let of_mesh = mesh.and_then(|mesh| mesh.weights.as_ref());
         let own = node.node.weights.as_ref().or(of_mesh);
         let weight = |i: usize| own.and_then(|w| w.get(i)).map_or(0.0, |w| f64::from(*w));
         let weights: Vec<_> = (0..morph_targets.len()).map(weight).collect();
-        let curves = self.clip.weights(node.index).filter(|c| c.len() == morph_targets.len());
+        let curves = self.clip.weights.get(&node.index).filter(|c| c.len() == morph_targets.len());
         let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
+        // Without either the mesh is shared by all nodes that show it.
         if skin.is_none() && !is_morphed {
-            return Ok(MeshAtNode { id: self.add_mesh_once(primitive, mesh), is_skinned: false });
+            return Ok((self.add_mesh_once(base), false));
         }
 
         // The mesh as it is deformed at rest.
         let path = format_args!("nodes[{}]", node.index);
-        self.sandbox
-            .consume(Limit::Deformed, base.positions.len() as u64)
-            .map_err(at_path(path))?;
+        let (sandbox, count) = (self.accessors.buffers.sandbox, base.positions.len() as u64);
+        sandbox.consume(Limit::Deformed, count).map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
             morph_targets: morph_targets.clone(),
             weights: weights.into_iter().map(Curve::constant).collect(),
             period: None,
+            // The joints stand as the file places them, in world space.
             skin: skin.as_ref().map(|(joints, influences)| Skin {
                 joints: joints.still.clone(),
                 influences: influences.clone(),
@@ -82,8 +76,9 @@ impl Importer<'_> {
 
         // The same as it moves.
         if curves.is_some() || skin.as_ref().is_some_and(|(joints, _)| joints.is_animated) {
+            // Weights without curves stay as they are.
             if let Some(curves) = curves {
-                deformation.weights = curves.to_vec();
+                deformation.weights.clone_from(curves);
             }
             deformation.period = self.clip.period();
             if let (Some(skin), Some((joints, _))) = (&mut deformation.skin, &skin) {
@@ -92,7 +87,7 @@ impl Importer<'_> {
             let (mesh, deformation) = (id.0 as usize, Box::new(deformation));
             self.clip.objects.push(Animated::Mesh { mesh, deformation });
         }
-        Ok(MeshAtNode { id, is_skinned: skin.is_some() })
+        Ok((id, skin.is_some()))
     }
 
     /// Returns the joints of a skin, which are read once.
@@ -100,25 +95,17 @@ impl Importer<'_> {
         if let Some(known) = self.joints.get(&skin) {
             return Ok(known.clone());
         }
-        let joints = skin::read_joints(self.root, &self.accessors, self.nodes, skin, by)?;
+        let joints = skin::read_joints(&self.accessors, self.nodes, skin, by)?;
         self.joints.insert(skin, joints.clone());
         Ok(joints)
     }
 
-    /// Adds a primitive to the scene as it was modelled, once for all nodes that show it.
-    fn add_mesh_once(&mut self, primitive: &ImportedPrimitive, mesh: usize) -> MeshId {
-        let mut all = self.meshes.get_mut(&mesh).into_iter().flatten();
-        let known = all.find(|known| Arc::ptr_eq(&known.mesh.mesh, &primitive.mesh.mesh));
-        if let Some(id) = known.as_ref().and_then(|known| known.id) {
-            return id;
-        }
-        let mesh = primitive.mesh.mesh.clone();
-        self.diagnostics.read(mesh.triangles.len() as u64);
-        self.scene.meshes.push(mesh);
-        let id = MeshId(self.scene.meshes.len() as u32 - 1);
-        if let Some(known) = known {
-            known.id = Some(id);
-        }
-        id
+    /// Adds a mesh to the scene as it was modelled, once for all nodes that show it.
+    fn add_mesh_once(&mut self, mesh: &Arc<Mesh>) -> MeshId {
+        *self.mesh_ids.entry(Arc::as_ptr(mesh)).or_insert_with(|| {
+            self.diagnostics.read(mesh.triangles.len() as u64);
+            self.scene.meshes.push(mesh.clone());
+            MeshId(self.scene.meshes.len() as u32 - 1)
+        })
     }
 }

@@ -7,8 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DAffine3, DVec3};
-use gltf::json;
-use gltf::json::Value;
+use gltf::json::{self, Value};
 
 use super::nodes::SceneNode;
 use crate::error::{Error, Result};
@@ -17,10 +16,10 @@ use crate::scene::Mesh;
 
 const EXTENSION: &str = "KHR_implicit_shapes";
 
-/// A shape about the origin of its node.
+/// The shape of a node, about its origin.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ImplicitShape {
-    /// A sphere, by its radius.
+    /// A sphere, by its radius in world space.
     Sphere(f64),
     /// The infinite plane whose normal is Y.
     Plane,
@@ -28,30 +27,18 @@ pub enum ImplicitShape {
     Mesh(Box<Mesh>),
 }
 
-/// The shape of a node.
-pub struct NodeShape {
-    /// The shape.
-    pub shape: ImplicitShape,
-    /// The index of its material, if it names one.
-    pub material: Option<usize>,
-}
-
-/// A sphere in world space.
-#[derive(Debug, PartialEq)]
-pub struct TransformedSphere {
-    /// Its centre.
-    pub center: DVec3,
-    /// Its radius.
-    pub radius: f64,
-}
-
-/// Returns the shape of a node, if it has one.
+/// Returns the shape of a node, if it has one, and the index of its material, if it names one.
 ///
 /// # Errors
 /// When the file has no such shape, or it is damaged.
-pub fn shape(root: &json::Root, node: &SceneNode) -> Result<Option<NodeShape>> {
+pub fn shape(
+    root: &json::Root,
+    node: &SceneNode,
+) -> Result<Option<(ImplicitShape, Option<usize>)>> {
     let extensions = node.node.extensions.as_ref();
     let Some(own) = extensions.and_then(|e| e.others.get(EXTENSION)) else { return Ok(None) };
+
+    // The shape in the list of the root that the node names.
     let of_root = root.extensions.as_ref().and_then(|e| e.others.get(EXTENSION));
     let shapes = of_root.map_or(&[][..], |extension| list(extension, "shapes"));
     let index = own.get("shape").and_then(as_index);
@@ -60,19 +47,33 @@ pub fn shape(root: &json::Root, node: &SceneNode) -> Result<Option<NodeShape>> {
         error_at(path, format!("there is no such shape: the file has {}", shapes.len()))
     })?;
     let path = format_args!("extensions.{EXTENSION}.shapes[{index}]");
-    let shape = parse(source).map_err(at_path(path))?;
-    Ok(Some(NodeShape { shape, material: own.get("material").and_then(as_index) }))
+    let shape = match parse(source).map_err(at_path(path))? {
+        // A sphere that becomes an ellipsoid has to be a mesh.
+        ImplicitShape::Sphere(radius) => match transformed_radius(&node.to_world, radius) {
+            Some(radius) => ImplicitShape::Sphere(radius),
+            None => {
+                let profile = capsule_profile(0.0, radius, radius);
+                ImplicitShape::Mesh(surface_of_revolution(&profile).into())
+            }
+        },
+        shape => shape,
+    };
+    Ok(Some((shape, own.get("material").and_then(as_index))))
 }
 
+/// Parses a shape of the list of the root.
 fn parse(source: &Value) -> Result<ImplicitShape> {
     let kind = source.get("type").and_then(Value::as_str).unwrap_or_default();
     let parameters = source.get(kind);
+    // Parameters that are missing have a default; others must be lengths.
     let number = |name: &str, default: f64| {
         let found = parameters.and_then(|p| p.get(name)).map_or(Some(default), Value::as_f64);
         found
             .filter(|x| x.is_finite() && *x >= 0.0 && *x < 1e30)
             .ok_or_else(|| Error::input(format!("`{kind}.{name}` must be a number from 0 on")))
     };
+
+    // Spheres and infinite planes are kept as what they are, all others become meshes.
     let mesh = |mesh: Mesh| Ok(ImplicitShape::Mesh(mesh.into()));
     match kind {
         "sphere" => match number("radius", 0.5)? {
@@ -103,21 +104,17 @@ fn parse(source: &Value) -> Result<ImplicitShape> {
     }
 }
 
-/// Returns a sphere about the origin under a transform; `None` if that makes it an ellipsoid.
-pub fn transformed_sphere(transform: &DAffine3, radius: f64) -> Option<TransformedSphere> {
+/// Returns the radius of a sphere about the origin under a transform; `None` if that makes it an
+/// ellipsoid.
+fn transformed_radius(transform: &DAffine3, radius: f64) -> Option<f64> {
     let [x, y, z] = [0, 1, 2].map(|i| transform.matrix3.col(i));
     let scale = x.length();
+    // A sphere stays one if the axes are still equally long, and perpendicular.
     let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * scale;
     let is_uniform = is_near(y.length(), scale) && is_near(z.length(), scale);
     let is_orthogonal =
         [x.dot(y), y.dot(z), z.dot(x)].iter().all(|d| d.abs() <= 1e-6 * scale * scale);
-    let sphere = TransformedSphere { center: transform.translation, radius: radius * scale };
-    (is_uniform && is_orthogonal && scale > 0.0).then_some(sphere)
-}
-
-/// Returns a sphere as a mesh, for transforms that make it an ellipsoid.
-pub fn sphere_mesh(radius: f64) -> Mesh {
-    surface_of_revolution(&capsule_profile(0.0, radius, radius))
+    (is_uniform && is_orthogonal && scale > 0.0).then_some(radius * scale)
 }
 
 /// A point of a profile: distance from the axis, height, and the normal in this plane.
@@ -129,6 +126,7 @@ const AROUND: usize = 64;
 const UP: usize = 16;
 
 fn cylinder_profile(half: f64, bottom: f64, top: f64) -> Vec<[ProfilePoint; 2]> {
+    // The normal of the side leans by as much as the radius changes over the height.
     let slope = (bottom - top) / (2.0 * half).max(f64::MIN_POSITIVE);
     let length = slope.hypot(1.0);
     let (nr, ny) = (1.0 / length, slope / length);
@@ -151,6 +149,7 @@ fn capsule_profile(half: f64, bottom: f64, top: f64) -> Vec<[ProfilePoint; 2]> {
         let angle = move |i: usize| from + (to - from) * i as f64 / UP as f64;
         (0..UP).map(move |i| [on(center, radius, angle(i)), on(center, radius, angle(i + 1))])
     };
+    // From bottom to top: a cap, the cone between the caps if there is room for one, and a cap.
     let mut profile: Vec<[ProfilePoint; 2]> = cap(-half, bottom, -FRAC_PI_2, rise).collect();
     if half > 0.0 {
         profile.push([on(-half, bottom, rise), on(half, top, rise)]);
@@ -165,13 +164,16 @@ fn surface_of_revolution(profile: &[[ProfilePoint; 2]]) -> Mesh {
     for segment in profile {
         let first = mesh.positions.len() as u32;
         for i in 0..=AROUND {
-            // The seam is one place.
+            // Each step around the axis has a vertex at either end of the segment. The last step is
+            // at the place of the first, so that the seam is closed.
             let (sin, cos) = (TAU * (i % AROUND) as f64 / AROUND as f64).sin_cos();
             for [r, y, nr, ny] in segment {
                 mesh.positions.push([r * cos, *y, r * sin].map(|x| x as f32));
                 mesh.normals.push([nr * cos, *ny, nr * sin].map(|x| x as f32));
             }
         }
+
+        // Two triangles join two steps; at a pole one of them would have no area.
         for i in 0..AROUND as u32 {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| first + 2 * i + k);
             let [low, high] = segment.map(|[r, ..]| r > 1e-12);
@@ -262,8 +264,8 @@ mod tests {
     #[test]
     fn sphere_stays_one_where_all_directions_are_scaled_alike() {
         let rotated = DAffine3::from_rotation_x(1.0) * DAffine3::from_scale(DVec3::splat(2.0));
-        assert!(transformed_sphere(&rotated, 1.5).is_some_and(|s| (s.radius - 3.0).abs() < 1e-12));
-        assert_eq!(transformed_sphere(&DAffine3::from_scale(DVec3::new(1.0, 2.0, 1.0)), 1.0), None);
+        assert!(transformed_radius(&rotated, 1.5).is_some_and(|r| (r - 3.0).abs() < 1e-12));
+        assert_eq!(transformed_radius(&DAffine3::from_scale(DVec3::new(1.0, 2.0, 1.0)), 1.0), None);
     }
 
     #[test]

@@ -10,22 +10,20 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{as_index, at_path, error_at};
 use crate::load::limits::Limit;
-use crate::load::sandbox::Sandbox;
 
-/// Returns the transforms of the instances of a node's mesh, in the node's space; `None` if the
-/// node does not use the extension.
+/// Returns the transforms of the instances of a node's mesh, in the node's space: one that changes
+/// nothing if the node does not use the extension.
 ///
 /// # Errors
 /// When the extension's accessors cannot be read, or are not equally long.
 pub fn transforms(
     node: &SceneNode,
-    sandbox: &Sandbox,
     accessors: &Accessors,
     diagnostics: &mut Diagnostics,
-) -> Result<Option<Vec<DAffine3>>> {
+) -> Result<Vec<DAffine3>> {
     let extensions = node.node.extensions.as_ref();
     let Some(extension) = extensions.and_then(|e| e.others.get("EXT_mesh_gpu_instancing")) else {
-        return Ok(None);
+        return Ok(vec![DAffine3::IDENTITY]);
     };
     let path = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing.attributes", node.index);
     let path_of = |name: &str| format!("{path}.{name}");
@@ -37,7 +35,8 @@ pub fn transforms(
         let accessor = as_index(value)
             .ok_or_else(|| error_at(path_of(name), format!("{value} is no accessor")))?;
         let found = accessors.count(accessor);
-        sandbox.check(Limit::Instances, found).map_err(at_path(path_of(name)))?;
+        // The number of instances is limited before any of them is read.
+        accessors.buffers.sandbox.check(Limit::Instances, found).map_err(at_path(path_of(name)))?;
         if *count.get_or_insert(found) != found {
             let message = format!("{found} values, where others have another number");
             return Err(error_at(path_of(name), message));
@@ -56,6 +55,8 @@ pub fn transforms(
         Some(index) => accessors.floats::<4>(index, &path_of("ROTATION"))?,
         None => vec![[0.0, 0.0, 0.0, 1.0]; count],
     };
+
+    // The transforms, without those that are not finite.
     let parts = translations.into_iter().zip(rotations).zip(scales);
     let transforms = parts.map(|((translation, rotation), scale)| {
         let rotation = unit_quaternion(rotation).unwrap_or(DQuat::IDENTITY);
@@ -67,5 +68,5 @@ pub fn transforms(
     let dropped = (before - transforms.len()) as u64;
     let reason = "{} instances of a node are left out: a number is not finite";
     diagnostics.add(reason, dropped, || path);
-    Ok(Some(transforms))
+    Ok(transforms)
 }

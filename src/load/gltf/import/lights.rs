@@ -3,9 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use glam::{DVec3, Vec3};
-use gltf::json;
 use gltf::json::extensions::scene::khr_lights_punctual::{Light as Source, Type};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::nodes::SceneNode;
 use crate::error::Result;
@@ -25,9 +24,12 @@ pub fn light(
     let extension = node.node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let Some(index) = extension.map(|e| e.light.value()) else { return Ok(None) };
     let by = format_args!("nodes[{}].extensions.KHR_lights_punctual.light", node.index);
+    // The light in the list of the root.
     let lights = root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
     let source = lookup(lights.map_or(&[][..], |l| &l.lights), index, "light", by)?;
     let path = || format!("extensions.KHR_lights_punctual.lights[{index}]");
+
+    // Its kind and its place.
     let Some(kind) = light_kind(source, node, path, diagnostics) else {
         let reason = "{} lights are of no known kind, or point nowhere, and give no light";
         diagnostics.add(reason, 1, path);
@@ -36,6 +38,8 @@ pub fn light(
     // Candela and lux measure what a surface receives; a light of ours what a white surface then
     // reflects, which is less by Lambert's π.
     let intensity = source.color.map(|c| (f64::from(c) * f64::from(source.intensity) / PI) as f32);
+
+    // Numbers that no light can have count as 0.
     let is_valid = |x: f32| x.is_finite() && x >= 0.0;
     if !intensity.iter().all(|&x| is_valid(x)) {
         diagnostics.add("{} lights are negative or not finite, which counts as 0", 1, path);
@@ -55,9 +59,11 @@ fn light_kind(
     diagnostics: &mut Diagnostics,
 ) -> Option<LightKind> {
     let Checked::Valid(kind) = source.type_ else { return None };
+    // Place and direction are those of the node, and the light shines along its −Z.
     let position = node.to_world.translation;
     let direction = node.to_world.matrix3.mul_vec3(DVec3::NEG_Z).try_normalize();
     let falloff = Falloff::InverseSquare;
+    // Without a range, or with one that is not valid, the light reaches everywhere.
     let valid_range = source.range.filter(|range| *range > 0.0);
     if source.range.is_some() && valid_range.is_none() {
         diagnostics.add("{} ranges of lights are not above 0 and are ignored", 1, &path);

@@ -21,12 +21,11 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use glam::DAffine3;
 use gltf::json;
 
 use self::animation::AnimationClip;
 use self::material::Materials;
-use self::mesh::PrimitiveMesh;
+use self::mesh::{PrimitiveMesh, PrimitiveReader};
 use self::nodes::{SceneNode, collect_nodes};
 use self::skin::SkinJoints;
 use self::texture::Textures;
@@ -41,7 +40,7 @@ use crate::load::limits::Limit;
 use crate::load::report::{LoadReport, Loaded};
 use crate::load::sandbox::Sandbox;
 use crate::scene::animation::Animated;
-use crate::scene::{MaterialId, MeshId, Scene};
+use crate::scene::{MaterialId, Mesh, MeshId, Scene};
 
 /// Imports the scene that a file shows.
 ///
@@ -56,23 +55,25 @@ pub fn import(
     options: &ModelOptions,
     mut diagnostics: Diagnostics,
 ) -> Result<Loaded> {
+    // The readers of the parts of the file, each by way of the one before.
     let root = &document.root;
     let buffers = Buffers::new(root, sandbox, path, bin);
-    let accessors = Accessors::new(root, sandbox, &buffers);
-    let mut clip =
-        AnimationClip::read(root, sandbox, &accessors, options.animation, &mut diagnostics)?;
+    let accessors = Accessors::new(&buffers);
+    let mut clip = AnimationClip::read(&accessors, options.animation, &mut diagnostics)?;
     let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
+
+    // Nodes are added in the order of the file; joints of skins refer to any of them.
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
-    let textures = Textures::new(root, sandbox, &buffers, options.needs_images);
+    let textures = Textures::new(&buffers, options.needs_images);
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
-        sandbox,
         accessors,
         materials: Materials::new(root, textures),
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
+        mesh_ids: HashMap::new(),
         nodes: &nodes,
         joints: HashMap::new(),
         scene: Scene::default(),
@@ -90,8 +91,6 @@ pub fn import(
 struct ImportedPrimitive {
     mesh: PrimitiveMesh,
     material: MaterialId,
-    /// The id of its mesh as it was modelled, once that is in the scene.
-    id: Option<MeshId>,
 }
 
 /// The state of an import, node by node.
@@ -99,12 +98,13 @@ struct Importer<'a> {
     root: &'a json::Root,
     /// The values of the JSON, unless they are too large.
     value: Option<&'a json::Value>,
-    sandbox: &'a Sandbox,
     accessors: Accessors<'a>,
     materials: Materials<'a>,
     variants: Variants<'a>,
     /// The primitives of the file's meshes so far, which nodes share.
     meshes: HashMap<usize, Vec<ImportedPrimitive>>,
+    /// The ids of meshes that are in the scene as they were modelled, by their address.
+    mesh_ids: HashMap<*const Mesh, MeshId>,
     /// The nodes, by their index in the file.
     nodes: &'a HashMap<usize, SceneNode<'a>>,
     /// The joints of the skins so far.
@@ -124,6 +124,8 @@ impl Importer<'_> {
         // those of the first time.
         let mut ignored = Diagnostics::default();
         let at_rest = node.animated.map(|_| node.in_animated_space());
+
+        // Camera, light and shape.
         if let Some(camera) = cameras::camera(self.root, node, &mut self.diagnostics)? {
             if let Some(at_rest) = &at_rest
                 && let Some(rest) = cameras::camera(self.root, at_rest, &mut ignored)?
@@ -144,21 +146,25 @@ impl Importer<'_> {
             }
             self.scene.lights.push(light);
         }
-        if let Some(shape) = implicit_shapes::shape(self.root, node)? {
-            self.add_shape(shape, node)?;
+        if let Some((shape, material)) = implicit_shapes::shape(self.root, node)? {
+            self.add_shape(shape, material, node)?;
         }
+
+        // The mesh, at each of the instances that an extension may give it.
         let Some(mesh) = node.node.mesh else { return Ok(()) };
         let by = format!("nodes[{}].mesh", node.index);
         let primitives = self.primitives(mesh.value(), &by)?;
-        let (sandbox, accessors) = (self.sandbox, &self.accessors);
-        let instances = instancing::transforms(node, sandbox, accessors, &mut self.diagnostics)?
-            .unwrap_or_else(|| vec![DAffine3::IDENTITY]);
+        let instances = instancing::transforms(node, &self.accessors, &mut self.diagnostics)?;
         if instances.is_empty() {
             return Ok(());
         }
+
+        // Each primitive has an instance at each transform; the number is limited before they are
+        // added.
         let added = (primitives.len() * instances.len()) as u64;
         let count = self.scene.instances.len() as u64 + added;
-        self.sandbox.check(Limit::Instances, count).map_err(at_path(&by))?;
+        let Buffers { sandbox, .. } = self.accessors.buffers;
+        sandbox.check(Limit::Instances, count).map_err(at_path(&by))?;
         primitives.iter().try_for_each(|primitive| self.add_mesh(primitive, node, &instances, &by))
     }
 
@@ -167,34 +173,33 @@ impl Importer<'_> {
         if let Some(known) = self.meshes.get(&index) {
             return Ok(known.clone());
         }
+        // Each primitive is a mesh of its own, since it has its own material.
         let source = lookup(&self.root.meshes, index, "mesh", by)?;
         let mut primitives = Vec::new();
         for (i, primitive) in source.primitives.iter().enumerate() {
             let path = format!("meshes[{index}].primitives[{i}]");
             // The material says which attributes are read.
-            let reference = self.variants.material(primitive, &path);
+            let (material, by) = self.variants.material(primitive, &path);
             let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-            let material =
-                self.materials.material(reference.index, &reference.path, scene, diagnostics)?;
-            let read =
-                mesh::read(primitive, &self.accessors, &material.needed, diagnostics, &path)?;
-            let unsupported = self
-                .value
-                .map_or(0, |value| morph_targets::unsupported_attributes(value, index, i));
+            let (material, needed) = self.materials.material(material, &by, scene, diagnostics)?;
+
+            // The mesh, and what of it cannot be shown.
+            let (accessors, path) = (&self.accessors, &*path);
+            let read = PrimitiveReader { primitive, accessors, path, diagnostics }.read(&needed)?;
+            let unsupported = morph_targets::unsupported_attributes(self.value, index, i);
             let reason = "{} texture coordinates and colours of morph targets are not morphed";
-            diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
+            self.diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
+
+            // It is stored once, whatever the number of nodes that show it.
             let Some(mut read) = read else { continue };
-            let sizes = [
-                (Limit::Vertices, read.mesh.positions.len()),
-                (Limit::Triangles, read.mesh.triangles.len()),
-            ];
-            for (limit, count) in sizes {
-                self.sandbox.consume(limit, count as u64).map_err(at_path(&path))?;
+            let (vertices, triangles) = (read.mesh.positions.len(), read.mesh.triangles.len());
+            for (limit, count) in [(Limit::Vertices, vertices), (Limit::Triangles, triangles)] {
+                accessors.buffers.sandbox.consume(limit, count as u64).map_err(at_path(path))?;
             }
             if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
                 mesh.name.clone_from(name);
             }
-            primitives.push(ImportedPrimitive { mesh: read, material: material.id, id: None });
+            primitives.push(ImportedPrimitive { mesh: read, material });
         }
         self.meshes.insert(index, primitives.clone());
         Ok(primitives)
@@ -203,7 +208,7 @@ impl Importer<'_> {
     /// Returns the scene and the load report, once all nodes are added.
     fn into_loaded(mut self, path: &Path) -> Loaded {
         self.scene.animation = self.clip.into_animation();
-        self.materials.decode_images(&mut self.scene, &mut self.diagnostics);
+        self.materials.textures.decode_images(&mut self.scene, &mut self.diagnostics);
         let Scene { instances, spheres, planes, .. } = &self.scene;
         if instances.is_empty() && spheres.is_empty() && planes.is_empty() {
             self.diagnostics.note("there is no triangle in the scene that the file shows");

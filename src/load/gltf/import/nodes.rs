@@ -4,8 +4,7 @@
 use std::collections::HashSet;
 
 use glam::{DAffine3, DMat3, DQuat};
-use gltf::json;
-use gltf::json::Node;
+use gltf::json::{self, Node};
 
 use super::animation::AnimationClip;
 use super::vectors::{unit_quaternion, vector};
@@ -44,16 +43,9 @@ impl SceneNode<'_> {
     }
 }
 
-/// A node that is still to be visited.
-struct PendingNode {
-    index: usize,
-    /// The JSON path of the reference to it.
-    by: String,
-    parent: Parent,
-}
-
-/// The parent of a node, or the scene; its fields are as in [`SceneNode`].
-#[derive(Clone, Copy)]
+/// The parent of a node, or by default what stands above nodes that are not shown; the fields are as
+/// in [`SceneNode`].
+#[derive(Clone, Copy, Default)]
 struct Parent {
     to_world: DAffine3,
     animated: Option<NodeId>,
@@ -83,26 +75,20 @@ pub fn collect_nodes<'a>(
 
     // The stack begins with the roots of the scene, the first on top; below them are the roots of
     // what the scene does not show, since joints are posed whether they are shown or not.
-    let scene = Parent {
-        to_world: DAffine3::IDENTITY,
-        animated: None,
-        to_animated: DAffine3::IDENTITY,
-        is_shown: true,
-        depth: 0,
-    };
+    // Each node has its index, the JSON path of the reference to it, and its parent.
+    let mut stack: Vec<(usize, String, Parent)> = Vec::new();
     let shown: HashSet<usize> = roots.iter().map(|(i, _)| *i).collect();
-    let mut stack = Vec::new();
     if !root.skins.is_empty() {
         let hidden = (0..parents.len()).filter(|i| parents[*i].is_none() && !shown.contains(i));
-        let parent = Parent { is_shown: false, ..scene };
-        stack.extend(hidden.map(|index| PendingNode { index, by: String::new(), parent }));
+        stack.extend(hidden.map(|index| (index, String::new(), Parent::default())));
     }
-    let roots = roots.into_iter().rev();
-    stack.extend(roots.map(|(index, by)| PendingNode { index, by, parent: scene }));
+    let scene = Parent { is_shown: true, ..Parent::default() };
+    stack.extend(roots.into_iter().rev().map(|(index, by)| (index, by, scene)));
 
+    // Each node is visited once, so that cycles end and no node is drawn twice.
     let mut nodes = Vec::new();
     let mut is_visited = vec![false; root.nodes.len()];
-    while let Some(PendingNode { index, by, parent }) = stack.pop() {
+    while let Some((index, by, parent)) = stack.pop() {
         let node = lookup(&root.nodes, index, "node", &by)?;
         let path = format!("nodes[{index}]");
         let depth = parent.depth + 1;
@@ -122,6 +108,7 @@ pub fn collect_nodes<'a>(
             let message = "the transforms of the node and those above it overflow";
             return Err(error_at(&path, message));
         }
+        // A node that moves begins a space of its own; others stand still in that of an ancestor.
         let (animated, to_animated) =
             match clip.add_node(index, node, parent.animated, parent.to_animated) {
                 Some(own) => (Some(own), DAffine3::IDENTITY),
@@ -132,11 +119,8 @@ pub fn collect_nodes<'a>(
         // The children come next, the first of them on top of the stack.
         let parent = Parent { to_world, animated, to_animated, is_shown, depth };
         let children = node.children.as_deref().unwrap_or_default().iter().enumerate().rev();
-        stack.extend(children.map(|(i, child)| PendingNode {
-            index: child.value(),
-            by: format!("{path}.children[{i}]"),
-            parent,
-        }));
+        let path = |i: usize| format!("{path}.children[{i}]");
+        stack.extend(children.map(|(i, child)| (child.value(), path(i), parent)));
         nodes.push(SceneNode { node, index, to_world, animated, to_animated, is_shown });
     }
     Ok(nodes)
@@ -153,6 +137,7 @@ fn is_hidden(node: &Node) -> bool {
 /// # Errors
 /// When a child is missing, or a node is its own ancestor.
 fn parents(root: &json::Root) -> Result<Vec<Option<usize>>> {
+    // A node with several parents belongs to the first.
     let mut parents: Vec<Option<usize>> = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
         for (i, child) in node.children.iter().flatten().enumerate() {
@@ -191,6 +176,7 @@ fn scene_roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usiz
         }
         None => 0,
     };
+    // The scene that the file names, or else the first.
     let scene = lookup(&root.scenes, index, "scene", "scene")?;
     let path = |i: usize| format!("scenes[{index}].nodes[{i}]");
     Ok(scene.nodes.iter().enumerate().map(|(i, node)| (node.value(), path(i))).collect())
@@ -205,8 +191,10 @@ fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Re
         let error = error_at(format_args!("{path}.{key}"), "a number is too large");
         Err(error.help("at most about 3.4e38"))
     };
+    // A matrix, by columns.
     if let Some(m) = &node.matrix {
         check_finite(m, "matrix")?;
+        // The last row of an affine transform is 0 0 0 1.
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             let reason = "{} matrices have a last row other than 0 0 0 1, which is ignored";
             diagnostics.add(reason, 1, || format!("{path}.matrix"));
@@ -214,12 +202,15 @@ fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Re
         let [x, y, z, translation] = [0, 4, 8, 12].map(|i| vector([m[i], m[i + 1], m[i + 2]]));
         return Ok(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation));
     }
+
+    // Or scale, rotation and translation, in this order.
     let rotation = node.rotation.unwrap_or_default().0;
     let scale = node.scale.unwrap_or([1.0; 3]);
     let translation = node.translation.unwrap_or_default();
     check_finite(&rotation, "rotation")?;
     check_finite(&scale, "scale")?;
     check_finite(&translation, "translation")?;
+    // Rounding in f32 must not make a rotation shear.
     let rotation = unit_quaternion(rotation).unwrap_or_else(|| {
         let reason = "{} rotations have length 0 and turn nothing";
         diagnostics.add(reason, 1, || format!("{path}.rotation"));

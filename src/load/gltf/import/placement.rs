@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::implicit_shapes::{self, ImplicitShape, NodeShape};
+use super::implicit_shapes::ImplicitShape;
 use super::mesh::PrimitiveMesh;
 use super::nodes::SceneNode;
 use super::{ImportedPrimitive, Importer};
@@ -21,18 +21,18 @@ impl Importer<'_> {
         transforms: &[DAffine3],
         by: &str,
     ) -> Result<()> {
-        let mesh = self.mesh_at_node(primitive, node)?;
-        if mesh.is_skinned {
+        let (mesh, is_skinned) = self.mesh_at_node(primitive, node)?;
+        if is_skinned {
             let instanced = u64::from(transforms.len() > 1);
             let reason = "{} skinned meshes stand once, whatever the instances of their node";
             self.diagnostics.unsupported(reason, instanced, || by.to_owned());
             // The joints place the mesh, whatever the transform of the node.
-            let instance = Instance::new(mesh.id, DAffine3::IDENTITY, primitive.material);
+            let instance = Instance::new(mesh, DAffine3::IDENTITY, primitive.material);
             self.scene.instances.push(instance);
             return Ok(());
         }
         for &transform in transforms {
-            let instance = Instance::new(mesh.id, node.to_world * transform, primitive.material);
+            let instance = Instance::new(mesh, node.to_world * transform, primitive.material);
             // An instance that moves may be flat at one time and not at another.
             if let Some(animated) = node.animated {
                 self.clip.objects.push(Animated::Instance {
@@ -50,35 +50,38 @@ impl Importer<'_> {
         Ok(())
     }
 
-    /// Adds the implicit shape of a node to the scene.
-    pub(super) fn add_shape(&mut self, shape: NodeShape, node: &SceneNode) -> Result<()> {
-        let NodeShape { shape, material } = shape;
+    /// Adds the implicit shape of a node to the scene, with the material of an index in the file.
+    pub(super) fn add_shape(
+        &mut self,
+        shape: ImplicitShape,
+        material: Option<usize>,
+        node: &SceneNode,
+    ) -> Result<()> {
         let path = format!("nodes[{}].extensions.KHR_implicit_shapes", node.index);
+        // The material is that which the node names beside the shape.
         let by = format!("{path}.material");
         let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-        let material = self.materials.material(material, &by, scene, diagnostics)?.id;
+        let (material, _) = self.materials.material(material, &by, scene, diagnostics)?;
+
+        // Spheres and planes are added as what they are.
         let mesh = match shape {
             ImplicitShape::Sphere(radius) => {
-                match implicit_shapes::transformed_sphere(&node.to_world, radius) {
-                    Some(sphere) => {
-                        if node.animated.is_some() {
-                            self.clip.objects.push(Animated::Sphere {
-                                sphere: scene.spheres.len(),
-                                node: node.animated,
-                                center: node.to_animated.translation,
-                                radius: None,
-                            });
-                        }
-                        scene.spheres.push(Sphere::new(sphere.center, sphere.radius, material));
-                        return Ok(());
-                    }
-                    None => implicit_shapes::sphere_mesh(radius),
+                if node.animated.is_some() {
+                    self.clip.objects.push(Animated::Sphere {
+                        sphere: scene.spheres.len(),
+                        node: node.animated,
+                        center: node.to_animated.translation,
+                        radius: None,
+                    });
                 }
+                scene.spheres.push(Sphere::new(node.to_world.translation, radius, material));
+                return Ok(());
             }
             ImplicitShape::Plane => {
                 let is_animated = u64::from(node.animated.is_some());
                 let reason = "{} planes stand still on nodes that move";
                 diagnostics.unsupported(reason, is_animated, || path.clone());
+                // The plane faces along Y of its node, however that is scaled.
                 let normal = node.to_world.matrix3.inverse().transpose() * DVec3::Y;
                 match normal.try_normalize() {
                     Some(normal) => {
@@ -91,9 +94,11 @@ impl Importer<'_> {
             }
             ImplicitShape::Mesh(mesh) => *mesh,
         };
+
+        // All other shapes are meshes, placed like those of the file.
         let mesh =
             PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
-        let primitive = ImportedPrimitive { mesh, material, id: None };
+        let primitive = ImportedPrimitive { mesh, material };
         self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
     }
 }

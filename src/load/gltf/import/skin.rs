@@ -3,73 +3,74 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DMat4};
-use gltf::json;
-use gltf::json::mesh::{Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf::json::mesh::Semantic;
 
+use super::mesh::PrimitiveReader;
 use super::nodes::SceneNode;
 use crate::error::Result;
-use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{error_at, lookup};
 use crate::scene::animation::{Influences, Joint};
 
-/// Reads how joints influence the `count` vertices of a primitive, if they do.
-///
-/// # Errors
-/// When an accessor cannot be read, or is not as long as the positions.
-pub fn read_influences(
-    primitive: &Primitive,
-    accessors: &Accessors,
-    count: usize,
-    diagnostics: &mut Diagnostics,
-    path: &str,
-) -> Result<Option<Influences>> {
-    let index = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).map(|i| i.value());
-    let sets = (0..).map_while(|n| index(Semantic::Joints(n)).zip(index(Semantic::Weights(n))));
+impl PrimitiveReader<'_> {
+    /// Reads how joints influence the `count` vertices of a primitive, if they do.
+    ///
+    /// # Errors
+    /// When an accessor cannot be read, or is not as long as the positions.
+    pub(super) fn influences(&mut self, count: usize) -> Result<Option<Influences>> {
+        let Self { accessors, path, .. } = *self;
+        let index = |semantic| self.accessor(semantic);
+        let sets = (0..).map_while(|n| index(Semantic::Joints(n)).zip(index(Semantic::Weights(n))));
 
-    // Each set has four joints for every vertex.
-    let mut read = Vec::new();
-    for (n, (joints, weights)) in sets.enumerate() {
-        let path = |name: &str| format!("{path}.attributes.{name}_{n}");
-        let joints = accessors.floats::<4>(joints, &path("JOINTS"))?;
-        let weights = accessors.normalized_floats::<4>(weights, &path("WEIGHTS"))?;
-        for (found, name) in [(joints.len(), "JOINTS"), (weights.len(), "WEIGHTS")] {
-            if found != count {
-                let message = format!("{found} values for {count} vertices");
-                return Err(error_at(path(name), message));
+        // Each set has four joints for every vertex.
+        let mut read = Vec::new();
+        for (n, (joints, weights)) in sets.enumerate() {
+            let path = |name: &str| format!("{path}.attributes.{name}_{n}");
+            let joints = accessors.floats::<4>(joints, &path("JOINTS"))?;
+            let weights = accessors.normalized_floats::<4>(weights, &path("WEIGHTS"))?;
+            for (found, name) in [(joints.len(), "JOINTS"), (weights.len(), "WEIGHTS")] {
+                if found != count {
+                    let message = format!("{found} values for {count} vertices");
+                    return Err(error_at(path(name), message));
+                }
             }
+            read.push((joints, weights));
         }
-        read.push((joints, weights));
-    }
-    if read.is_empty() {
-        return Ok(None);
-    }
+        // Without joints and weights the mesh is rigid.
+        if read.is_empty() {
+            return Ok(None);
+        }
 
-    // The sets side by side for each vertex.
-    let mut influences = Influences { per_vertex: 4 * read.len(), ..Influences::default() };
-    let (mut bad, mut without_weight) = (0, 0);
-    for vertex in 0..count {
-        let first = influences.weights.len();
-        for (joints, weights) in &read {
-            influences.joints.extend(joints[vertex].map(|joint| joint as u16));
-            influences.weights.extend(weights[vertex].map(|weight| {
-                let is_valid = weight.is_finite() && weight >= 0.0;
-                bad += u64::from(!is_valid);
-                if is_valid { weight } else { 0.0 }
-            }));
+        // The sets side by side for each vertex.
+        let mut influences = Influences { per_vertex: 4 * read.len(), ..Influences::default() };
+        let (mut bad, mut without_weight) = (0, 0);
+        for vertex in 0..count {
+            let first = influences.weights.len();
+            for (joints, weights) in &read {
+                influences.joints.extend(joints[vertex].map(|joint| joint as u16));
+                influences.weights.extend(weights[vertex].map(|weight| {
+                    let is_valid = weight.is_finite() && weight >= 0.0;
+                    bad += u64::from(!is_valid);
+                    if is_valid { weight } else { 0.0 }
+                }));
+            }
+            // A vertex without any weight hangs on its first joint.
+            without_weight += u64::from(influences.weights[first..].iter().all(|w| *w == 0.0));
         }
-        without_weight += u64::from(influences.weights[first..].iter().all(|w| *w == 0.0));
+        let path = || format!("{path}.attributes.WEIGHTS_0");
+        self.diagnostics.add(
+            "{} weights of joints are negative or not finite and become 0",
+            bad,
+            path,
+        );
+        let reason = "{} vertices have no weight at any joint and hang on their first";
+        self.diagnostics.add(reason, without_weight, path);
+        Ok(Some(influences))
     }
-    let path = || format!("{path}.attributes.WEIGHTS_0");
-    diagnostics.add("{} weights of joints are negative or not finite and become 0", bad, path);
-    let reason = "{} vertices have no weight at any joint and hang on their first";
-    diagnostics.add(reason, without_weight, path);
-    Ok(Some(influences))
 }
 
 /// The joints of a skin.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct SkinJoints {
     /// The joints with the transforms that the file gives them.
     pub still: Vec<Joint>,
@@ -84,15 +85,16 @@ pub struct SkinJoints {
 /// # Errors
 /// When a reference leads nowhere, or the matrices cannot be read.
 pub fn read_joints(
-    root: &json::Root,
     accessors: &Accessors,
     nodes: &HashMap<usize, SceneNode>,
     skin: usize,
     by: &str,
 ) -> Result<SkinJoints> {
+    let root = accessors.buffers.root;
     let source = lookup(&root.skins, skin, "skin", by)?;
     let count = source.joints.len();
     let path = format!("skins[{skin}].inverseBindMatrices");
+    // The inverse bind matrices take the space of the mesh to that of each joint.
     let matrices = match source.inverse_bind_matrices {
         Some(index) => accessors.floats::<16>(index.value(), &path)?,
         None => vec![DMat4::IDENTITY.as_mat4().to_cols_array(); count],
@@ -103,11 +105,9 @@ pub fn read_joints(
     if !matrices.as_flattened().iter().all(|x| x.is_finite()) {
         return Err(error_at(path, "a matrix has a number that is not finite"));
     }
-    let mut joints = SkinJoints {
-        still: Vec::with_capacity(count),
-        animated: Vec::with_capacity(count),
-        is_animated: false,
-    };
+    let mut joints = SkinJoints::default();
+
+    // Each joint as the file places it, and as it moves with the animation.
     for (i, (joint, matrix)) in source.joints.iter().zip(&matrices).enumerate() {
         let by = format_args!("skins[{skin}].joints[{i}]");
         lookup(&root.nodes, joint.value(), "node", by)?;

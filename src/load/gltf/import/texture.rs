@@ -4,9 +4,8 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use glam::Affine2;
-use gltf::json;
 use gltf::json::texture::{MagFilter, MinFilter, WrappingMode};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use super::texture_reference::TextureReference;
 use crate::error::{Error, Result};
@@ -16,13 +15,10 @@ use crate::load::gltf::json::{as_index, at_path, lookup};
 use crate::load::images::decode;
 use crate::load::images::placeholder::set_image_or_placeholder;
 use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
-use crate::load::sandbox::Sandbox;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
 /// The textures of a file; the images that they show are decoded when all are known.
 pub struct Textures<'a> {
-    root: &'a json::Root,
-    sandbox: &'a Sandbox,
     buffers: &'a Buffers<'a>,
     /// True if images are read; otherwise they are only named.
     reads_images: bool,
@@ -59,13 +55,8 @@ enum ImageBytes<'a> {
 
 impl<'a> Textures<'a> {
     /// The textures of a file, without any so far.
-    pub fn new(
-        root: &'a json::Root,
-        sandbox: &'a Sandbox,
-        buffers: &'a Buffers<'a>,
-        reads_images: bool,
-    ) -> Self {
-        Self { root, sandbox, buffers, reads_images, cache: TextureCache::default() }
+    pub fn new(buffers: &'a Buffers<'a>, reads_images: bool) -> Self {
+        Self { buffers, reads_images, cache: TextureCache::default() }
     }
 
     /// The texture of the scene for a material's reference, which is at the JSON path `by`; it is
@@ -89,11 +80,12 @@ impl<'a> Textures<'a> {
         }
 
         // Follow the texture's own references.
+        let root = self.buffers.root;
         let path = format!("textures[{index}]");
-        let texture = lookup(&self.root.textures, index, "texture", by)?;
+        let texture = lookup(&root.textures, index, "texture", by)?;
         let lookup_sampler = |sampler: json::Index<_>| {
             let by = format_args!("{path}.sampler");
-            lookup(&self.root.samplers, sampler.value(), "sampler", by)
+            lookup(&root.samplers, sampler.value(), "sampler", by)
         };
         let sampler = texture.sampler.map(lookup_sampler).transpose()?;
         let image = match image_index(texture) {
@@ -104,10 +96,13 @@ impl<'a> Textures<'a> {
             }
         };
 
+        // Without a transform that is finite the coordinates would not be either.
         if !transform.is_finite() {
             diagnostics.note(format!("{path}: a transform that is not finite is left out"));
             transform = Affine2::IDENTITY;
         }
+
+        // A texture without a sampler repeats, is interpolated, and has mipmaps.
         Ok(self.cache.texture(key, image, scene, |image| Texture {
             transfer,
             wrap: sampler.map_or([Wrap::Repeat; 2], |s| [wrap(s.wrap_s), wrap(s.wrap_t)]),
@@ -121,16 +116,13 @@ impl<'a> Textures<'a> {
 
     /// The image with an index in the file; several of one file, URI or buffer view are the same.
     fn image(&mut self, index: usize, by: impl Display) -> Result<ImageIndex> {
-        let image = lookup(&self.root.images, index, "image", by)?;
+        let image = lookup(&self.buffers.root.images, index, "image", by)?;
         let path = format!("images[{index}]");
         let found = match (&image.uri, image.buffer_view) {
-            (Some(uri), _) => match self.buffers.resolve(uri) {
-                Ok(UriTarget::Data(_)) => Ok((ImageKey::DataUri(uri), ImageBytes::Uri(uri))),
-                Ok(UriTarget::File(file)) => {
-                    Ok((ImageKey::File(file.identity), ImageBytes::Uri(uri)))
-                }
-                Err(error) => Err(unreadable("image", uri, &error)),
-            },
+            (Some(uri), _) => resolve(self.buffers, uri).map(|target| match target {
+                UriTarget::Data(_) => (ImageKey::DataUri(uri), ImageBytes::Uri(uri)),
+                UriTarget::File(file) => (ImageKey::File(file.identity), ImageBytes::Uri(uri)),
+            }),
             (None, Some(view)) => {
                 let bytes = self.buffers.view(view.value(), &format!("{path}.bufferView"));
                 bytes.map(|b| (ImageKey::BufferView(view.value()), ImageBytes::BufferView(b)))
@@ -146,25 +138,28 @@ impl<'a> Textures<'a> {
     /// Decodes the images, in parallel, and gives them to the textures of the scene. For one that
     /// cannot be read there is a warning and a placeholder.
     pub fn decode_images(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
-        let Self { sandbox, buffers, reads_images, cache, .. } = self;
-        let open = |image: &ImageSource<'a>| match image.bytes.clone()? {
-            ImageBytes::BufferView(bytes) => {
-                Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
-            }
-            ImageBytes::Uri(uri) => match buffers.resolve(uri) {
-                Ok(UriTarget::Data(bytes)) => {
-                    Ok(decode::Source::Bytes(bytes.into(), image.path.clone()))
-                }
-                Ok(UriTarget::File(file)) => Ok(decode::Source::File(file)),
-                Err(error) => Err(unreadable("image", uri, &error)),
-            },
+        let Self { buffers, reads_images, cache } = self;
+        let open = |image: &ImageSource<'a>| {
+            let bytes = match image.bytes.clone()? {
+                ImageBytes::BufferView(bytes) => bytes.into(),
+                ImageBytes::Uri(uri) => match resolve(buffers, uri)? {
+                    UriTarget::Data(bytes) => bytes.into(),
+                    UriTarget::File(file) => return Ok(decode::Source::File(file)),
+                },
+            };
+            Ok(decode::Source::Bytes(bytes, image.path.clone()))
         };
-        for decoded in cache.decode(sandbox, open, |_| reads_images) {
-            let path = decoded.source.path;
-            let image = decoded.image.map_err(at_path(&path));
-            set_image_or_placeholder(image, &path, &decoded.textures, scene, diagnostics);
+        for (cached, image) in cache.decode(buffers.sandbox, open, |_| reads_images) {
+            let path = cached.source.path;
+            let image = image.map_err(at_path(&path));
+            set_image_or_placeholder(image, &path, &cached.textures, scene, diagnostics);
         }
     }
+}
+
+/// Decodes the data in the URI of an image, or opens the file that it names.
+fn resolve(buffers: &Buffers, uri: &str) -> Result<UriTarget> {
+    buffers.resolve(uri).map_err(|error| unreadable("image", uri, &error))
 }
 
 /// Returns the index of the image that a texture shows; that of an extension where there is one.
@@ -187,15 +182,12 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
 /// Returns the magnification filter; if there is only a minification filter, that.
 fn filter(sampler: &json::texture::Sampler) -> Filter {
     use MinFilter::{Nearest, NearestMipmapLinear, NearestMipmapNearest};
-    match sampler.mag_filter {
-        Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
-        Some(_) => Filter::Linear,
-        None => match sampler.min_filter {
-            Some(Checked::Valid(Nearest | NearestMipmapLinear | NearestMipmapNearest)) => {
-                Filter::Nearest
-            }
-            _ => Filter::Linear,
-        },
+    match (sampler.mag_filter, sampler.min_filter) {
+        (Some(Checked::Valid(MagFilter::Nearest)), _) => Filter::Nearest,
+        (None, Some(Checked::Valid(Nearest | NearestMipmapLinear | NearestMipmapNearest))) => {
+            Filter::Nearest
+        }
+        _ => Filter::Linear,
     }
 }
 

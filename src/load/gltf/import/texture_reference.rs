@@ -1,8 +1,7 @@
 //! The references of materials to textures.
 
 use glam::{Affine2, Mat2, Vec2};
-use gltf::json;
-use gltf::json::texture::Info;
+use gltf::json::{self, extensions::texture::TextureTransform, texture::Info};
 
 /// A reference to a texture, with the transform of its coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,48 +16,10 @@ pub struct TextureReference {
 
 const TRANSFORM: &str = "KHR_texture_transform";
 
-/// The properties of KHR_texture_transform.
-#[derive(serde::Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-struct Transform {
-    offset: [f32; 2],
-    rotation: f32,
-    scale: [f32; 2],
-    tex_coord: Option<u32>,
-}
-
-impl Default for Transform {
-    fn default() -> Self {
-        Self { offset: [0.0; 2], rotation: 0.0, scale: [1.0; 2], tex_coord: None }
-    }
-}
-
-impl Transform {
-    /// Returns the transform: scale, then rotate, then offset.
-    ///
-    /// Positive angles turn counter-clockwise as one sees the image, whose v runs down: so do
-    /// Khronos' viewer and its TextureTransformTest, while the GLSL in the extension's text has the
-    /// sign the other way.
-    fn affine(&self) -> Affine2 {
-        let (sin, cos) = self.rotation.sin_cos();
-        let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
-        Affine2::from_mat2_translation(
-            turn * Mat2::from_diagonal(self.scale.into()),
-            self.offset.into(),
-        )
-    }
-}
-
 impl TextureReference {
     /// The reference of a plain texture info.
     pub fn from_info(info: &Info) -> Self {
-        let extension = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref());
-        let transform = extension.map(|t| Transform {
-            offset: t.offset.0,
-            rotation: t.rotation.0,
-            scale: t.scale.0,
-            tex_coord: t.tex_coord,
-        });
+        let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
         Self::new(info.index.value(), info.tex_coord, transform)
     }
 
@@ -74,16 +35,33 @@ impl TextureReference {
         Self::new(info.index.value(), info.tex_coord, transform.and_then(parse_transform))
     }
 
-    fn new(index: usize, tex_coord: u32, transform: Option<Transform>) -> Self {
+    fn new(index: usize, tex_coord: u32, transform: Option<TextureTransform>) -> Self {
         let transform = transform.unwrap_or_default();
         let uv_set = transform.tex_coord.unwrap_or(tex_coord);
-        Self { index, uv_set, transform: transform.affine() }
+        Self { index, uv_set, transform: affine(&transform) }
     }
 }
 
-/// Parses a transform that the `gltf` crate leaves as JSON; `None` if it is not one.
-fn parse_transform(extension: &json::Value) -> Option<Transform> {
-    json::deserialize::from_value(extension.clone()).ok()
+/// Returns the affine transform: scale, then rotate, then offset.
+///
+/// Positive angles turn counter-clockwise as one sees the image, whose v runs down: so do Khronos'
+/// viewer and its TextureTransformTest, while the GLSL in the extension's text has the sign the
+/// other way.
+fn affine(transform: &TextureTransform) -> Affine2 {
+    let (sin, cos) = transform.rotation.0.sin_cos();
+    let turn = Mat2::from_cols(Vec2::new(cos, -sin), Vec2::new(sin, cos));
+    let scale = Mat2::from_diagonal(transform.scale.0.into());
+    Affine2::from_mat2_translation(turn * scale, transform.offset.0.into())
+}
+
+/// Parses a transform that the `gltf` crate leaves as JSON, without its `extras`, which may be
+/// anything; `None` if it is not one.
+fn parse_transform(extension: &json::Value) -> Option<TextureTransform> {
+    let mut transform = extension.clone();
+    if let Some(properties) = transform.as_object_mut() {
+        properties.remove("extras");
+    }
+    json::deserialize::from_value(transform).ok()
 }
 
 #[cfg(test)]
@@ -94,7 +72,8 @@ mod tests {
     fn transform_scales_then_turns_then_shifts() {
         let rotation = std::f32::consts::FRAC_PI_2;
         let (offset, scale) = ([10.0, 20.0], [2.0, 3.0]);
-        let transform = Transform { offset, rotation, scale, tex_coord: None }.affine();
+        let transform = serde_json::json!({"offset": offset, "rotation": rotation, "scale": scale});
+        let transform = affine(&parse_transform(&transform).unwrap());
         let [u, v] = transform.transform_point2(Vec2::X).to_array();
         // (1, 0) becomes (2, 0), turns to (0, −2), which is up, and is shifted.
         assert!((u - 10.0).abs() < 1e-6 && (v - 18.0).abs() < 1e-6, "{u} {v}");

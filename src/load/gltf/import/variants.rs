@@ -2,9 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use gltf::json;
-use gltf::json::Value;
-use gltf::json::mesh::Primitive;
+use gltf::json::{self, Value, mesh::Primitive};
 
 use crate::load::gltf::json::{as_index, list};
 
@@ -17,14 +15,6 @@ pub struct Variants<'a> {
     shown: Option<u64>,
 }
 
-/// A primitive's reference to its material.
-pub struct MaterialReference {
-    /// The index of the material, if the primitive has one.
-    pub index: Option<usize>,
-    /// The JSON path of the reference.
-    pub path: String,
-}
-
 impl<'a> Variants<'a> {
     /// Reads the variants of a file, of which the first with this name is shown.
     pub fn read(root: &'a json::Root, name: Option<&str>) -> Self {
@@ -35,24 +25,21 @@ impl<'a> Variants<'a> {
         Self { names: named().map(|(_, name)| name).collect(), shown }
     }
 
-    /// Returns the material of a primitive, whose JSON path is `path`. A primitive that does not
-    /// mention the variant keeps its default.
-    pub fn material(&self, primitive: &Primitive, path: &str) -> MaterialReference {
-        self.variant_material(primitive, path).unwrap_or_else(|| MaterialReference {
-            index: primitive.material.map(|m| m.value()),
-            path: format!("{path}.material"),
-        })
-    }
-
-    fn variant_material(&self, primitive: &Primitive, path: &str) -> Option<MaterialReference> {
-        let shown = Value::from(self.shown?);
-        let extension = primitive.extensions.as_ref()?.others.get(EXTENSION)?;
-        let mut mappings = list(extension, "mappings").iter().enumerate();
-        let (i, mapping) = mappings.find(|(_, m)| list(m, "variants").contains(&shown))?;
-        // A value that is no index becomes one that no file has.
-        let index = mapping.get("material").and_then(as_index).unwrap_or(usize::MAX);
-        let path = format!("{path}.extensions.{EXTENSION}.mappings[{i}].material");
-        Some(MaterialReference { index: Some(index), path })
+    /// Returns the index of the material of a primitive, whose JSON path is `path`, if it has one;
+    /// and the path of the reference to it. A primitive that does not mention the variant keeps its
+    /// default.
+    pub fn material(&self, primitive: &Primitive, path: &str) -> (Option<usize>, String) {
+        let of_variant = || {
+            let shown = Value::from(self.shown?);
+            let extension = primitive.extensions.as_ref()?.others.get(EXTENSION)?;
+            let mut mappings = list(extension, "mappings").iter().enumerate();
+            let (i, mapping) = mappings.find(|(_, m)| list(m, "variants").contains(&shown))?;
+            // A value that is no index becomes one that no file has.
+            let index = mapping.get("material").and_then(as_index).unwrap_or(usize::MAX);
+            Some((Some(index), format!("{path}.extensions.{EXTENSION}.mappings[{i}].material")))
+        };
+        let default = || (primitive.material.map(|m| m.value()), format!("{path}.material"));
+        of_variant().unwrap_or_else(default)
     }
 
     /// The names of the variants.

@@ -2,7 +2,7 @@
 
 use gltf::json::Value;
 
-use super::{JsonPath, Segment, error_at};
+use super::{JsonPath, error_at};
 use crate::error::Result;
 
 /// The keys of an index or a constant, or of a list of them.
@@ -20,34 +20,25 @@ const INDEX_KEYS: [&str; 21] = [
 ///
 /// # Errors
 /// When one does.
-pub fn check<'v>(value: &'v Value, path: &mut JsonPath<'v>, in_attributes: bool) -> Result<()> {
+pub fn check(value: &Value, path: &JsonPath, in_attributes: bool) -> Result<()> {
     match value {
-        Value::Array(items) => {
-            for (i, item) in items.iter().enumerate() {
-                path.push(Segment::Index(i));
-                check(item, path, in_attributes)?;
-                path.pop();
-            }
-        }
-        Value::Object(map) => {
-            for (key, value) in map {
-                // All values in the attributes and targets of a primitive are indices.
-                let in_attributes =
-                    in_attributes || matches!(key.as_str(), "attributes" | "targets");
-                path.push(Segment::Key(key));
-                check(value, path, in_attributes)?;
-                path.pop();
-            }
-        }
+        Value::Array(items) => items.iter().enumerate().try_for_each(|(i, item)| {
+            // The items of a list of indices are indices.
+            check(item, &JsonPath::Item(path, i), in_attributes)
+        }),
+        Value::Object(map) => map.iter().try_for_each(|(key, value)| {
+            // All values in the attributes and targets of a primitive are indices.
+            let in_attributes = in_attributes || matches!(key.as_str(), "attributes" | "targets");
+            check(value, &JsonPath::Key(path, key), in_attributes)
+        }),
         // Sizes in bytes and counts are 64 bits wide, and checked where they are used.
         Value::Number(n)
             if n.as_u64().is_some_and(|n| n > u64::from(u32::MAX))
                 && (in_attributes || INDEX_KEYS.contains(&path.last_key())) =>
         {
-            return Err(error_at(path, format!("{n} is too large a number here"))
-                .help("indices and constants are below 4294967296"));
+            Err(error_at(path, format!("{n} is too large a number here"))
+                .help("indices and constants are below 4294967296"))
         }
-        _ => {}
+        _ => Ok(()),
     }
-    Ok(())
 }

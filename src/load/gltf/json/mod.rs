@@ -12,38 +12,21 @@ use crate::error::{Error, Location, Result};
 pub use parse::{Document, as_natural, estimated_memory, parse};
 
 /// The path from the root of the JSON to a value, which displays as `nodes[3].children[0]`.
-#[derive(Default)]
-pub struct JsonPath<'v>(Vec<Segment<'v>>);
-
-/// A step of a [`JsonPath`].
 #[derive(Clone, Copy)]
-pub enum Segment<'v> {
-    /// To the value of a key in an object.
-    Key(&'v str),
-    /// To an item of a list.
-    Index(usize),
+pub enum JsonPath<'p> {
+    /// The root itself.
+    Root,
+    /// The value of a key in the object at a path.
+    Key(&'p JsonPath<'p>, &'p str),
+    /// An item of the list at a path.
+    Item(&'p JsonPath<'p>, usize),
 }
 
-impl<'v> JsonPath<'v> {
-    /// True if it is the path of the root itself.
-    pub fn is_root(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    /// Adds a segment.
-    pub fn push(&mut self, segment: Segment<'v>) {
-        self.0.push(segment);
-    }
-
-    /// Removes the last segment.
-    pub fn pop(&mut self) {
-        self.0.pop();
-    }
-
+impl JsonPath<'_> {
     /// Returns the key of the value, or of the list that it is an item of; empty if there is none.
-    pub fn last_key(&self) -> &'v str {
-        match self.0[..] {
-            [.., Segment::Key(key)] | [.., Segment::Key(key), Segment::Index(_)] => key,
+    pub fn last_key(&self) -> &str {
+        match self {
+            Self::Key(_, key) | Self::Item(Self::Key(_, key), _) => key,
             _ => "",
         }
     }
@@ -51,14 +34,12 @@ impl<'v> JsonPath<'v> {
 
 impl fmt::Display for JsonPath<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, segment) in self.0.iter().enumerate() {
-            match segment {
-                Segment::Key(key) if i == 0 => f.write_str(key)?,
-                Segment::Key(key) => write!(f, ".{key}")?,
-                Segment::Index(index) => write!(f, "[{index}]")?,
-            }
+        match self {
+            Self::Root => f.write_str("the root"),
+            Self::Key(Self::Root, key) => f.write_str(key),
+            Self::Key(object, key) => write!(f, "{object}.{key}"),
+            Self::Item(list, index) => write!(f, "{list}[{index}]"),
         }
-        Ok(())
     }
 }
 

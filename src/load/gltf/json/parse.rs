@@ -1,8 +1,7 @@
 //! The parser of a file's JSON, more lenient than the types of the `gltf` crate where these refuse
 //! a file for no reason, and stricter where they let pass what would mean something else.
 
-use gltf::json;
-use gltf::json::Value;
+use gltf::json::{self, Value};
 
 use super::super::container::wrong_version;
 use super::super::validate;
@@ -45,6 +44,7 @@ pub struct Document {
 /// # Errors
 /// When it is not JSON, not glTF 2, or lacks what the crate's types need; at a JSON path or a line.
 pub fn parse(bytes: &[u8]) -> Result<Document> {
+    // Most files are what the crate expects; the others are read once more.
     let root = match json::deserialize::from_slice::<json::Root>(bytes) {
         Ok(root) => root,
         Err(error) => parse_leniently(bytes, &error)?,
@@ -64,7 +64,7 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
         digits == 10
     };
     if bytes.iter().any(is_tenth_digit) {
-        large_indices::check(&value, &mut JsonPath::default(), false)?;
+        large_indices::check(&value, &JsonPath::Root, false)?;
     }
     Ok(Document { root, value: Some(value) })
 }
@@ -78,6 +78,7 @@ fn unsupported_version(version: &str) -> Error {
 fn parse_leniently(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
     let mut value: Value =
         json::deserialize::from_slice(bytes).map_err(|_| syntax_error(bytes, error))?;
+    // The version: the crate cannot say that a file is of another one.
     let is_object = |key: &&str| value.get(key).is_some_and(Value::is_object);
     match value.get("asset").and_then(|a| a.get("version")) {
         Some(Value::String(version)) if version.starts_with('2') => {}
@@ -91,6 +92,7 @@ fn parse_leniently(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
                 .help("a glTF file has `\"asset\": {\"version\": \"2.0\"}`"));
         }
     }
+    // What the crate demands and the standard does not is filled in or removed.
     for scene in items_mut(&mut value, "scenes") {
         if let Some(scene) = scene.as_object_mut() {
             scene.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
@@ -98,6 +100,8 @@ fn parse_leniently(bytes: &[u8], error: &json::Error) -> Result<json::Root> {
     }
     items_mut(&mut value, "animations").for_each(simplify_animation);
     normalize(&mut value);
+
+    // What is still refused is named by our own schema, which says where it is.
     let missing_or_mistyped = validate::first_missing_or_mistyped(&value);
     json::deserialize::from_value(value).map_err(|_| match missing_or_mistyped {
         Some((path, what)) => error_at(path, format!("not what glTF has here: {what}")),
@@ -117,9 +121,11 @@ fn simplify_animation(animation: &mut Value) {
     let is_sampler = |s: &Value| is_number(s.get("input")) && is_number(s.get("output"));
     let all_samplers_whole = list(animation, "samplers").iter().all(is_sampler);
     let Some(object) = animation.as_object_mut() else { return };
+    // The crate demands both lists.
     for key in ["channels", "samplers"] {
         object.entry(key).or_insert_with(|| Value::Array(Vec::new()));
     }
+    // A sampler that lacks its input or output costs all of them, since channels count them.
     if !all_samplers_whole || !object["samplers"].is_array() {
         object.insert("samplers".to_owned(), Value::Array(Vec::new()));
     }
@@ -129,6 +135,8 @@ fn simplify_animation(animation: &mut Value) {
             sampler.insert("interpolation".to_owned(), "?".into());
         }
     }
+
+    // Channels that move no node, or lack what the crate demands, are removed.
     if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
         channels.retain(|channel| {
             let target = channel.get("target");

@@ -66,7 +66,7 @@ pub fn is_attribute(name: &str) -> bool {
 pub fn prerequisite(name: &str) -> Option<String> {
     match name.rsplit_once('_')? {
         (set @ ("TEXCOORD" | "COLOR"), n) => {
-            n.parse::<u32>().ok().filter(|n| *n > 0).map(|n| format!("{set}_{}", n - 1))
+            Some(format!("{set}_{}", n.parse::<u32>().ok()?.checked_sub(1)?))
         }
         ("JOINTS", n) => Some(format!("WEIGHTS_{n}")),
         ("WEIGHTS", n) => Some(format!("JOINTS_{n}")),

@@ -2,13 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::schema::Kind::{
-    Attributes, Flag, Index, Integer, List, Number, Object, Set, Text, Vector,
-};
-use super::schema::{
-    ABOVE_0, ALL, NOT_NEGATIVE, NumberRange, Property, SHARE, Schema, TEXTURE_INFO, optional,
-    required, schema,
-};
+use super::schema::Kind::*;
+use super::schema::*;
 
 /// An extension's name, the object that it belongs to, and its properties. Extensions that no
 /// object of theirs may have are not listed.
@@ -24,15 +19,12 @@ pub const EXTENSIONS: &[(&str, &str, &[Property])] = &[
     ("KHR_lights_punctual", "glTF", &[required("lights", List(&Object(&LIGHT)))]),
     ("KHR_lights_punctual", "node", &[required("light", Index("KHR_lights_punctual.lights"))]),
     ("KHR_materials_anisotropy", "material", &[
-        optional("anisotropyStrength", Number(SHARE)), optional("anisotropyRotation", Number(ALL)),
-        optional("anisotropyTexture", Object(&TEXTURE_INFO)),
+        share("anisotropyStrength"), optional("anisotropyRotation", Number(ALL)),
+        texture("anisotropyTexture"),
     ]),
     ("KHR_materials_clearcoat", "material", &[
-        optional("clearcoatFactor", Number(SHARE)),
-        optional("clearcoatTexture", Object(&TEXTURE_INFO)),
-        optional("clearcoatRoughnessFactor", Number(SHARE)),
-        optional("clearcoatRoughnessTexture", Object(&TEXTURE_INFO)),
-        optional("clearcoatNormalTexture", Object(&TEXTURE_INFO)),
+        share("clearcoatFactor"), texture("clearcoatTexture"), share("clearcoatRoughnessFactor"),
+        texture("clearcoatRoughnessTexture"), texture("clearcoatNormalTexture"),
     ]),
     ("KHR_materials_dispersion", "material", &[optional("dispersion", Number(NOT_NEGATIVE))]),
     ("KHR_materials_emissive_strength", "material", &[
@@ -41,44 +33,38 @@ pub const EXTENSIONS: &[(&str, &str, &[Property])] = &[
     // An index of refraction of 0 is valid too, which the check of numbers knows.
     ("KHR_materials_ior", "material", &[optional("ior", Number(FROM_1_OR_0))]),
     ("KHR_materials_iridescence", "material", &[
-        optional("iridescenceFactor", Number(SHARE)),
-        optional("iridescenceTexture", Object(&TEXTURE_INFO)),
+        share("iridescenceFactor"), texture("iridescenceTexture"),
         optional("iridescenceIor", Number(FROM_1_OR_0)),
         optional("iridescenceThicknessMinimum", Number(NOT_NEGATIVE)),
         optional("iridescenceThicknessMaximum", Number(NOT_NEGATIVE)),
-        optional("iridescenceThicknessTexture", Object(&TEXTURE_INFO)),
+        texture("iridescenceThicknessTexture"),
     ]),
     ("KHR_materials_pbrSpecularGlossiness", "material", &[
-        optional("diffuseFactor", Vector(4, SHARE)),
-        optional("diffuseTexture", Object(&TEXTURE_INFO)),
-        optional("specularFactor", Vector(3, SHARE)), optional("glossinessFactor", Number(SHARE)),
-        optional("specularGlossinessTexture", Object(&TEXTURE_INFO)),
+        optional("diffuseFactor", Vector(4, SHARE)), texture("diffuseTexture"),
+        optional("specularFactor", Vector(3, SHARE)), share("glossinessFactor"),
+        texture("specularGlossinessTexture"),
     ]),
     ("KHR_materials_sheen", "material", &[
-        optional("sheenColorFactor", Vector(3, SHARE)),
-        optional("sheenColorTexture", Object(&TEXTURE_INFO)),
-        optional("sheenRoughnessFactor", Number(SHARE)),
-        optional("sheenRoughnessTexture", Object(&TEXTURE_INFO)),
+        optional("sheenColorFactor", Vector(3, SHARE)), texture("sheenColorTexture"),
+        share("sheenRoughnessFactor"), texture("sheenRoughnessTexture"),
     ]),
     ("KHR_materials_specular", "material", &[
-        optional("specularFactor", Number(SHARE)),
-        optional("specularTexture", Object(&TEXTURE_INFO)),
-        optional("specularColorFactor", Vector(3, NOT_NEGATIVE)),
-        optional("specularColorTexture", Object(&TEXTURE_INFO)),
+        share("specularFactor"), texture("specularTexture"),
+        optional("specularColorFactor", Vector(3, NOT_NEGATIVE)), texture("specularColorTexture"),
     ]),
     ("KHR_materials_transmission", "material", &[
-        optional("transmissionFactor", Number(SHARE)),
-        optional("transmissionTexture", Object(&TEXTURE_INFO)),
+        share("transmissionFactor"), texture("transmissionTexture"),
     ]),
     ("KHR_materials_unlit", "material", &[]),
     ("KHR_materials_variants", "glTF", &[required("variants", List(&Object(&VARIANT)))]),
     ("KHR_materials_variants", "primitive", &[required("mappings", List(&Object(&MAPPING)))]),
     ("KHR_materials_volume", "material", &[
-        optional("thicknessFactor", Number(NOT_NEGATIVE)),
-        optional("thicknessTexture", Object(&TEXTURE_INFO)),
+        optional("thicknessFactor", Number(NOT_NEGATIVE)), texture("thicknessTexture"),
         optional("attenuationDistance", Number(ABOVE_0)),
         optional("attenuationColor", Vector(3, SHARE)),
     ]),
+    // It has no object, wherever it is used.
+    ("KHR_mesh_quantization", "nothing", &[]),
     ("KHR_node_visibility", "node", &[optional("visible", Flag)]),
     ("KHR_texture_basisu", "texture", &[optional("source", Index("images"))]),
     ("KHR_texture_transform", "textureInfo", &[
@@ -87,14 +73,11 @@ pub const EXTENSIONS: &[(&str, &str, &[Property])] = &[
     ]),
 ];
 
-/// The extensions that have no object, wherever they are used.
-pub const WITHOUT_OBJECT: [&str; 1] = ["KHR_mesh_quantization"];
-
 /// The range of indices of refraction.
 const FROM_1_OR_0: NumberRange = NumberRange { least: 1.0, ..ALL };
 
 const LIGHT: Schema = schema("", &[
-    optional("name", Text), required("type", Text), optional("color", Vector(3, SHARE)),
+    NAME, required("type", Text), optional("color", Vector(3, SHARE)),
     optional("intensity", Number(NOT_NEGATIVE)), optional("range", Number(ABOVE_0)),
     optional("spot", Object(&SPOT)),
 ]);

@@ -13,6 +13,7 @@ mod rules;
 #[rustfmt::skip]
 mod schema;
 
+use std::collections::HashSet;
 use std::fmt::Display;
 
 use gltf::json::Value;
@@ -22,63 +23,89 @@ use crate::load::diagnostics::Diagnostics;
 
 /// Warns of what is not valid in a file; `bin` is the length of a GLB's binary chunk.
 pub fn validate(root: &Value, bin: Option<usize>, diagnostics: &mut Diagnostics) {
-    let mut issues = Issues(&mut |kind: IssueKind, path, message| {
-        diagnostics.add(kind.0, 1, || format!("{path} ({message})"));
-    });
-    properties::check(root, &mut issues);
-    buffers::check(root, bin, &mut issues);
-    rules::check(root, &mut issues);
+    let mut validator = Validator::new(
+        root,
+        Box::new(|kind, path, message| {
+            diagnostics.add(kind, 1, || format!("{path} ({message})"));
+        }),
+    );
+    validator.check_properties();
+    validator.check_buffers(bin);
+    validator.check_rules();
 }
 
 /// Returns the path of the first property that is missing or of the wrong type, and what is wrong.
 pub fn first_missing_or_mistyped(root: &Value) -> Option<(String, String)> {
     let mut first = None;
-    let mut issues = Issues(&mut |kind, path, message| {
-        if first.is_none() && (kind == IssueKind::MISSING || kind == IssueKind::TYPE) {
-            first = Some((path.to_string(), message.to_string()));
-        }
-    });
-    properties::check(root, &mut issues);
+    Validator::new(
+        root,
+        Box::new(|kind, path, message| {
+            if first.is_none() && (kind == MISSING || kind == TYPE) {
+                first = Some((path.to_string(), message.to_string()));
+            }
+        }),
+    )
+    .check_properties();
     first
 }
 
 /// A kind of issue: the sentence about issues of this kind, with `{}` where their number belongs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct IssueKind(&'static str);
+type IssueKind = &'static str;
 
-impl IssueKind {
-    const EMPTY: Self = Self("not valid glTF: {} lists are empty or name something twice");
-    const EXTENSION: Self =
-        Self("not valid glTF: {} extensions stand where they do not belong, or are not declared");
-    const LAYOUT: Self = Self("not valid glTF: {} ranges of bytes do not fit in what holds them");
-    const MISSING: Self = Self("not valid glTF: {} properties are missing");
-    const RANGE: Self = Self("not valid glTF: {} values are out of range");
-    const REFERENCE: Self = Self("not valid glTF: {} references lead nowhere");
-    const RULE: Self = Self("not valid glTF: {} objects contradict themselves or others");
-    const TYPE: Self = Self("not valid glTF: {} values are of the wrong type");
+const EMPTY: IssueKind = "not valid glTF: {} lists are empty or name something twice";
+const EXTENSION: IssueKind =
+    "not valid glTF: {} extensions stand where they do not belong, or are not declared";
+const LAYOUT: IssueKind = "not valid glTF: {} ranges of bytes do not fit in what holds them";
+const MISSING: IssueKind = "not valid glTF: {} properties are missing";
+const RANGE: IssueKind = "not valid glTF: {} values are out of range";
+const REFERENCE: IssueKind = "not valid glTF: {} references lead nowhere";
+const RULE: IssueKind = "not valid glTF: {} objects contradict themselves or others";
+const TYPE: IssueKind = "not valid glTF: {} values are of the wrong type";
+
+/// The validation of a file, which reports its issues: of each the kind, the JSON path, and a
+/// message.
+struct Validator<'a> {
+    root: &'a Value,
+    /// The names of the extensions that the file declares.
+    used: HashSet<&'a str>,
+    report: Report<'a>,
 }
 
-/// The receiver of the issues of a file: of each the kind, the JSON path, and a message.
-struct Issues<'a>(&'a mut dyn FnMut(IssueKind, &dyn Display, &dyn Display));
+type Report<'a> = Box<dyn FnMut(IssueKind, &dyn Display, &dyn Display) + 'a>;
 
-impl Issues<'_> {
-    /// Reports an issue of a kind if `is_valid` is false.
-    fn check(
-        &mut self,
-        kind: IssueKind,
-        is_valid: bool,
-        path: impl Display,
-        message: impl Display,
-    ) {
-        if !is_valid {
-            self.0(kind, &path, &message);
+impl<'a> Validator<'a> {
+    fn new(root: &'a Value, report: Report<'a>) -> Self {
+        Self { root, used: names(root, "extensionsUsed"), report }
+    }
+
+    /// Reports an issue of a kind, unless what is checked holds.
+    fn check(&mut self, kind: IssueKind, holds: bool, path: impl Display, message: impl Display) {
+        if !holds {
+            (self.report)(kind, &path, &message);
         }
     }
+
+    /// Checks each item of a list of the root, by a function of the item and its JSON path.
+    fn each(&mut self, key: &str, mut check: impl FnMut(&mut Self, &Value, &str)) {
+        for (i, item) in list(self.root, key).iter().enumerate() {
+            check(self, item, &format!("{key}[{i}]"));
+        }
+    }
+}
+
+/// Returns the strings of the list that is a property of an object.
+fn names<'v>(object: &'v Value, key: &str) -> HashSet<&'v str> {
+    list(object, key).iter().filter_map(Value::as_str).collect()
 }
 
 /// Returns an integer property of an object.
 fn integer(object: &Value, key: &str) -> Option<u64> {
     object.get(key)?.as_u64()
+}
+
+/// Returns an extension's object in an object.
+fn extension<'v>(object: &'v Value, name: &str) -> Option<&'v Value> {
+    object.get("extensions")?.get(name)
 }
 
 /// Returns the item of the root's list `to` that a property of an object refers to.

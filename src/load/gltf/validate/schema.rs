@@ -73,6 +73,16 @@ pub const fn optional(name: &'static str, kind: Kind) -> Property {
     Property { name, is_required: false, kind }
 }
 
+/// A texture, which may be missing.
+pub const fn texture(name: &'static str) -> Property {
+    optional(name, Object(&TEXTURE_INFO))
+}
+
+/// A number from 0 to 1, which may be missing.
+pub const fn share(name: &'static str) -> Property {
+    optional(name, Number(SHARE))
+}
+
 /// The range of all numbers.
 pub const ALL: NumberRange =
     NumberRange { least: f64::NEG_INFINITY, is_open: false, most: f64::INFINITY };
@@ -85,7 +95,10 @@ pub const SHARE: NumberRange = NumberRange { most: 1.0, ..NOT_NEGATIVE };
 /// The range from −1 to 1.
 const WITHIN_1: NumberRange = NumberRange { least: -1.0, most: 1.0, ..ALL };
 
-use Kind::{Attributes, Flag, Index, Integer, List, Number, Object, OneOf, Set, Text, Uri, Vector};
+/// The name that an object may have.
+pub const NAME: Property = optional("name", Text);
+
+use Kind::*;
 
 /// The root, to which all other objects belong.
 pub const ROOT: Schema = schema("glTF", &[
@@ -130,7 +143,7 @@ const SPARSE_VALUES: Schema = schema("sparse values", &[
 
 const ANIMATION: Schema = schema("animation", &[
     required("channels", List(&Object(&CHANNEL))),
-    required("samplers", List(&Object(&ANIMATION_SAMPLER))), optional("name", Text),
+    required("samplers", List(&Object(&ANIMATION_SAMPLER))), NAME,
 ]);
 
 const CHANNEL: Schema = schema("channel", &[
@@ -147,18 +160,18 @@ const ANIMATION_SAMPLER: Schema = schema("animation sampler", &[
 ]);
 
 const BUFFER: Schema = schema("buffer", &[
-    optional("uri", Uri), required("byteLength", Integer(1)), optional("name", Text),
+    optional("uri", Uri), required("byteLength", Integer(1)), NAME,
 ]);
 
 const BUFFER_VIEW: Schema = schema("bufferView", &[
     required("buffer", Index("buffers")), optional("byteOffset", Integer(0)),
     required("byteLength", Integer(1)), optional("byteStride", Integer(4)),
-    optional("target", OneOf(&[34962, 34963])), optional("name", Text),
+    optional("target", OneOf(&[34962, 34963])), NAME,
 ]);
 
 const CAMERA: Schema = schema("camera", &[
     optional("orthographic", Object(&ORTHOGRAPHIC)), optional("perspective", Object(&PERSPECTIVE)),
-    required("type", Text), optional("name", Text),
+    required("type", Text), NAME,
 ]);
 
 const ORTHOGRAPHIC: Schema = schema("orthographic camera", &[
@@ -173,34 +186,30 @@ const PERSPECTIVE: Schema = schema("perspective camera", &[
 
 const IMAGE: Schema = schema("image", &[
     optional("uri", Uri), optional("mimeType", Text), optional("bufferView", Index("bufferViews")),
-    optional("name", Text),
+    NAME,
 ]);
 
 const MATERIAL: Schema = schema("material", &[
-    optional("name", Text), optional("pbrMetallicRoughness", Object(&METALLIC_ROUGHNESS)),
-    optional("normalTexture", Object(&TEXTURE_INFO)),
-    optional("occlusionTexture", Object(&TEXTURE_INFO)),
-    optional("emissiveTexture", Object(&TEXTURE_INFO)),
+    NAME, optional("pbrMetallicRoughness", Object(&METALLIC_ROUGHNESS)), texture("normalTexture"),
+    texture("occlusionTexture"), texture("emissiveTexture"),
     optional("emissiveFactor", Vector(3, SHARE)), optional("alphaMode", Text),
     optional("alphaCutoff", Number(NOT_NEGATIVE)), optional("doubleSided", Flag),
 ]);
 
 const METALLIC_ROUGHNESS: Schema = schema("pbrMetallicRoughness", &[
-    optional("baseColorFactor", Vector(4, SHARE)),
-    optional("baseColorTexture", Object(&TEXTURE_INFO)), optional("metallicFactor", Number(SHARE)),
-    optional("roughnessFactor", Number(SHARE)),
-    optional("metallicRoughnessTexture", Object(&TEXTURE_INFO)),
+    optional("baseColorFactor", Vector(4, SHARE)), texture("baseColorTexture"),
+    share("metallicFactor"), share("roughnessFactor"), texture("metallicRoughnessTexture"),
 ]);
 
 /// A reference to a texture.
 pub const TEXTURE_INFO: Schema = schema("textureInfo", &[
     required("index", Index("textures")), optional("texCoord", Integer(0)),
-    optional("scale", Number(ALL)), optional("strength", Number(SHARE)),
+    optional("scale", Number(ALL)), share("strength"),
 ]);
 
 const MESH: Schema = schema("mesh", &[
     required("primitives", List(&Object(&PRIMITIVE))), optional("weights", List(&Number(ALL))),
-    optional("name", Text),
+    NAME,
 ]);
 
 const PRIMITIVE: Schema = schema("primitive", &[
@@ -214,26 +223,23 @@ const NODE: Schema = schema("node", &[
     optional("skin", Index("skins")), optional("matrix", Vector(16, ALL)),
     optional("mesh", Index("meshes")), optional("rotation", Vector(4, WITHIN_1)),
     optional("scale", Vector(3, ALL)), optional("translation", Vector(3, ALL)),
-    optional("weights", List(&Number(ALL))), optional("name", Text),
+    optional("weights", List(&Number(ALL))), NAME,
 ]);
 
 const SAMPLER: Schema = schema("sampler", &[
     optional("magFilter", OneOf(&[9728, 9729])),
     optional("minFilter", OneOf(&[9728, 9729, 9984, 9985, 9986, 9987])),
     optional("wrapS", OneOf(&[33071, 33648, 10497])),
-    optional("wrapT", OneOf(&[33071, 33648, 10497])), optional("name", Text),
+    optional("wrapT", OneOf(&[33071, 33648, 10497])), NAME,
 ]);
 
-const SCENE: Schema = schema("scene", &[
-    optional("nodes", Set(&Index("nodes"))), optional("name", Text),
-]);
+const SCENE: Schema = schema("scene", &[optional("nodes", Set(&Index("nodes"))), NAME]);
 
 const SKIN: Schema = schema("skin", &[
     optional("inverseBindMatrices", Index("accessors")), optional("skeleton", Index("nodes")),
-    required("joints", Set(&Index("nodes"))), optional("name", Text),
+    required("joints", Set(&Index("nodes"))), NAME,
 ]);
 
 const TEXTURE: Schema = schema("texture", &[
-    optional("sampler", Index("samplers")), optional("source", Index("images")),
-    optional("name", Text),
+    optional("sampler", Index("samplers")), optional("source", Index("images")), NAME,
 ]);

@@ -80,10 +80,10 @@ pub fn decode_images(
     let open = |file: &ImageFile| {
         sandbox.open(source.folder(), &[&file.name.value]).map(decode::Source::File)
     };
-    for decoded in textures.decode(sandbox, open, |file| file.is_needed) {
-        let Spanned { span, value: name } = &decoded.source.name;
-        let image = decoded.image.map_err(|e| source.unreadable(span, "image", name, &e))?;
-        set_image(image, &decoded.textures, scene);
+    for (cached, image) in textures.decode(sandbox, open, |file| file.is_needed) {
+        let Spanned { span, value: name } = &cached.source.name;
+        let image = image.map_err(|e| source.unreadable(span, "image", name, &e))?;
+        set_image(image, &cached.textures, scene);
     }
     Ok(())
 }

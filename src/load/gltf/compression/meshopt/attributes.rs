@@ -2,10 +2,7 @@
 
 /// Decodes `count` elements of `stride` bytes; `None` if the stream is damaged.
 pub fn decode(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xa0 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xa0])?;
     // The tail, of 32 bytes or more, ends with the element that the first delta refers to.
     let (mut data, tail) = rest.split_at_checked(rest.len().checked_sub(stride.max(32))?)?;
     let mut last = tail.get(tail.len() - stride..)?.to_vec();
@@ -34,6 +31,7 @@ pub fn decode(bytes: &[u8], count: usize, stride: usize) -> Option<Vec<u8>> {
 /// Decodes 16 deltas: all 0, of 2 bits, of 4 bits, or bytes. A delta of 2
 /// or 4 bits that are all set stands for a whole byte, which is stored after the group's bits.
 fn decode_group(data: &mut &[u8], mode: u8, group: &mut [u8]) -> Option<()> {
+    // The number of bits of a delta. Two modes need no bits: all zero, and whole bytes.
     let bits = match mode {
         0 => {
             group.fill(0);
@@ -46,6 +44,8 @@ fn decode_group(data: &mut &[u8], mode: u8, group: &mut [u8]) -> Option<()> {
             return Some(());
         }
     };
+
+    // The first delta of a byte is in its highest bits.
     let per_byte = 8 / bits;
     let short = data.split_off(..16 / per_byte)?;
     let sentinel = (1u8 << bits) - 1;

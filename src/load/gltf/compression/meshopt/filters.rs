@@ -21,6 +21,7 @@ pub fn octahedral(bytes: &mut [u8], stride: usize) {
 
 /// Returns the unit vector of a point of the unfolded octahedron.
 fn unfold(x: f32, y: f32) -> [f32; 3] {
+    // The lower half of the octahedron is folded outward over the corners of the square.
     let z = 1.0 - x.abs() - y.abs();
     let t = z.min(0.0);
     let (x, y) = (x - t.abs().copysign(x), y - t.abs().copysign(y));
@@ -34,6 +35,7 @@ pub fn quaternion(bytes: &mut [u8]) {
         let [a, b, c, last] = components(element);
         let one = f32::from(last | 3);
         let [x, y, z] = [a, b, c].map(|v| f32::from(v) / one * FRAC_1_SQRT_2);
+        // The component that is missing follows from the length, which is 1.
         let w = (1.0 - x * x - y * y - z * z).max(0.0).sqrt();
         let largest = usize::from(last as u16 & 3);
         for (i, v) in [w, x, y, z].into_iter().enumerate() {

@@ -51,6 +51,7 @@ impl CompressedView {
             integer(name).ok_or_else(|| Error::input(format!("`{name}` must be a whole number")))
         };
         let text = |name: &str| object.get(name).and_then(Value::as_str);
+        // The way in which the bytes are compressed, and the filter that was applied before.
         let mode = match text("mode") {
             Some("ATTRIBUTES") => Mode::Attributes,
             Some("TRIANGLES") => Mode::Triangles,
@@ -64,6 +65,8 @@ impl CompressedView {
             Some("EXPONENTIAL") => Filter::Exponential,
             Some(_) => return Err(Error::input("the filter is not known")),
         };
+
+        // Each mode and filter has its own strides.
         let (stride, count) = (required("byteStride")?, required("count")?);
         let is_valid = match (&mode, &filter) {
             (Mode::Attributes, Filter::None | Filter::Exponential) => {
@@ -78,6 +81,8 @@ impl CompressedView {
         if !is_valid {
             return Err(Error::input(format!("a stride of {stride} does not fit the mode")));
         }
+
+        // All numbers are checked again against the buffer, when the view is loaded.
         let to_usize = |x: u64| usize::try_from(x).map_err(|_| Error::input("too many elements"));
         Ok(Self {
             buffer: to_usize(required("buffer")?)?,
@@ -101,16 +106,14 @@ impl CompressedView {
     /// When the stream is damaged, or claims to hold more elements than it can.
     pub fn decompress(&self, bytes: &[u8]) -> Result<Vec<u8>> {
         let Self { stride, count, .. } = *self;
-        // A stream has at least two header bits for 16 deltas, or a byte for a triangle.
-        let most = match self.mode {
-            Mode::Attributes => bytes.len().saturating_mul(64),
-            Mode::Triangles => bytes.len().saturating_mul(3),
-            Mode::Indices => bytes.len(),
+        // A stream has at least two header bits for 16 deltas, a byte for a triangle, or a byte for
+        // an index.
+        let (total, most) = match self.mode {
+            Mode::Attributes => (count.checked_mul(stride), bytes.len().saturating_mul(64)),
+            Mode::Triangles => (Some(count), bytes.len().saturating_mul(3)),
+            Mode::Indices => (Some(count), bytes.len()),
         };
-        let total = match self.mode {
-            Mode::Attributes => count.checked_mul(stride),
-            _ => Some(count),
-        };
+        // A damaged count must not make us reserve more memory than the stream can fill.
         if total.is_none_or(|total| total > most) {
             let found = bytes.len();
             return Err(Error::input(format!("{found} bytes cannot hold {count} elements")));

@@ -2,10 +2,7 @@
 
 /// Decodes the indices of triangles; `None` if the stream is damaged.
 pub fn decode(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xe1 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xe1])?;
     let (codes, rest) = rest.split_at_checked(count / 3)?;
     let (data, table) = rest.split_at_checked(rest.len().checked_sub(16)?)?;
     let mut decoder = Decoder { data, ..Decoder::default() };
@@ -18,10 +15,7 @@ pub fn decode(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
 
 /// Decodes indices that need not be of triangles; `None` if the stream is damaged.
 pub fn decode_indices(bytes: &[u8], count: usize) -> Option<Vec<u32>> {
-    let (&header, rest) = bytes.split_first()?;
-    if header != 0xd1 {
-        return None;
-    }
+    let rest = bytes.strip_prefix(&[0xd1])?;
     let (mut data, _) = rest.split_at_checked(rest.len().checked_sub(4)?)?;
     let mut last = [0u32; 2];
     let mut decoded = Vec::with_capacity(count);
@@ -76,12 +70,17 @@ impl Decoder<'_> {
         // The codes of the second and the third vertex are in the table, or in the data.
         let is_explicit = low >= 14;
         let codes = if is_explicit { *self.data.split_off_first()? } else { *table.get(low)? };
+        // A code of 0 begins the new indices anew.
         if is_explicit && codes == 0 {
             self.next = 0;
         }
+
+        // The three vertices, in order, since each changes what the next refers to.
         let a = if low == 15 { self.explicit_index()? } else { self.new_index() };
         let (b, is_new_b) = self.vertex(codes >> 4, is_explicit)?;
         let (c, is_new_c) = self.vertex(codes & 15, is_explicit)?;
+
+        // Later triangles refer to these edges and vertices.
         self.edges.push([b, a]);
         self.edges.push([c, b]);
         self.edges.push([a, c]);

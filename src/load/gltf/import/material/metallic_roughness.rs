@@ -15,6 +15,8 @@ const DEFAULT_IOR: f32 = 1.5;
 pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Option<TextureId>> {
     let pbr = &reader.source.pbr_metallic_roughness;
     let key = "pbrMetallicRoughness";
+
+    // The factors, those of extensions at their defaults.
     let base = reader
         .color_texture(pbr.base_color_texture.as_ref(), format_args!("{key}.baseColorTexture"))?;
     let factors = MetallicRoughness {
@@ -27,12 +29,15 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
         ior: ior(reader),
     };
     let mut maps = MetallicRoughnessMaps { base, ..MetallicRoughnessMaps::new(factors) };
+
     // Roughness is in the green channel, and metalness in the blue; a factor of 0 leaves nothing of
     // the map.
     let info = pbr.metallic_roughness_texture.as_ref();
     let key = format!("{key}.metallicRoughnessTexture");
     maps.roughness = reader.channel(info.filter(|_| factors.roughness > 0.0), 1, &key)?;
     maps.metallic = reader.channel(info.filter(|_| factors.metallic > 0.0), 2, &key)?;
+
+    // The extensions change the factors and add maps.
     specular(reader, &mut maps)?;
     transmission(reader, &mut maps)?;
     material.set_metallic_roughness(maps);
@@ -50,8 +55,7 @@ pub fn base_color(reader: &mut MaterialReader) -> Vec3 {
 
 /// Returns the index of refraction of KHR_materials_ior; 0 reflects everything.
 fn ior(reader: &mut MaterialReader) -> f32 {
-    let extensions = reader.source.extensions.as_ref();
-    let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(DEFAULT_IOR, |e| e.ior.0);
+    let ior = reader.extensions.and_then(|e| e.ior.as_ref()).map_or(DEFAULT_IOR, |e| e.ior.0);
     if ior == 0.0 || (1.0..=100.0).contains(&ior) {
         return ior;
     }
@@ -63,8 +67,7 @@ fn ior(reader: &mut MaterialReader) -> f32 {
 
 /// Sets the parameters of KHR_materials_specular.
 fn specular(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Result<()> {
-    let extensions = reader.source.extensions.as_ref();
-    let Some(source) = extensions.and_then(|e| e.specular.as_ref()) else { return Ok(()) };
+    let Some(source) = reader.extensions.and_then(|e| e.specular.as_ref()) else { return Ok(()) };
     let key = |key: &str| format!("extensions.KHR_materials_specular.{key}");
     maps.factors.specular = clamped(source.specular_factor.0);
     maps.factors.specular_color =
@@ -77,8 +80,9 @@ fn specular(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Re
 
 /// Sets the parameters of KHR_materials_transmission.
 fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Result<()> {
-    let extensions = reader.source.extensions.as_ref();
-    let Some(source) = extensions.and_then(|e| e.transmission.as_ref()) else { return Ok(()) };
+    let Some(source) = reader.extensions.and_then(|e| e.transmission.as_ref()) else {
+        return Ok(());
+    };
     maps.factors.transmission = clamped(source.transmission_factor.0);
     if maps.factors.transmission == 0.0 {
         return Ok(());
@@ -99,8 +103,8 @@ fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -
 /// Sets what is behind the surface of a material that transmits light: the medium of
 /// KHR_materials_volume, or nothing.
 fn volume(reader: &MaterialReader, material: &mut Material) {
-    let extensions = reader.source.extensions.as_ref();
-    let absorption = extensions.and_then(|e| e.volume.as_ref()).and_then(absorption);
+    let absorption = reader.extensions.and_then(|e| e.volume.as_ref()).and_then(absorption);
+    // A surface without a volume behind it is a thin sheet, which does not refract.
     material.thin = absorption.is_none();
     material.absorption = absorption.unwrap_or_default();
     material.ior = f64::from(material.metallic.as_ref().map_or(DEFAULT_IOR, |m| m.factors.ior));

@@ -6,10 +6,9 @@ mod reader;
 use std::collections::HashMap;
 
 use glam::Vec3;
-use gltf::json;
 use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::material::AlphaMode as Mode;
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use self::metallic_roughness::base_color;
 pub use self::reader::NeededAttributes;
@@ -27,17 +26,10 @@ use crate::scene::{
 /// The materials of a file, each imported when a primitive first uses it.
 pub struct Materials<'a> {
     root: &'a json::Root,
-    textures: Textures<'a>,
-    imported: HashMap<Option<usize>, ImportedMaterial>,
-}
-
-/// A material of the scene.
-#[derive(Clone)]
-pub struct ImportedMaterial {
-    /// Its id.
-    pub id: MaterialId,
-    /// The vertex attributes that it needs.
-    pub needed: NeededAttributes,
+    /// The textures of the materials.
+    pub textures: Textures<'a>,
+    /// The materials so far, each with the vertex attributes that it needs.
+    imported: HashMap<Option<usize>, (MaterialId, NeededAttributes)>,
 }
 
 impl<'a> Materials<'a> {
@@ -46,8 +38,8 @@ impl<'a> Materials<'a> {
         Self { root, textures, imported: HashMap::new() }
     }
 
-    /// Returns the material with an index, or that of primitives that name none. The reference to
-    /// it is at the JSON path `by`.
+    /// Returns the material with an index, or that of primitives that name none, and the vertex
+    /// attributes that it needs. The reference to it is at the JSON path `by`.
     ///
     /// # Errors
     /// When the reference, or one that it leads to, leads nowhere.
@@ -57,10 +49,11 @@ impl<'a> Materials<'a> {
         by: &str,
         scene: &mut Scene,
         diagnostics: &mut Diagnostics,
-    ) -> Result<ImportedMaterial> {
+    ) -> Result<(MaterialId, NeededAttributes)> {
         if let Some(known) = self.imported.get(&index) {
             return Ok(known.clone());
         }
+        // Each material is read once, when a primitive first uses it.
         let (material, needed) = match index {
             // The standard's default is a rough white metal, which nobody means who names no
             // material; ours is the neutral grey of an OBJ without one.
@@ -69,6 +62,7 @@ impl<'a> Materials<'a> {
                 let source = lookup(&self.root.materials, i, "material", by)?;
                 let mut reader = MaterialReader {
                     source,
+                    extensions: source.extensions.as_ref(),
                     path: format!("materials[{i}]"),
                     needed: NeededAttributes::default(),
                     textures: &mut self.textures,
@@ -78,21 +72,16 @@ impl<'a> Materials<'a> {
                 (read(&mut reader)?, reader.needed)
             }
         };
-        let imported = ImportedMaterial { id: scene.add_material(material), needed };
+        // All primitives of the material share its id.
+        let imported = (scene.add_material(material), needed);
         self.imported.insert(index, imported.clone());
         Ok(imported)
-    }
-
-    /// Decodes the images of the materials' textures.
-    pub fn decode_images(self, scene: &mut Scene, diagnostics: &mut Diagnostics) {
-        self.textures.decode_images(scene, diagnostics);
     }
 }
 
 /// Reads a material.
 fn read(reader: &mut MaterialReader) -> Result<Material> {
-    let source = reader.source;
-    let extensions = source.extensions.as_ref();
+    let MaterialReader { source, extensions, .. } = *reader;
     let mut material =
         Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
 
@@ -114,10 +103,10 @@ fn read(reader: &mut MaterialReader) -> Result<Material> {
             ..Material::default()
         };
     } else {
-        emission(reader, &mut material)?;
-        normal_map(reader, &mut material)?;
-        occlusion(reader, &mut material)?;
+        emission_and_relief(reader, &mut material)?;
     }
+
+    // The alpha of the base covers the surface.
     let base = source.pbr_metallic_roughness.base_color_factor.0;
     let [.., alpha] = glossy.map_or(base, |glossy| glossy.diffuse_factor.0);
     coverage(reader, clamped(alpha), base_map, &mut material);
@@ -132,48 +121,53 @@ fn specular_glossiness(
     material: &mut Material,
 ) -> Result<Option<TextureId>> {
     let key = |key: &str| format!("extensions.KHR_materials_pbrSpecularGlossiness.{key}");
+    // The factors.
     let [r, g, b, _] = source.diffuse_factor.0;
     material.diffuse = reader.color([r, g, b], key("diffuseFactor"));
     material.specular = reader.color(source.specular_factor.0, key("specularFactor"));
     let gloss = clamped(source.glossiness_factor.0);
     material.shininess = shininess(1.0 - gloss);
+
+    // One texture has the specular colour, and the gloss in its alpha channel.
     let info = source.specular_glossiness_texture.as_ref();
     material.specular_map = reader.color_texture(info, key("specularGlossinessTexture"))?;
     material.shininess_map = material
         .specular_map
         .map(|texture| ShininessMap::Gloss(Channel { texture, channel: 3 }, gloss));
+
+    // The other has the diffuse colour.
     let info = source.diffuse_texture.as_ref();
     material.diffuse_map = reader.color_texture(info, key("diffuseTexture"))?;
     Ok(material.diffuse_map)
 }
 
-fn emission(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+/// Sets the emission, the normal map and the occlusion, which go with either base.
+fn emission_and_relief(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
+    // The light that the surface gives by itself. A factor of 0 leaves nothing of the map.
     let source = reader.source;
-    let extension = source.extensions.as_ref().and_then(|e| e.emissive_strength.as_ref());
+    let extension = reader.extensions.and_then(|e| e.emissive_strength.as_ref());
     let strength = extension.map_or(1.0, |e| e.emissive_strength.0);
     material.emission =
         reader.color(source.emissive_factor.0.map(|f| f * strength), "emissiveFactor");
     let info = source.emissive_texture.as_ref().filter(|_| material.emission != Vec3::ZERO);
     material.emission_map = reader.color_texture(info, "emissiveTexture")?;
-    Ok(())
-}
 
-fn normal_map(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
-    let Some(info) = &reader.source.normal_texture else { return Ok(()) };
-    let reference = TextureReference::from_normal(info);
-    let texture = reader.texture(reference, Transfer::None, "normalTexture")?;
-    let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
-    material.normal_map = Some(NormalMap { texture, scale });
-    reader.needed.tangents = true;
-    Ok(())
-}
+    // A normal map follows the tangents of the mesh.
+    if let Some(info) = &source.normal_texture {
+        let reference = TextureReference::from_normal(info);
+        let texture = reader.texture(reference, Transfer::None, "normalTexture")?;
+        let scale = if info.scale.is_finite() { info.scale } else { 1.0 };
+        material.normal_map = Some(NormalMap { texture, scale });
+        reader.needed.tangents = true;
+    }
 
-fn occlusion(reader: &mut MaterialReader, material: &mut Material) -> Result<()> {
-    let Some(info) = &reader.source.occlusion_texture else { return Ok(()) };
-    let reference = TextureReference::from_occlusion(info);
-    let texture = reader.texture(reference, Transfer::None, "occlusionTexture")?;
-    let map = Channel { texture, channel: 0 };
-    material.occlusion_map = Some(OcclusionMap { map, strength: clamped(info.strength.0) });
+    // Occlusion is in the red channel.
+    if let Some(info) = &source.occlusion_texture {
+        let reference = TextureReference::from_occlusion(info);
+        let texture = reader.texture(reference, Transfer::None, "occlusionTexture")?;
+        let map = Channel { texture, channel: 0 };
+        material.occlusion_map = Some(OcclusionMap { map, strength: clamped(info.strength.0) });
+    }
     Ok(())
 }
 
@@ -184,6 +178,7 @@ fn coverage(
     base_map: Option<TextureId>,
     material: &mut Material,
 ) {
+    // The mode says whether alpha counts, and how.
     let mode = match reader.source.alpha_mode {
         Checked::Valid(Mode::Opaque) | Checked::Invalid => return,
         Checked::Valid(Mode::Mask) => {
@@ -194,11 +189,14 @@ fn coverage(
             let reason = "{} materials transmit light and have alpha: the alpha is left out";
             return reader.report_unsupported(reason);
         }
+        // A blended surface lets light through, and does not refract it.
         Checked::Valid(Mode::Blend) => {
             (material.thin, material.ior) = (true, 1.0);
             AlphaMode::Blend
         }
     };
+
+    // Factor, map and vertex colours are multiplied when the surface is hit.
     reader.needed.alpha = true;
     let map = base_map.map(|texture| Channel { texture, channel: 3 });
     material.coverage = Some(Coverage { alpha, map, mode });

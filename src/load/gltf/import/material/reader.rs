@@ -3,8 +3,7 @@
 use std::fmt::Display;
 
 use glam::Vec3;
-use gltf::json;
-use gltf::json::texture::Info;
+use gltf::json::{self, texture::Info};
 
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
@@ -27,6 +26,8 @@ pub struct NeededAttributes {
 pub struct MaterialReader<'m, 'a> {
     /// The material.
     pub source: &'a json::Material,
+    /// Its extensions.
+    pub extensions: Option<&'a json::extensions::material::Material>,
     /// Its JSON path.
     pub path: String,
     /// The vertex attributes that it needs, as far as it has been read.
@@ -50,6 +51,8 @@ impl MaterialReader<'_, '_> {
         transfer: Transfer,
         key: impl Display,
     ) -> Result<TextureId> {
+        // The mesh has two sets of texture coordinates at most: those that its material asks for
+        // first.
         let sets = &mut self.needed.uv_sets;
         let set = match sets.iter().position(|&set| set == reference.uv_set) {
             Some(known) => known,
@@ -64,6 +67,8 @@ impl MaterialReader<'_, '_> {
                 sets.len() - 1
             }
         };
+
+        // The texture refers to the set by its place among those two.
         let by = format!("{}.{key}.index", self.path);
         self.textures.texture(reference, set as u8, transfer, &by, self.scene, self.diagnostics)
     }

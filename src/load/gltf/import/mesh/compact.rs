@@ -9,6 +9,7 @@ pub fn compact(mesh: &mut Mesh) -> Option<Vec<usize>> {
     if uses_half(mesh) {
         return None;
     }
+    // The vertices in use get new indices, in the order in which triangles first name them.
     const UNUSED: u32 = u32::MAX;
     let mut new_index = vec![UNUSED; mesh.positions.len()];
     let mut kept: Vec<usize> = Vec::new();
@@ -18,6 +19,8 @@ pub fn compact(mesh: &mut Mesh) -> Option<Vec<usize>> {
             kept.push(i as usize);
         }
     }
+
+    // The triangles are renumbered, and the attributes reordered to match.
     for i in mesh.triangles.as_flattened_mut() {
         *i = new_index.get(*i as usize).copied().unwrap_or(UNUSED);
     }

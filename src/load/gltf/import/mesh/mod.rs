@@ -5,17 +5,15 @@ mod topology;
 
 use std::sync::Arc;
 
-use gltf::json;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf::json::{self, validation::Checked};
 
 use self::compact::{compact, retain_vertices};
 use super::material::NeededAttributes;
-use super::{morph_targets, skin};
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
-use crate::load::gltf::compression::draco::{self, DecompressedPrimitive};
+use crate::load::gltf::compression::draco;
 use crate::load::gltf::json::error_at;
 use crate::load::mesh_repair::repair;
 use crate::load::report::DropReason;
@@ -33,54 +31,53 @@ pub struct PrimitiveMesh {
     pub influences: Option<Arc<Influences>>,
 }
 
-/// Reads the mesh of a primitive, with the attributes that its material needs; `None` if it has no
-/// triangle.
-///
-/// # Errors
-/// When its indices or a needed attribute cannot be read.
-pub fn read(
-    primitive: &Primitive,
-    accessors: &Accessors,
-    needed: &NeededAttributes,
-    diagnostics: &mut Diagnostics,
-    path: &str,
-) -> Result<Option<PrimitiveMesh>> {
-    let Checked::Valid(mode) = primitive.mode else {
-        let error = error_at(format_args!("{path}.mode"), "this is no known mode");
-        return Err(error.help("0 to 6; 4 is triangles"));
-    };
-    let extension = draco::extension(primitive);
-    match extension.map(|e| draco::decompress(primitive, e, accessors, path)) {
-        Some(Ok(DecompressedPrimitive { corners, attributes })) => {
-            let accessors = &accessors.with_decompressed(attributes);
-            let reader = PrimitiveReader { primitive, accessors, path, diagnostics };
-            // Strips are decompressed as triangles, too.
-            return reader.read(Mode::Triangles, Some(corners), needed);
-        }
-        Some(Err(error)) => {
-            let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));
-            if !positions.is_some_and(|index| accessors.has_view(index.value())) {
-                return Err(error);
-            }
-            diagnostics.note(format!("{error}; what is not compressed is read instead"));
-        }
-        None => {}
-    }
-    PrimitiveReader { primitive, accessors, path, diagnostics }.read(mode, None, needed)
-}
-
 /// A primitive that is being read.
-struct PrimitiveReader<'a> {
-    primitive: &'a Primitive,
-    accessors: &'a Accessors<'a>,
+pub struct PrimitiveReader<'a> {
+    /// The primitive.
+    pub primitive: &'a Primitive,
+    /// The accessors of the file, or of what is decompressed.
+    pub accessors: &'a Accessors<'a>,
     /// Its JSON path.
-    path: &'a str,
-    diagnostics: &'a mut Diagnostics,
+    pub path: &'a str,
+    /// The diagnostics of the load.
+    pub diagnostics: &'a mut Diagnostics,
 }
 
 impl PrimitiveReader<'_> {
+    /// Reads the mesh of the primitive, with the attributes that its material needs; `None` if it has
+    /// no triangle.
+    ///
+    /// # Errors
+    /// When its indices or a needed attribute cannot be read.
+    pub fn read(self, needed: &NeededAttributes) -> Result<Option<PrimitiveMesh>> {
+        let Self { primitive, accessors, path, .. } = self;
+        let Checked::Valid(mode) = primitive.mode else {
+            let error = error_at(format_args!("{path}.mode"), "this is no known mode");
+            return Err(error.help("0 to 6; 4 is triangles"));
+        };
+        match draco::decompress(primitive, accessors, path) {
+            // Strips are decompressed as triangles, too.
+            Ok(Some((corners, attributes))) => {
+                let accessors = &accessors.with_decompressed(attributes);
+                let reader = PrimitiveReader { accessors, ..self };
+                return reader.read_mesh(Mode::Triangles, Some(corners), needed);
+            }
+            Ok(None) => {}
+            // Some files have the same without compression as well.
+            Err(error) => {
+                let positions = self.accessor(Semantic::Positions);
+                if !positions.is_some_and(|index| accessors.has_view(index)) {
+                    return Err(error);
+                }
+                let warning = format!("{error}; what is not compressed is read instead");
+                self.diagnostics.note(warning);
+            }
+        }
+        self.read_mesh(mode, None, needed)
+    }
+
     /// Reads the mesh, from `corners` if they are decompressed.
-    fn read(
+    fn read_mesh(
         mut self,
         mode: Mode,
         corners: Option<Vec<u32>>,
@@ -88,6 +85,7 @@ impl PrimitiveReader<'_> {
     ) -> Result<Option<PrimitiveMesh>> {
         let Self { primitive, accessors, path, .. } = self;
         let to_string = || path.to_owned();
+        // Only triangles can be drawn.
         if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
             self.drop_all(mode, DropReason::UnsupportedMode);
             return Ok(None);
@@ -108,6 +106,7 @@ impl PrimitiveReader<'_> {
             }
             (None, None) => (0..u32::try_from(count).unwrap_or(u32::MAX)).collect(),
         };
+        // The faces that are incomplete are counted here, since none of them gets into the mesh.
         let triangles = topology::triangles(mode, &corners);
         let mut mesh = Mesh { triangles, positions, ..Mesh::default() };
         let incomplete = u64::from(topology::is_incomplete(mode, corners.len()));
@@ -121,17 +120,19 @@ impl PrimitiveReader<'_> {
         if let Some(second) = needed.uv_sets.get(1) {
             mesh.second_uvs = self.uvs(Some(second), count)?;
         }
+        // Tangents mean nothing without the normals that they belong to.
         if needed.tangents && !mesh.normals.is_empty() {
             mesh.tangents = self.attribute(Semantic::Tangents, count)?;
         }
-        let mut targets = morph_targets::read(primitive, accessors, count, self.diagnostics, path)?;
-        let mut influences =
-            skin::read_influences(primitive, accessors, count, self.diagnostics, path)?;
+        let mut targets = self.morph_targets(count)?;
+        let mut influences = self.influences(count)?;
 
         // Faces that are left are counted when the mesh is stored, which may be more than once.
         let before = mesh.triangles.len() as u64;
         repair(&mut mesh, self.diagnostics, path);
         self.diagnostics.read(before - mesh.triangles.len() as u64);
+
+        // What deforms the mesh has values for the same vertices.
         if let Some(kept) = compact(&mut mesh) {
             for target in &mut targets {
                 retain_vertices(&mut target.positions, &kept);
@@ -141,6 +142,7 @@ impl PrimitiveReader<'_> {
                 influences.retain_vertices(&kept);
             }
         }
+        // A primitive without faces is not shown; its warnings have been given.
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
@@ -149,7 +151,7 @@ impl PrimitiveReader<'_> {
     }
 
     /// The index of an attribute's accessor.
-    fn accessor(&self, semantic: Semantic) -> Option<usize> {
+    pub fn accessor(&self, semantic: Semantic) -> Option<usize> {
         self.primitive.attributes.get(&Checked::Valid(semantic)).map(json::Index::value)
     }
 
@@ -161,6 +163,7 @@ impl PrimitiveReader<'_> {
     fn drop_all(&mut self, mode: Mode, reason: DropReason) {
         let any = self.primitive.attributes.values().next();
         let corners = self.primitive.indices.or(any.copied());
+        // Faces are counted from the indices or, without them, from any of the attributes.
         let corners = corners.map_or(0, |index| self.accessors.count(index.value()));
         let faces = topology::face_count(mode, corners);
         self.diagnostics.read(faces);
@@ -203,6 +206,7 @@ impl PrimitiveReader<'_> {
         if self.accessors.width(index) != 4 {
             return Ok((self.accessors.normalized_floats(index, &path)?, Vec::new()));
         }
+        // Alphas that are all 1 are not stored.
         let colors = self.accessors.normalized_floats::<4>(index, &path)?;
         let has_alpha = alpha && colors.iter().any(|color| color[3] != 1.0);
         let alphas =
