@@ -5,6 +5,14 @@ use crate::geometry::{Estimate, Geometry, Hit, PrimitiveId};
 use crate::intersect::embree::certified::primitives::{CertifiedPrimitive, Shape};
 use crate::intersect::embree::packet::QueryContext;
 
+/// The estimates of the hits of a packet on a primitive.
+struct Estimates<const W: usize> {
+    estimates: [Estimate; W],
+    /// True for each shadow ray that may start on the primitive, other than the one that it left, and
+    /// so may be blocked by it at its origin.
+    at_origin: [bool; W],
+}
+
 impl<const W: usize> QueryContext<'_, W> {
     /// Records the primitive as the hit of those active rays that it is the closest hit of.
     #[inline(always)]
@@ -14,17 +22,13 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
-        let Some(estimates) = self.estimates(primitive, active) else { return };
-        let at_origin = self.may_start_on(primitive, active);
+        let Some(Estimates { estimates, at_origin }) = self.estimates(primitive, active) else {
+            return;
+        };
         for i in 0..W {
             let e = estimates[i];
-            if at_origin[i] {
-                self.resolve_exactly(i, primitive.id);
-                tfar[i] = self.closest_tfar(i).min(tfar[i]);
-                continue;
-            }
             // The next hit of a continuation ray is not always the first root.
-            if self.departures.any_continuation && active[i] != 0 {
+            if at_origin[i] || (self.departures.any_continuation && active[i] != 0) {
                 self.resolve_exactly(i, primitive.id);
                 tfar[i] = self.closest_tfar(i).min(tfar[i]);
                 continue;
@@ -40,7 +44,7 @@ impl<const W: usize> QueryContext<'_, W> {
             let certain = e.lower() > 0.0 && closer;
             if !certain
                 || primitive.is_masked
-                || (self.departures.any && primitive.shape.may_start_on(self, i))
+                || self.may_start_on(i, primitive)
                 || self.may_end_on(i, primitive)
             {
                 self.resolve_exactly(i, primitive.id);
@@ -59,8 +63,9 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
-        let Some(estimates) = self.estimates(primitive, active) else { return };
-        let at_origin = self.may_start_on(primitive, active);
+        let Some(Estimates { estimates, at_origin }) = self.estimates(primitive, active) else {
+            return;
+        };
         for i in 0..W {
             let e = estimates[i];
             if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !at_origin[i]) {
@@ -70,10 +75,11 @@ impl<const W: usize> QueryContext<'_, W> {
                 continue;
             }
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
-            let may_start_on = || self.departures.any && primitive.shape.may_start_on(self, i);
             let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
-            let certain =
-                within && has_plain_hit && !may_start_on() && !self.may_end_on(i, primitive);
+            let certain = within
+                && has_plain_hit
+                && !self.may_start_on(i, primitive)
+                && !self.may_end_on(i, primitive);
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
@@ -90,31 +96,13 @@ impl<const W: usize> QueryContext<'_, W> {
         self.packet.departure(lane).is_some_and(|departure| departure.id == id)
     }
 
-    /// True for each active shadow ray that may start on a primitive, other than the one that it left,
-    /// and so be blocked by it at its origin.
+    /// True if the ray in `lane` left a surface and starts on the primitive, and so may not hit it.
     #[inline(always)]
-    fn may_start_on(
-        &self,
-        primitive: &CertifiedPrimitive<impl Shape>,
-        active: &[i32; W],
-    ) -> [bool; W] {
-        let mut may_start_on = [false; W];
-        if !self.are_shadow_rays {
-            return may_start_on;
-        }
-        let distance = self.departures.tolerance;
-        let mut any = false;
-        for i in 0..W {
-            let origin = self.rays.origin_and_direction(i).0;
-            may_start_on[i] = (active[i] != 0) & primitive.shape.may_contain(origin, distance);
-            any |= may_start_on[i];
-        }
-        if any {
-            for i in 0..W {
-                may_start_on[i] = may_start_on[i] && !self.is_departure(i, primitive.id);
-            }
-        }
-        may_start_on
+    fn may_start_on(&self, lane: usize, primitive: &CertifiedPrimitive<impl Shape>) -> bool {
+        let origin = self.rays.origin_and_direction(lane).0;
+        self.departures.any
+            && primitive.shape.may_contain(origin, self.departures.tolerance)
+            && primitive.shape.may_start_on(self, lane)
     }
 
     /// True if a shadow ray may end on a primitive, which then does not block its light.
@@ -131,15 +119,16 @@ impl<const W: usize> QueryContext<'_, W> {
         &self,
         primitive: &CertifiedPrimitive<impl Shape>,
         active: &[i32; W],
-    ) -> Option<[Estimate; W]> {
+    ) -> Option<Estimates<W>> {
         // A shadow ray may be blocked by what it starts on, beside its line.
         let distance = if self.are_shadow_rays { self.departures.tolerance } else { 0.0 };
-        let mut any = false;
+        let (mut may_pass, mut any) = ([false; W], false);
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            let may_pass = primitive.shape.may_pass_within(distance, origin, direction, inverse);
-            any |= (active[i] != 0) & may_pass;
+            may_pass[i] = (active[i] != 0)
+                & primitive.shape.may_pass_within(distance, origin, direction, inverse);
+            any |= may_pass[i];
         }
         if !any {
             return None;
@@ -150,12 +139,33 @@ impl<const W: usize> QueryContext<'_, W> {
             let inverse = self.rays.inverse_length_squared[i];
             estimates[i] = primitive.shape.estimate(origin, direction, inverse);
         }
-        Some(estimates)
+        let mut at_origin = [false; W];
+        if self.are_shadow_rays {
+            // What is certainly hit within the segment is no case for this.
+            let mut any_open = false;
+            for i in 0..W {
+                let e = estimates[i];
+                may_pass[i] &= !((e.lower() > 0.0) & (e.upper() < self.rays.tmax[i]));
+                any_open |= may_pass[i];
+            }
+            if any_open {
+                for i in (0..W).filter(|&i| may_pass[i]) {
+                    let origin = self.rays.origin_and_direction(i).0;
+                    at_origin[i] = primitive.shape.may_contain(origin, distance)
+                        && !self.is_departure(i, primitive.id);
+                }
+            }
+        }
+        Some(Estimates { estimates, at_origin })
     }
 
     /// The exact hit of the ray in `lane` on a primitive.
     pub fn exact_hit(&self, lane: usize, id: PrimitiveId) -> Option<Hit> {
-        self.query.primitives().with_ray(&self.packet.get(lane)?).primitive(id)
+        if lane >= self.packet.count {
+            return None;
+        }
+        let ray = self.packet.ray(lane);
+        self.query.primitives().with_ray(&ray).primitive(id)
     }
 
     /// Decides exactly whether `id` is the closest hit of the ray in `lane`.

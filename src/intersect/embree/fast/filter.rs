@@ -114,7 +114,9 @@ fn is_cut_out<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: Pr
 #[cold]
 #[inline(never)]
 fn is_hit<const W: usize>(context: &QueryContext<'_, W>, lane: usize, id: PrimitiveId) -> bool {
-    let primitives = context.query.primitives();
-    let ray = context.packet.get(lane);
-    ray.is_some_and(|ray| primitives.with_ray(&ray).triangle(id, f64::INFINITY).is_some())
+    if lane >= context.packet.count {
+        return false;
+    }
+    let ray = context.packet.ray(lane);
+    context.query.primitives().with_ray(&ray).triangle(id, f64::INFINITY).is_some()
 }

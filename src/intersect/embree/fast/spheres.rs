@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, sphere};
+use crate::geometry::{Bounds, Hit, PrimitiveId, sphere};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{
     CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
@@ -155,11 +155,12 @@ impl FastSphere<'_> {
 
     /// True if ray `i`, a shadow ray that hits the sphere at `t`, ends on it there: its light lies on it.
     fn ends_at<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize, t: f64) -> bool {
-        let Some(ray) = context.packet.get(i).filter(|ray| ray.shadow.is_some()) else {
+        if !context.are_shadow_rays || i >= context.packet.count || !self.may_end(context, i) {
             return false;
-        };
+        }
+        let ray = context.packet.ray(i);
         let hit = Hit { t, u: 0.0, v: 0.0, id: PrimitiveId::sphere(self.index) };
-        self.may_end(context, i) && RayEnds::new(context.scene, &ray).ends_at(&hit)
+        RayEnds::new(context.scene, &ray).ends_at(&hit)
     }
 
     /// True if the sphere at distance `t` is closer than the hit of ray `i` so far; at the same distance
@@ -226,15 +227,18 @@ impl FastSphere<'_> {
         if !quadratic.crosses() {
             return f64::INFINITY;
         }
-        let ray = context.packet.get(i);
-        if let Some(ray) = ray.filter(|ray| ray.continuation.is_some()).as_ref() {
-            let tests = context.query.primitives().with_ray(ray);
+        if i >= context.packet.count {
+            return f64::INFINITY;
+        }
+        let ray = context.packet.ray(i);
+        if ray.continuation.is_some() {
+            let tests = context.query.primitives().with_ray(&ray);
             let hit = tests.sphere(self.index, f64::INFINITY);
             return hit.map_or(f64::INFINITY, |hit| hit.t);
         }
         let root = |inward| sphere::first_root(quadratic.roots(), f64::INFINITY, inward);
-        let departure = |ray: Ray| RayEnds::new(context.scene, &ray).sphere_departure(self.index);
-        let t = match (root(false), ray.map_or(SphereDeparture::No, departure)) {
+        let departure = RayEnds::new(context.scene, &ray).sphere_departure(self.index);
+        let t = match (root(false), departure) {
             (None, _) | (_, SphereDeparture::Outward) => None,
             (t, SphereDeparture::No) => t,
             (_, SphereDeparture::Inward) => root(true),

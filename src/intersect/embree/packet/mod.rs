@@ -52,17 +52,11 @@ impl<'a> Packet<'a> {
         &self.rays.blocks()[self.block()]
     }
 
-    /// The ray in a lane of the packet, if there is one.
-    #[inline]
-    pub fn get(&self, lane: usize) -> Option<Ray> {
-        (lane < self.count).then(|| self.ray(lane))
-    }
-
     /// The ray in a lane of the packet.
     ///
     /// # Panics
     /// When there is none.
-    #[inline]
+    #[inline(always)]
     pub fn ray(&self, lane: usize) -> Ray {
         self.rays.ray(self.first + lane)
     }
