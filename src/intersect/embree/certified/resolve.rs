@@ -7,10 +7,11 @@ use crate::intersect::embree::packet::QueryContext;
 
 /// The estimates of the hits of a packet on a primitive.
 struct Estimates<const W: usize> {
-    estimates: [Estimate; W],
-    /// True for each shadow ray that may start on the primitive, other than the one that it left, and
-    /// so may be blocked by it at its origin.
-    at_origin: [bool; W],
+    hits: [Estimate; W],
+    /// True for each ray that left a surface and may start on the primitive.
+    may_start: [bool; W],
+    /// True for each shadow ray that may end on the primitive, which then does not block its light.
+    may_end: [bool; W],
 }
 
 impl<const W: usize> QueryContext<'_, W> {
@@ -22,18 +23,21 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
-        let Some(Estimates { estimates, at_origin }) = self.estimates(primitive, active) else {
-            return;
-        };
+        let Some(estimates) = self.estimates(primitive, active) else { return };
         for i in 0..W {
-            let e = estimates[i];
-            // The next hit of a continuation ray is not always the first root.
-            if at_origin[i] || (self.departures.any_continuation && active[i] != 0) {
+            if active[i] == 0 {
+                continue;
+            }
+            let e = estimates.hits[i];
+            // The next hit of a continuation ray is not always the first root, and a shadow ray may be
+            // blocked at its origin.
+            let is_blocked = self.are_shadow_rays && estimates.may_start[i];
+            if self.departures.any_continuation || is_blocked {
                 self.resolve_exactly(i, primitive.id);
                 tfar[i] = self.closest_tfar(i).min(tfar[i]);
                 continue;
             }
-            if active[i] == 0 || e.is_outside(self.hits.upper(i)) {
+            if e.is_outside(self.hits.upper(i)) {
                 continue;
             }
             if self.departures.any && self.is_departure(i, primitive.id) {
@@ -44,8 +48,8 @@ impl<const W: usize> QueryContext<'_, W> {
             let certain = e.lower() > 0.0 && closer;
             if !certain
                 || primitive.is_masked
-                || self.may_start_on(i, primitive)
-                || self.may_end_on(i, primitive)
+                || (estimates.may_start[i] && primitive.shape.may_start_on(self, i))
+                || estimates.may_end[i]
             {
                 self.resolve_exactly(i, primitive.id);
             } else {
@@ -63,12 +67,12 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
         tfar: &mut [f32; W],
     ) {
-        let Some(Estimates { estimates, at_origin }) = self.estimates(primitive, active) else {
-            return;
-        };
+        let Some(estimates) = self.estimates(primitive, active) else { return };
         for i in 0..W {
-            let e = estimates[i];
-            if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !at_origin[i]) {
+            let e = estimates.hits[i];
+            let may_start = estimates.may_start[i];
+            let is_blocked = self.are_shadow_rays && may_start;
+            if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !is_blocked) {
                 continue;
             }
             if self.departures.any && self.is_departure(i, primitive.id) {
@@ -76,10 +80,8 @@ impl<const W: usize> QueryContext<'_, W> {
             }
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
             let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
-            let certain = within
-                && has_plain_hit
-                && !self.may_start_on(i, primitive)
-                && !self.may_end_on(i, primitive);
+            let starts_apart = !(may_start && primitive.shape.may_start_on(self, i));
+            let certain = within && has_plain_hit && starts_apart && !estimates.may_end[i];
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
@@ -96,23 +98,6 @@ impl<const W: usize> QueryContext<'_, W> {
         self.packet.departure(lane).is_some_and(|departure| departure.id == id)
     }
 
-    /// True if the ray in `lane` left a surface and starts on the primitive, and so may not hit it.
-    #[inline(always)]
-    fn may_start_on(&self, lane: usize, primitive: &CertifiedPrimitive<impl Shape>) -> bool {
-        let origin = self.rays.origin_and_direction(lane).0;
-        self.departures.any
-            && primitive.shape.may_contain(origin, self.departures.tolerance)
-            && primitive.shape.may_start_on(self, lane)
-    }
-
-    /// True if a shadow ray may end on a primitive, which then does not block its light.
-    #[inline(always)]
-    fn may_end_on(&self, lane: usize, primitive: &CertifiedPrimitive<impl Shape>) -> bool {
-        let (origin, direction) = self.rays.origin_and_direction(lane);
-        let end = origin + direction * self.rays.tmax[lane];
-        self.are_shadow_rays && primitive.shape.may_contain(end, self.departures.tolerance)
-    }
-
     /// The estimates for the rays of a packet; `None` if all active ones certainly miss.
     #[inline(always)]
     fn estimates(
@@ -122,41 +107,39 @@ impl<const W: usize> QueryContext<'_, W> {
     ) -> Option<Estimates<W>> {
         // A shadow ray may be blocked by what it starts on, beside its line.
         let distance = if self.are_shadow_rays { self.departures.tolerance } else { 0.0 };
-        let (mut may_pass, mut any) = ([false; W], false);
+        let mut any = false;
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            may_pass[i] = (active[i] != 0)
+            any |= (active[i] != 0)
                 & primitive.shape.may_pass_within(distance, origin, direction, inverse);
-            any |= may_pass[i];
         }
         if !any {
             return None;
         }
-        let mut estimates = [Estimate::MISS; W];
+        let mut estimates =
+            Estimates { hits: [Estimate::MISS; W], may_start: [false; W], may_end: [false; W] };
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
-            estimates[i] = primitive.shape.estimate(origin, direction, inverse);
+            estimates.hits[i] = primitive.shape.estimate(origin, direction, inverse);
         }
-        let mut at_origin = [false; W];
-        if self.are_shadow_rays {
-            // What is certainly hit within the segment is no case for this.
-            let mut any_open = false;
+        // Whether an end lies on the primitive matters for few.
+        let tolerance = self.departures.tolerance;
+        if self.departures.any {
             for i in 0..W {
-                let e = estimates[i];
-                may_pass[i] &= !((e.lower() > 0.0) & (e.upper() < self.rays.tmax[i]));
-                any_open |= may_pass[i];
-            }
-            if any_open {
-                for i in (0..W).filter(|&i| may_pass[i]) {
-                    let origin = self.rays.origin_and_direction(i).0;
-                    at_origin[i] = primitive.shape.may_contain(origin, distance)
-                        && !self.is_departure(i, primitive.id);
-                }
+                let origin = self.rays.origin_and_direction(i).0;
+                estimates.may_start[i] = primitive.shape.may_contain(origin, tolerance);
             }
         }
-        Some(Estimates { estimates, at_origin })
+        if self.are_shadow_rays {
+            for i in 0..W {
+                let (origin, direction) = self.rays.origin_and_direction(i);
+                let end = origin + direction * self.rays.tmax[i];
+                estimates.may_end[i] = primitive.shape.may_contain(end, tolerance);
+            }
+        }
+        Some(estimates)
     }
 
     /// The exact hit of the ray in `lane` on a primitive.
