@@ -1,16 +1,15 @@
 //! The renderer: from a scene to a picture, with threads, progress and statistics.
 
+mod options;
+mod pool;
+mod rendering;
+mod trace;
+
 use std::borrow::Cow;
-use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use rayon::prelude::*;
-
 use crate::error::{Error, Result};
-use crate::film::{Film, View};
-use crate::integrator::{Counts, Integrator, PixelRecord, RefineStrip, Scratch, Tiling};
+use crate::film::View;
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
@@ -18,103 +17,12 @@ use crate::scene::Scene;
 use crate::scene::animation::PosedScene;
 use crate::write;
 
-/// The options of a rendering; size, samples and background are the scene's film settings.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct RenderOptions {
-    /// The backend that finds the hits.
-    pub backend: Backend,
-    /// The precision of the hits.
-    pub precision: Precision,
-    /// The quality of Embree's trees; `None` chooses it by the number of rays to come.
-    pub quality: Option<BuildQuality>,
-    /// The number of threads; 0 means all there are.
-    pub threads: usize,
-    /// The index of the scene's camera.
-    pub camera: usize,
-    /// The view: the beauty, or a debug view.
-    pub view: View,
-    /// The tiles that the picture is cut into.
-    pub tiling: Tiling,
-}
+pub use options::RenderOptions;
+pub use pool::in_pool;
+pub use rendering::{Rendering, Statistics};
+pub use trace::Traced;
 
-/// A picture, with its statistics and with the settings by which it is saved.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Rendering {
-    /// The picture.
-    pub film: Film,
-    /// The settings by which [`save`](Rendering::save) encodes the film: those of the scene.
-    pub settings: write::Settings,
-    /// Counts and times.
-    pub statistics: Statistics,
-}
-
-impl Rendering {
-    /// Saves the picture as PNG or EXR, by the extension of `path`.
-    ///
-    /// # Errors
-    /// When the extension names no format, or the file cannot be written; an old file at `path` is
-    /// left as it was.
-    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        write::write(&self.film, path.as_ref(), &self.settings)
-    }
-}
-
-/// The counts and times of a rendering.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Statistics {
-    /// The name of the intersector.
-    pub backend: &'static str,
-    /// The version of the library that traces.
-    pub backend_version: String,
-    /// The precision of the hits.
-    pub precision: Precision,
-    /// The quality of Embree's trees; `None` without Embree.
-    pub quality: Option<BuildQuality>,
-    /// The number of threads.
-    pub threads: usize,
-    /// Rays and other counts.
-    pub counts: Counts,
-    /// Counts of what was built for the intersector, and of what was reused.
-    pub built: BuildStats,
-    /// The time to build the intersector.
-    pub build: Duration,
-    /// The time from the first ray to the last pixel.
-    pub render: Duration,
-}
-
-impl Statistics {
-    /// Zeroed statistics, to which those of frames are added.
-    pub fn zero(options: &RenderOptions) -> Self {
-        Self {
-            backend: options.backend.name(),
-            backend_version: String::new(),
-            precision: options.precision,
-            quality: None,
-            threads: options.threads,
-            counts: Counts::default(),
-            built: BuildStats::default(),
-            build: Duration::ZERO,
-            render: Duration::ZERO,
-        }
-    }
-
-    /// Adds the statistics of another frame of the same animation.
-    pub fn add(&mut self, other: &Statistics) {
-        self.backend = other.backend;
-        self.backend_version.clone_from(&other.backend_version);
-        self.threads = other.threads;
-        self.quality = other.quality;
-        self.counts += other.counts;
-        self.built += other.built;
-        self.build += other.build;
-        self.render += other.render;
-    }
-}
-
-/// A callback that is told the share of the work that is done, in (0, 1]; any thread may call it.
-type Progress<'s> = dyn Fn(f32) + Sync + 's;
+use trace::{Progress, trace};
 
 /// A renderer of one scene.
 ///
@@ -219,7 +127,7 @@ impl<'s> Renderer<'s> {
         in_pool(options.threads, || {
             let threads = rayon::current_num_threads();
             let mut builder = IntersectorBuilder::new(options.backend, options.precision, threads)
-                .with_quality(quality(scene, options));
+                .with_quality(options.build_quality(scene));
             let start = Instant::now();
             let intersector = builder.build(scene)?;
             let built = BuildRecord::new(start, &builder, builder.stats());
@@ -253,7 +161,7 @@ impl<'s> Renderer<'s> {
             } else {
                 IntersectorBuilder::new(backend, precision, threads)
             };
-            let mut builder = builder.with_quality(quality(scene, options));
+            let mut builder = builder.with_quality(options.build_quality(scene));
             // One intersector serves all frames if only lights and cameras move.
             let mut shared: Option<Box<dyn Intersector + '_>> = None;
             let mut poses = PosedScene::new(scene);
@@ -307,18 +215,6 @@ impl std::fmt::Debug for Renderer<'_> {
     }
 }
 
-/// A film that was traced, with its counts and the time from the first ray to the last pixel.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Traced {
-    /// The picture.
-    pub film: Film,
-    /// Rays and other counts.
-    pub counts: Counts,
-    /// The time from the first ray to the last pixel.
-    pub duration: Duration,
-}
-
 /// The build of an intersector: quality, counts and time.
 struct BuildRecord {
     quality: Option<BuildQuality>,
@@ -330,23 +226,6 @@ impl BuildRecord {
     fn new(start: Instant, builder: &IntersectorBuilder, stats: BuildStats) -> Self {
         Self { quality: builder.quality(), stats, duration: start.elapsed() }
     }
-}
-
-/// Chooses the quality of a scene's trees, unless the options set it, by the number of its primary rays
-/// and their shadow rays. All frames of an animation count, also when only some are rendered: a frame
-/// must not depend on which others are.
-fn quality(scene: &Scene, options: &RenderOptions) -> BuildQuality {
-    let (spp, lights) = match options.view {
-        View::Beauty => {
-            (scene.film.spp, scene.lights.iter().filter(|light| light.casts_shadow()).count())
-        }
-        _ => (1, 0),
-    };
-    let frames = scene.animation.as_ref().map_or(1, |animation| animation.frames);
-    let [width, height] = scene.film.size;
-    let factors = [width, height, spp, frames, 1 + lights as u32];
-    let rays = factors.into_iter().map(u64::from).fold(1, u64::saturating_mul);
-    options.quality.unwrap_or(BuildQuality::for_rays(rays, scene.primitive_count()))
 }
 
 /// Renders a checked scene with an intersector that is built, and assembles the statistics.
@@ -370,76 +249,6 @@ fn render_scene(
         render: duration,
     };
     Rendering { film, settings: write::Settings::from_film(&scene.film), statistics }
-}
-
-/// Traces a checked scene with an intersector that is built, on the current rayon pool.
-///
-/// # Panics
-/// When the scene has no such camera.
-fn trace(
-    scene: &Scene,
-    options: &RenderOptions,
-    intersector: &dyn Intersector,
-    progress: &Progress<'_>,
-) -> Traced {
-    let size = scene.film.size;
-    let mut film = Film::new(size, options.view);
-    let camera = &scene.cameras[options.camera];
-    let RenderOptions { view, tiling, .. } = *options;
-    let integrator = Integrator::new(scene, intersector, camera, view, tiling);
-
-    // Threads share strips of whole rows.
-    let rows = tiling.rows;
-    let strip = size[0] as usize * rows;
-    let strips = film.pixels.len().div_ceil(strip);
-    let passes = if integrator.is_adaptive() { 2 } else { 1 };
-    let (counts, done) = (Mutex::new(Counts::default()), AtomicU64::new(0));
-    let finish_strip = |of_strip: Counts| {
-        // A poisoned lock still holds the counts; the panic that caused it is reported anyway.
-        *counts.lock().unwrap_or_else(|e| e.into_inner()) += of_strip;
-        let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-        progress(done as f32 / (passes * strips) as f32);
-    };
-
-    // First pass: the samples that every pixel has, and a record of what they hit where more follow.
-    let start = Instant::now();
-    let recorded = if passes == 2 { film.pixels.len() } else { 0 };
-    let mut records = vec![PixelRecord::default(); recorded];
-    let mut record_strips: Vec<&mut [PixelRecord]> = records.chunks_mut(strip).collect();
-    record_strips.resize_with(strips, Default::default);
-    let first_pass = film.pixels.par_chunks_mut(strip).zip(record_strips).enumerate();
-    first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, records))| {
-        finish_strip(integrator.render_strip(i * rows, pixels, records, scratch));
-    });
-
-    // Second pass: more samples for the pixels that disagree with themselves or their neighbours.
-    if passes == 2 {
-        let refined = integrator.pixels_to_refine(&film.pixels, &records);
-        let pixels = film.pixels.par_chunks_mut(strip).enumerate();
-        let parts = pixels.zip(records.par_chunks(strip).zip(refined.par_chunks(strip)));
-        parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (records, refined))| {
-            let strip = RefineStrip { first_row: i * rows, pixels, records, refined };
-            finish_strip(integrator.refine_strip(strip, scratch));
-        });
-    }
-    let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
-    Traced { film, counts, duration: start.elapsed() }
-}
-
-/// Runs `work` on `threads` threads; 0 means all there are. The current rayon pool is used if it has
-/// as many, and a new pool otherwise.
-///
-/// # Errors
-/// When the threads cannot be started, and the errors of `work`.
-pub fn in_pool<T: Send>(threads: usize, work: impl FnOnce() -> Result<T> + Send) -> Result<T> {
-    if threads == 0 || threads == rayon::current_num_threads() {
-        return work();
-    }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|e| Error::failed(format!("cannot start {threads} threads: {e}")))?
-        .install(work)
 }
 
 /// Checks that the scene has camera `index`.
