@@ -41,18 +41,20 @@ fn integer(x: f64, exponent: i64) -> IBig {
 /// When `x` is not finite.
 pub fn decode(x: f64) -> (i64, i64) {
     assert!(x.is_finite(), "the oracle needs finite numbers, not {x}");
-    let bits = x.to_bits();
-    let stored = (bits >> 52 & 0x7ff) as i64;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    // A subnormal has no hidden bit, and the exponent of the least normal number.
-    let (mantissa, exponent) =
-        if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored - 1075) };
+    let (mantissa, exponent) = significand(x.abs());
     if mantissa == 0 {
         return (0, 0);
     }
     let zeros = mantissa.trailing_zeros();
     let sign = if x < 0.0 { -1 } else { 1 };
-    (sign * (mantissa >> zeros), exponent + i64::from(zeros))
+    (sign * (mantissa >> zeros) as i64, exponent + i64::from(zeros))
+}
+
+/// Returns the significand, hidden bit included, and the exponent of a float ≥ 0.
+pub fn significand(x: f64) -> (u64, i64) {
+    let (stored, fraction) = (x.to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
+    // A subnormal has no hidden bit, and the exponent of the least normal number.
+    if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored as i64 - 1075) }
 }
 
 /// Returns a − b.

@@ -42,12 +42,15 @@ impl<'s> Oracle<'s> {
 
     /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed.
     fn hit(&self, id: PrimitiveId, ray: &Ray) -> Option<Hit> {
+        // A ray that did not cross anything before; the rule of departures is that of `crossing`.
         let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
+        // Another primitive than the one that was crossed: the first crossing that lies beyond that.
         if past.crossed.id != id {
             return [false, true]
                 .into_iter()
                 .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.excludes(h.t, id)));
         }
+        // The same primitive again: only a sphere is crossed twice, at its far side.
         let inside = id.geometry == Geometry::Spheres && past.crossed.side == Side::Back;
         inside.then(|| self.crossing(id, ray, true))?.filter(|hit| hit.t >= past.t)
     }
@@ -78,10 +81,9 @@ impl<'s> Oracle<'s> {
             Geometry::Mesh(_) => {
                 let corners = self.scene.triangle_vertices(id);
                 let crossing = super::triangle(corners, ray)?;
-                if starts_on_triangle(self.scene, corners, ray) {
-                    return None;
-                }
-                if self.scene.is_cut_out(id, crossing.u, crossing.v) {
+                if starts_on_triangle(self.scene, corners, ray)
+                    || self.scene.is_cut_out(id, crossing.u, crossing.v)
+                {
                     return None;
                 }
                 (crossing.t, crossing.u, crossing.v)
@@ -97,6 +99,7 @@ fn passes_near(bounds: &Bounds, ray: &Ray) -> bool {
     let margin = 1e-9 * (bounds.max_abs() + ray.origin.abs().max_element());
     let (lower, upper) = (bounds.lower - margin - ray.origin, bounds.upper + margin - ray.origin);
     let (mut enter, mut leave) = (0.0f64, ray.tmax);
+    // Where the line enters and leaves each of the three slabs of the box.
     for axis in 0..3 {
         let (low, high, along) = (lower[axis], upper[axis], ray.direction[axis]);
         if along == 0.0 {

@@ -54,12 +54,14 @@ pub fn sphere(center: DVec3, radius: f64, ray: &Ray, leaving_inward: bool) -> Op
 ///
 /// The point is exact; the distance is rounded to about 15 digits.
 pub fn signed_distance(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
+    // The point's way from the ray's origin: t times the direction.
     let ([center, origin], scale) = common_scale_of_vectors([center, ray.origin]);
     let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
     let (t, t_scale) = decode(t);
     let (r, r_scale) = decode(radius);
     let way = direction.map(|x| x * IBig::from(t));
     let way_scale = direction_scale + t_scale;
+    // The point relative to the centre, and the radius, in the same units.
     let low = scale.min(way_scale).min(r_scale);
     let lift = |x: &IBig, from: i64| x << (from - low) as usize;
     let from_center: IntegerVector =
@@ -197,9 +199,10 @@ impl Quadratic {
         crosses.then(|| Self { a, h, discriminant, exponent: scale - direction_scale })
     }
 
-    fn root(&self, which: Sign) -> ExactNumber {
+    fn root(&self, root: Sign) -> ExactNumber {
+        let (rational, denominator) = (self.h.clone(), self.a.clone());
         let radicand = self.discriminant.clone().unsigned_abs();
-        ExactNumber::root(self.h.clone(), which, radicand, self.a.clone(), self.exponent)
+        ExactNumber { rational, root, radicand, denominator, exponent: self.exponent }
     }
 }
 

@@ -4,15 +4,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::random::Random;
-use super::report::{CaseStats, Row};
+use super::{CaseStats, Row, random::Random};
 use crate::error::Result;
 
 /// The number of rays that are generated and traced together.
 const BATCH: u64 = 256;
-
-/// A function that tests the rays of a case.
-pub type Test = dyn Fn(&RaySampler) -> Result<CaseStats>;
 
 /// A case: rays of one kind, and the errors that they may have.
 pub struct Case {
@@ -27,7 +23,7 @@ pub struct Case {
     /// The largest relative error that passes.
     pub max_relative: f64,
     /// The test of the rays.
-    pub test: Box<Test>,
+    pub test: Box<dyn Fn(&RaySampler) -> Result<CaseStats>>,
 }
 
 impl Case {

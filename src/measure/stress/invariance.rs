@@ -3,14 +3,14 @@
 
 use std::ops::RangeInclusive;
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
+use super::CaseStats;
 use super::case::{Case, RaySampler};
-use super::meshes::{icosphere, torus};
-use super::report::CaseStats;
+use super::meshes::{BACKENDS, icosphere, torus};
 use crate::error::Result;
 use crate::integrator::Tiling;
-use crate::intersect::{Backend, Precision};
+use crate::intersect::Precision;
 use crate::render::{RenderOptions, Renderer};
 use crate::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
@@ -35,8 +35,8 @@ const TILINGS: [Tiling; 4] = [
 /// Returns the cases.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for backend in backends() {
-        let method = format!("certified, {}", name(backend));
+    for &(backend, name) in BACKENDS {
+        let method = format!("certified, {name}");
         let options = move |threads, tiling| {
             let precision = Precision::Certified;
             RenderOptions { backend, precision, threads, tiling, ..RenderOptions::default() }
@@ -79,30 +79,11 @@ fn compare_variants(
         for (scene, options) in &variants {
             let (found, rays) = picture(scene, options, camera)?;
             stats.rays += rays;
-            let pixels = expected.chunks(3).zip(found.chunks(3));
-            stats.misclassified += pixels.filter(|(a, b)| a != b).count() as u64;
+            stats.count_different(expected.as_chunks::<3>().0, found.as_chunks::<3>().0);
             stats.count_wrong(expected.len() != found.len());
         }
     }
     Ok(stats)
-}
-
-/// Returns the backends of this build.
-fn backends() -> Vec<Backend> {
-    vec![
-        #[cfg(feature = "embree")]
-        Backend::Embree,
-        Backend::Rust,
-    ]
-}
-
-/// Returns the name of a backend in the report.
-fn name(backend: Backend) -> &'static str {
-    match backend {
-        #[cfg(feature = "embree")]
-        Backend::Embree => "embree",
-        Backend::Rust => "bvh",
-    }
 }
 
 /// Returns the side in pixels of the square pictures of a case.
@@ -121,14 +102,13 @@ fn picture(scene: &Scene, options: &RenderOptions, camera: usize) -> Result<(Vec
 fn scene(side: u32) -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [side, side];
-    let glossy =
-        Material { diffuse: Vec3::new(0.3, 0.5, 0.8), specular: Vec3::ONE, ..<_>::default() };
-    let glossy = scene.add_material(glossy);
-    let matt = scene.add_material(Material::default());
+    // One material of each kind.
+    let (diffuse, absorption) = (Vec3::new(0.3, 0.5, 0.8), Vec3::new(1.0, 0.25, 0.0));
+    let glossy = Material { diffuse, specular: Vec3::ONE, ..<_>::default() };
     let mirror = Material { reflect: Vec3::new(0.9, 0.8, 0.6), ..<_>::default() };
-    let absorption = Vec3::new(1.0, 0.25, 0.0);
     let glass = Material { transmit: Vec3::ONE, absorption, ..<_>::default() };
-    let [mirror, glass] = [mirror, glass].map(|material| scene.add_material(material));
+    let [glossy, matt, mirror, glass] =
+        [glossy, Material::default(), mirror, glass].map(|material| scene.add_material(material));
     // Spheres and a plane.
     for i in 0..12 {
         let angle = f64::from(i) * 0.7;
@@ -188,12 +168,10 @@ fn scene(side: u32) -> Scene {
 fn scaled(scene: &Scene, k: i32) -> Scene {
     let by = f64::powi(2.0, k);
     let mut scene = scene.clone();
+    // Spheres, and planes with their checkerboards.
     for sphere in &mut scene.spheres {
         sphere.center *= by;
         sphere.radius *= by;
-    }
-    for material in &mut scene.materials {
-        material.absorption /= by as f32;
     }
     for plane in &mut scene.planes {
         plane.point *= by;
@@ -202,9 +180,12 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
         }
     }
     for instance in &mut scene.instances {
-        let DAffine3 { matrix3, translation } = instance.transform;
-        let matrix3: DMat3 = matrix3 * by;
-        instance.transform = DAffine3 { matrix3, translation: translation * by };
+        instance.transform.matrix3 *= by;
+        instance.transform.translation *= by;
+    }
+    // Absorption is per unit of length, and light falls off with the square of the distance.
+    for material in &mut scene.materials {
+        material.absorption /= by as f32;
     }
     for light in &mut scene.lights {
         if let LightKind::Point { position, falloff, range }

@@ -63,6 +63,7 @@ fn max_errors(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
     let mut errors = [0.0f64; CURVES.len()];
     let round = |v: DVec3, is_f32: bool| if is_f32 { v.as_vec3().as_dvec3() } else { v };
     for index in 0..rays {
+        // A ray at a disc a little larger than the sphere, so that it also meets the silhouette.
         let random = &mut Random::new(seed, &format!("plot/{distance:e}"), index);
         let toward = random.direction();
         let center = toward * distance;
@@ -74,7 +75,7 @@ fn max_errors(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
             let ray = Ray::new(DVec3::ZERO, direction);
             (center, ray, oracle::sphere(center, 1.0, &ray, false).is_some())
         });
-        // A curve for each formula.
+        // The error of each formula, if the ray hits the sphere of its arguments.
         for (i, Curve { method, is_f32, .. }) in CURVES.iter().enumerate() {
             let (center, ray, is_hit) = arguments[usize::from(*is_f32)];
             if !is_hit {
@@ -134,6 +135,7 @@ fn draw(
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
     }
+    // The legend.
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperLeft)

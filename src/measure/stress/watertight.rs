@@ -2,10 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::case::Case;
 use super::meshes::{INTERSECTORS, cube, icosphere, intersectors, torus};
-use super::random::Random;
-use super::report::CaseStats;
+use super::{CaseStats, case::Case, random::Random};
 use crate::geometry::{Hit, PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
 use crate::measure::trace::closest;
@@ -52,6 +50,7 @@ pub fn cases() -> Vec<Case> {
                     let brute = BruteForce::new(&scene, Precision::Certified);
                     let fast = BruteForce::new(&scene, Precision::Fast);
                     let intersectors = intersectors(&scene, Precision::Certified)?;
+                    // Brute force tells what the mesh is like; the trees must agree with it.
                     let sample = |random: &mut Random| sample_ray(&scene, target, random);
                     Ok(sampler.for_each_batch(sample, |samples, stats| {
                         let expected = count_crossings(samples, &brute, &fast, stats);
@@ -121,6 +120,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
     let corners = |random: &mut Random| {
         scene.triangle_vertices(PrimitiveId::triangle(0, random.below(triangles) as u32, 0))
     };
+    // On the grid: an axis-parallel ray through a multiple of 1/8, from outside.
     if matches!(target, Target::Grid) {
         let axis = random.below(3);
         let step = |random: &mut Random| random.below(21) as f64 / 8.0 - 1.25;
@@ -130,6 +130,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
         let ray = Ray::new(to_world(DVec3::from(start)), DVec3::AXES[axis] * -side);
         return Sample { ray, starts_inside: false };
     }
+    // At a vertex or an edge: from anywhere inside or outside.
     let [a, b, _] = corners(random);
     let starts_inside = random.coin();
     // The centre of the sphere and of the cube, or a point within the tube of the torus.
@@ -145,6 +146,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
             Sample { ray: Ray::new(origin, a.lerp(b, random.unit()) - origin), starts_inside }
         }
         Target::Diagonals | Target::Grid => {
+            // Along the line from another vertex, starting far outside.
             let [c, ..] = corners(random);
             let other = if c == a { b } else { c };
             Sample { ray: Ray::new(a + (a - other) * 64.0, other - a), starts_inside: false }

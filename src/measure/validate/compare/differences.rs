@@ -46,14 +46,6 @@ pub struct CameraRay<'m> {
     pub heatmap_color: &'m mut [f32; 3],
 }
 
-/// A mismatch on one ray.
-pub struct Mismatch {
-    /// The explanation, if there is one.
-    pub cause: Option<MismatchCause>,
-    pub is_shadow_ray: bool,
-    pub t_error_ulp: Option<u64>,
-}
-
 impl CameraRay<'_> {
     /// Returns the report of a difference on this ray or a shadow ray from its hit.
     pub fn worst_ray(
@@ -84,10 +76,15 @@ impl Differences {
         self
     }
 
-    /// Counts a mismatch; given its camera ray, also colours the pixel, and keeps the ray if it is
-    /// the worst.
-    pub fn add(&mut self, camera_ray: Option<CameraRay<'_>>, mismatch: Mismatch) {
-        let Mismatch { cause, is_shadow_ray, t_error_ulp } = mismatch;
+    /// Counts a mismatch with its explanation, if there is one; given its camera ray, also colours the
+    /// pixel, and keeps the ray if it is the worst.
+    pub fn add(
+        &mut self,
+        camera_ray: Option<CameraRay<'_>>,
+        cause: Option<MismatchCause>,
+        is_shadow_ray: bool,
+        t_error_ulp: Option<u64>,
+    ) {
         *self.causes.count_mut(cause) += 1;
         let Some(camera_ray) = camera_ray else { return };
         let ulp = t_error_ulp.unwrap_or(0);
@@ -95,6 +92,7 @@ impl Differences {
             Some(cause) => (Severity::Explained(ulp), cause.name()),
             None => (Severity::Unexplained(ulp), "other"),
         };
+        // An unexplained mismatch shows whatever else the pixel has.
         if cause.is_none() {
             *camera_ray.heatmap_color = RED;
         } else if *camera_ray.heatmap_color != RED {
