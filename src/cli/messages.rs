@@ -68,18 +68,8 @@ pub fn set_progress(bar: &ProgressBar, share: f32) {
 
 /// Returns the text of an error.
 fn format(error: &Error) -> String {
-    let mut text = String::from("error: ");
-    if let Some(path) = error.path() {
-        text += &format!("{}:", path.display());
-    }
-    if let Some(place) = error.location() {
-        text += &format!("{place}:");
-    }
-    if error.path().is_some() || error.location().is_some() {
-        text.push(' ');
-    }
-    text += error.message();
-    text.push('\n');
+    let mut text = format!("error: {error:#}\n");
+    // The line of the file, with its number and a mark under the place.
     if let Some(Location::Text { line, column, length, quote }) = error.location() {
         let number = line.to_string();
         let margin = " ".repeat(number.len());
@@ -89,6 +79,7 @@ fn format(error: &Error) -> String {
         let mark = "^".repeat(*length);
         text += &format!("{margin} |\n{number} | {quote}\n{margin} | {indent}{mark}\n");
     }
+    // The advice, and the flag that does what it says.
     let flag = error.remedy().map(flag);
     let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
     if !help.is_empty() {

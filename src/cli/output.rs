@@ -52,6 +52,17 @@ pub fn check_extension(path: Option<&PathBuf>, extension: &str, message: &str) -
     write::check_file(path)
 }
 
+/// Prints the text of a result, unless its JSON is printed, and writes its JSON if that is asked for.
+///
+/// # Errors
+/// When one of the two cannot be written.
+pub fn report(json: Option<&PathBuf>, text: &str, value: &impl Serialize) -> Result<()> {
+    if stdout_is_free(json) {
+        print(text)?;
+    }
+    json.map_or(Ok(()), |path| write_json(path, value))
+}
+
 /// Writes `value` as JSON, to standard output if `path` is `-`.
 ///
 /// # Errors

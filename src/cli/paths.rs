@@ -40,16 +40,14 @@ pub fn check_not_a_texture<'a>(
 ) -> Result<()> {
     let is_texture =
         |path: &Path| scene.textures.iter().any(|t| is_same(Path::new(&t.image.name), path));
-    for path in outputs {
-        if path.exists() && is_texture(path) {
-            return Err(Error::input(
-                "the output is a texture of the scene, and would overwrite it",
-            )
-            .at(path)
-            .help("choose another name with -o"));
+    match outputs.into_iter().find(|path| path.exists() && is_texture(path)) {
+        None => Ok(()),
+        Some(path) => {
+            Err(Error::input("the output is a texture of the scene, and would overwrite it")
+                .at(path)
+                .help("choose another name with -o"))
         }
     }
-    Ok(())
 }
 
 /// True if two paths name the same file, which need not exist yet.

@@ -74,6 +74,7 @@ impl RenderPlan {
             None if is_sequence => all,
             None => FrameRange { last: 1, ..all },
         };
+        // The frames, which an animated image shows at the same speed when some are left out.
         let frames = (range.first..=range.last).step_by(range.step as usize);
         let frame = |number| Frame { number: Some(number), time: animation.time(number) };
         self.frames = frames.map(frame).collect();
@@ -92,9 +93,9 @@ impl RenderPlan {
         if let Some(path) = self.stills.iter().find(|path| !has_placeholder(path)) {
             let message =
                 format!("{} frames cannot all be written to this file", self.frames.len());
-            return Err(Error::input(message).at(path).help(
-                "put #### in place of the frame number, as in frame-####.png, or choose .gif or .apng",
-            ));
+            let help = "put #### in place of the frame number, as in frame-####.png, or choose .gif \
+                        or .apng";
+            return Err(Error::input(message).at(path).help(help));
         }
         let last = self.frames.last().and_then(|frame| frame.number);
         for (i, path) in self.stills.iter().enumerate() {
@@ -119,13 +120,9 @@ impl RenderPlan {
                 .at(&arguments.trace.input.scene)
                 .help("a scene file has an animation in [animation], a glTF file may have one"));
         }
-        match self.movies.first() {
-            Some(path) => {
-                let message = format!("an animated image needs an animation, and {reason}");
-                Err(Error::input(message).at(path).help("choose .png or .exr"))
-            }
-            None => Ok(()),
-        }
+        let Some(path) = self.movies.first() else { return Ok(()) };
+        let message = format!("an animated image needs an animation, and {reason}");
+        Err(Error::input(message).at(path).help("choose .png or .exr"))
     }
 
     /// Removes the frames whose files exist.
@@ -135,6 +132,7 @@ impl RenderPlan {
                 .at(path)
                 .help("leave out --skip-existing, or this output"));
         }
+        // The frames of which some file is missing.
         self.skips_existing = true;
         let mut frames = std::mem::take(&mut self.frames);
         let count = frames.len();

@@ -11,7 +11,7 @@ use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
 use crate::intersect::BuildQuality;
 use crate::load::LoadReport;
 use crate::render::Statistics;
-use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
+use crate::scene::{AdaptiveSampling, Feature, Scene, SceneFeatures};
 
 /// The sums of all frames, and the times of the command.
 pub struct RenderTotals {
@@ -77,15 +77,6 @@ pub struct Adaptive {
     pub refined: Vec<u64>,
 }
 
-impl Adaptive {
-    fn new(film: &FilmSettings, counts: &Counts) -> Option<Self> {
-        let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
-        let steps = sample_steps(film);
-        let refined = counts.refined[..steps.len() - 1].to_vec();
-        Some(Self { max, threshold, steps, refined })
-    }
-}
-
 /// The ray tracing backend.
 #[derive(Serialize)]
 pub struct Backend {
@@ -135,22 +126,6 @@ pub struct Build {
     pub spheres_moved: u64,
 }
 
-impl From<&Statistics> for Build {
-    fn from(statistics: &Statistics) -> Self {
-        let built = statistics.built;
-        Self {
-            meshes: built.meshes_built,
-            reused: built.meshes_reused,
-            bvh: statistics.quality.map(BuildQuality::name),
-            top_levels_built: built.tlas_built,
-            top_levels_kept: built.tlas_updated,
-            instances_placed: built.instances_built,
-            instances_moved: built.instances_moved,
-            spheres_moved: built.spheres_moved,
-        }
-    }
-}
-
 /// The times in seconds.
 #[derive(Serialize)]
 pub struct Seconds {
@@ -170,7 +145,7 @@ impl RenderStats {
         warnings: Vec<String>,
     ) -> Self {
         let RenderTotals { statistics, frames, images, load, write, total, .. } = totals;
-        let Counts { rays, not_finite, .. } = statistics.counts;
+        let (Counts { rays, not_finite, .. }, built) = (statistics.counts, statistics.built);
         let seconds = Seconds {
             load: load.as_secs_f64(),
             build: statistics.build.as_secs_f64(),
@@ -179,6 +154,13 @@ impl RenderStats {
             total: total.as_secs_f64(),
         };
         let (name, version) = (statistics.backend, statistics.backend_version.clone());
+        // The steps of adaptive sampling, and how many pixels took each after the first.
+        let adaptive = scene.film.adaptive.map(|AdaptiveSampling { max, threshold }| {
+            let steps = sample_steps(&scene.film);
+            let refined = statistics.counts.refined[..steps.len() - 1].to_vec();
+            Adaptive { max, threshold, steps, refined }
+        });
+        // The work that was done, and the reasons for what was not.
         let work = work(scene, statistics, *images);
         Self {
             backend: Backend { name, version },
@@ -186,10 +168,19 @@ impl RenderStats {
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,
-            adaptive: Adaptive::new(&scene.film, &statistics.counts),
+            adaptive,
             frames: *frames,
             geometry: Geometry::new(scene),
-            build: statistics.into(),
+            build: Build {
+                meshes: built.meshes_built,
+                reused: built.meshes_reused,
+                bvh: statistics.quality.map(BuildQuality::name),
+                top_levels_built: built.tlas_built,
+                top_levels_kept: built.tlas_updated,
+                instances_placed: built.instances_built,
+                instances_moved: built.instances_moved,
+                spheres_moved: built.spheres_moved,
+            },
             rays,
             skipped: skipped(&SceneFeatures::from_scene(scene), &work),
             work,
@@ -208,6 +199,7 @@ impl RenderStats {
 fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'static str, u64> {
     let Statistics { built, counts, .. } = statistics;
     let (rays, done) = (&counts.rays, &counts.work);
+    // The pictures that were read, each once however many textures show it.
     let mut textures: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
     textures.retain(|image| image.is_read());
     textures.sort_by_key(|image| Arc::as_ptr(image));

@@ -1,12 +1,13 @@
 //! The subcommand `envers validate`.
 
 use std::path::Path;
+use std::process::ExitCode;
 
 use serde::Serialize;
 
 use crate::cli::args::Validate;
 use crate::cli::scene_args::SceneInput;
-use crate::cli::{Outcome, messages, output, paths};
+use crate::cli::{check_status, messages, output, paths};
 use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::Precision;
@@ -23,7 +24,8 @@ struct ValidationResult<'a> {
     warnings: &'a [String],
 }
 
-pub fn run(arguments: &Validate) -> Result<Outcome> {
+pub fn run(arguments: &Validate) -> Result<ExitCode> {
+    // Check the outputs, and load the scene; a single ray is another command in all but name.
     output::check_json(arguments.json.as_ref())?;
     output::check_heatmap(arguments.heatmap.as_ref())?;
     let input = &arguments.trace.input;
@@ -32,6 +34,8 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
     if let Some(ray) = &arguments.ray {
         return replay(arguments, &scene, ray);
     }
+
+    // Warn of what the comparison may find for reasons of precision.
     paths::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = arguments.trace.precision;
     let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
@@ -39,36 +43,27 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         warnings.iter().for_each(|w| messages::warning(w));
     }
 
+    // Compare, and report the result with the command that traces the worst ray again.
     let validation = measure::validate(&scene, precision, camera, input.threads())?;
     let worst = validation.worst.as_ref();
     let replay = worst.map(|worst| replay_command(&input.scene, &worst.ray));
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        let mut text = format!("{validation}\n");
-        if let Some((worst, replay)) = worst.zip(replay.as_ref()) {
-            text += &format!("{worst}\n  {replay}\n");
-        }
-        output::print(&text)?;
+    let mut text = format!("{validation}\n");
+    if let Some((worst, replay)) = worst.zip(replay.as_ref()) {
+        text += &format!("{worst}\n  {replay}\n");
     }
-    if let Some(path) = &arguments.json {
-        let result = ValidationResult { validation: &validation, replay, warnings: &warnings };
-        output::write_json(path, &result)?;
-    }
+    let result = ValidationResult { validation: &validation, replay, warnings: &warnings };
+    output::report(arguments.json.as_ref(), &text, &result)?;
     if let Some(path) = &arguments.heatmap {
         output::write_heatmap(path, &validation.heatmap)?;
     }
-    Ok(Outcome::of_check(validation.passed))
+    Ok(check_status(validation.passed))
 }
 
 /// Traces one ray with every intersector: `envers validate --ray`.
-fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Result<Outcome> {
+fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Result<ExitCode> {
     let replay = measure::replay(scene, ray)?;
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&replay.to_string())?;
-    }
-    if let Some(path) = &arguments.json {
-        output::write_json(path, &replay)?;
-    }
-    Ok(Outcome::Success)
+    output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Returns the command that traces a ray again, quoted for a shell.

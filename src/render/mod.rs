@@ -155,6 +155,7 @@ impl<'s> Renderer<'s> {
             let (backend, precision) = (options.backend, options.precision);
             let threads = rayon::current_num_threads();
             let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
+            // Frames in which rays can hit something else share the trees of the meshes.
             let builder = if moves {
                 let bounds = scene.bounds_over_time();
                 IntersectorBuilder::for_frames(backend, precision, threads, bounds)
@@ -169,31 +170,30 @@ impl<'s> Renderer<'s> {
                 // Pose the scene, and check what moved.
                 poses.pose(time)?;
                 if scene.animation.is_some() {
-                    poses
-                        .check()
-                        .map_err(|e| e.help(format!("at {time:.3} s of its animation")))?;
+                    let help = || format!("at {time:.3} s of its animation");
+                    poses.check().map_err(|e| e.help(help()))?;
                 }
                 let posed = poses.scene();
                 let share = |of_frame: f32| {
                     (self.progress)((i as f32 + of_frame) / times.len() as f32);
                 };
-                // Build or update the intersector, and render.
-                let start = Instant::now();
-                let before = builder.stats();
-                let rendering = if moves {
-                    let intersector = builder.build(posed)?;
-                    let built = BuildRecord::new(start, &builder, builder.stats() - before);
-                    render_scene(posed, options, &*intersector, built, &share)
-                } else if let Some(intersector) = &shared {
-                    let reused = BuildStats::reused(before.meshes_built);
-                    let built = BuildRecord::new(start, &builder, reused);
-                    render_scene(posed, options, &**intersector, built, &share)
+                // Build or update the intersector, unless the one that all frames share is there already.
+                let (start, before) = (Instant::now(), builder.stats());
+                let own;
+                let mut built = None;
+                let intersector: &dyn Intersector = if moves {
+                    own = builder.build(posed)?;
+                    &*own
+                } else if let Some(shared) = &shared {
+                    built = Some(BuildStats::reused(before.meshes_built));
+                    &**shared
                 } else {
-                    let intersector = shared.insert(builder.build(scene)?);
-                    let built = BuildRecord::new(start, &builder, builder.stats());
-                    render_scene(posed, options, &**intersector, built, &share)
+                    &**shared.insert(builder.build(scene)?)
                 };
-                each(i, rendering)?;
+                let built = built.unwrap_or_else(|| builder.stats() - before);
+                let build = BuildRecord::new(start, &builder, built);
+                // Render the frame.
+                each(i, render_scene(posed, options, intersector, build, &share))?;
             }
             Ok(())
         })

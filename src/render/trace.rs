@@ -37,6 +37,7 @@ pub fn trace(
     intersector: &dyn Intersector,
     progress: &Progress<'_>,
 ) -> Traced {
+    // An empty film, and the integrator that gives its pixels their radiance.
     let size = scene.film.size;
     let mut film = Film::new(size, options.view);
     let camera = &scene.cameras[options.camera];
