@@ -2,10 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::cli::args::Bench;
-use crate::cli::flag_values::SampleRange;
-use crate::cli::scene_args::SceneInput;
-use crate::cli::{messages, output};
+use crate::cli::{args::Bench, flag_values::SampleRange, messages, output, scene_args::SceneInput};
 use crate::error::{Error, Result};
 use crate::intersect::{Backend, Precision};
 use crate::measure::bench::{self, BenchOptions, Samples, Setup};

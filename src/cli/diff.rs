@@ -4,12 +4,10 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::args::Diff;
-use crate::cli::{check_status, output, paths};
+use crate::cli::{args::Diff, check_status, output, paths};
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::measure::flip::PerceivedImage;
-use crate::measure::{Comparison, Picture, compare_pictures};
+use crate::measure::{Comparison, Picture, compare_pictures, flip::PerceivedImage};
 use crate::scene::Transfer;
 use crate::write::Format;
 

@@ -6,10 +6,8 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::args::Info;
 use crate::cli::load_report::{self, LoadSummary};
-use crate::cli::render_stats::Geometry;
-use crate::cli::{messages, output, paths};
+use crate::cli::{args::Info, messages, output, paths, render_stats::Geometry};
 use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};

@@ -16,8 +16,7 @@ use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
 use crate::load;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
-use crate::scene::animation::PosedScene;
-use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Result<ExitCode> {

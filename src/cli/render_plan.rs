@@ -2,11 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::args::Render;
-use crate::cli::frame_range::FrameRange;
+use crate::cli::{args::Render, frame_range::FrameRange};
 use crate::error::{Error, Result};
-use crate::scene::Scene;
-use crate::scene::animation::Animation;
+use crate::scene::{Scene, animation::Animation};
 use crate::write::Format;
 
 /// The frames and files of a rendering.

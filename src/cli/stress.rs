@@ -2,8 +2,7 @@
 
 use std::process::ExitCode;
 
-use crate::cli::args::Stress;
-use crate::cli::{check_status, messages, output, paths};
+use crate::cli::{args::Stress, check_status, messages, output, paths};
 use crate::error::{Error, Result};
 use crate::measure::stress::{self, StressOptions, Table, plot};
 use crate::write;

@@ -5,9 +5,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::args::Validate;
-use crate::cli::scene_args::SceneInput;
-use crate::cli::{check_status, messages, output, paths};
+use crate::cli::{args::Validate, check_status, messages, output, paths, scene_args::SceneInput};
 use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::Precision;

@@ -13,8 +13,7 @@ use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
-use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Light, Scene};
+use crate::scene::{Light, Scene, check::MAX_COORDINATE};
 use crate::surface::Surface;
 
 /// The answers of all intersectors for one ray.

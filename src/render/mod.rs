@@ -13,8 +13,7 @@ use crate::film::View;
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
-use crate::scene::Scene;
-use crate::scene::animation::PosedScene;
+use crate::scene::{Scene, animation::PosedScene};
 use crate::write;
 
 pub use options::RenderOptions;

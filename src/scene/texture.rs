@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine2, Vec2, Vec4};
 
-use crate::scene::Transfer;
-use crate::scene::image::Image;
-use crate::scene::texels::Texels;
+use crate::scene::{Transfer, image::Image, texels::Texels};
 
 /// The index of a texture in `Scene::textures`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

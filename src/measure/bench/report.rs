@@ -4,12 +4,9 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::BenchOptions;
-use super::machine::Machine;
 use super::mode::{Mode, Setup};
-use super::pareto::dominators;
-use super::reference::Reference;
 use super::runs::{ModeRuns, SetupRuns};
+use super::{BenchOptions, machine::Machine, pareto::dominators, reference::Reference};
 use crate::scene::Scene;
 
 /// The results of a benchmark.

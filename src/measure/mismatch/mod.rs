@@ -20,8 +20,7 @@ mod tests;
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, triangle};
-use crate::intersect::Precision;
-use crate::intersect::primitive::Primitives;
+use crate::intersect::{Precision, primitive::Primitives};
 use crate::scene::Scene;
 
 /// The explanation of a mismatch.

@@ -4,9 +4,8 @@ use glam::DVec3;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
-use super::random::Random;
 use super::sphere_distance::{self, Method};
-use super::textbook;
+use super::{random::Random, textbook};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::measure::oracle;

@@ -7,8 +7,7 @@ use super::{
     Rotation, prefixed,
 };
 use crate::error::Result;
-use crate::scene::Scene;
-use crate::scene::check::require;
+use crate::scene::{Scene, check::require};
 
 impl Animation {
     /// Checks that frames, curves and indices into `scene` are valid; `Scene::check` calls it.

@@ -1,9 +1,8 @@
 //! The differences that a comparison of two intersectors finds, and the worst ray.
 
 use crate::geometry::Ray;
-use crate::measure::mismatch::MismatchCause;
-use crate::measure::replay::ray_to_text;
 use crate::measure::validate::{MismatchCounts, WorstRay};
+use crate::measure::{mismatch::MismatchCause, replay::ray_to_text};
 
 /// The colour of a pixel with an unexplained mismatch.
 pub const RED: [f32; 3] = [1.0, 0.0, 0.0];
