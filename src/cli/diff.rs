@@ -23,7 +23,7 @@ struct DiffResult {
 pub fn run(arguments: &Diff) -> Result<ExitCode> {
     // Check the outputs, and then the inputs, which must be of one format.
     output::check_json(arguments.json.as_ref())?;
-    output::check_heatmap(arguments.heatmap.as_ref())?;
+    output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     for input in [&arguments.a, &arguments.b] {
         paths::check_input(input)?;
         if let Some(path) = arguments.heatmap.as_ref().filter(|path| paths::is_same(path, input)) {

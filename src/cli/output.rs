@@ -32,14 +32,6 @@ pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
     write::check_file(path)
 }
 
-/// Checks that a heat map can be written to `path` as PNG.
-///
-/// # Errors
-/// When it cannot, or the file is not named .png.
-pub fn check_heatmap(path: Option<&PathBuf>) -> Result<()> {
-    check_extension(path, "png", "a heat map must be a PNG")
-}
-
 /// Checks that a file can be written to `path`, and is named with an extension.
 ///
 /// # Errors

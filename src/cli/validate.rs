@@ -25,7 +25,7 @@ struct ValidationResult<'a> {
 pub fn run(arguments: &Validate) -> Result<ExitCode> {
     // Check the outputs, and load the scene; a single ray is another command in all but name.
     output::check_json(arguments.json.as_ref())?;
-    output::check_heatmap(arguments.heatmap.as_ref())?;
+    output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     let input = &arguments.trace.input;
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
     let scene = scene.at_time(0.0)?;

@@ -129,8 +129,8 @@ impl<'s> Renderer<'s> {
                 .with_quality(options.build_quality(scene));
             let start = Instant::now();
             let intersector = builder.build(scene)?;
-            let built = BuildRecord::new(start, &builder, builder.stats());
-            Ok(render_scene(scene, options, &*intersector, built, &*self.progress))
+            let (quality, built) = (builder.quality(), (builder.stats(), start.elapsed()));
+            Ok(render_scene(scene, options, &*intersector, quality, built, &*self.progress))
         })
     }
 
@@ -190,9 +190,9 @@ impl<'s> Renderer<'s> {
                     &**shared.insert(builder.build(scene)?)
                 };
                 let built = built.unwrap_or_else(|| builder.stats() - before);
-                let build = BuildRecord::new(start, &builder, built);
+                let (quality, built) = (builder.quality(), (built, start.elapsed()));
                 // Render the frame.
-                each(i, render_scene(posed, options, intersector, build, &share))?;
+                each(i, render_scene(posed, options, intersector, quality, built, &share))?;
             }
             Ok(())
         })
@@ -214,25 +214,14 @@ impl std::fmt::Debug for Renderer<'_> {
     }
 }
 
-/// The build of an intersector: quality, counts and time.
-struct BuildRecord {
-    quality: Option<BuildQuality>,
-    stats: BuildStats,
-    duration: Duration,
-}
-
-impl BuildRecord {
-    fn new(start: Instant, builder: &IntersectorBuilder, stats: BuildStats) -> Self {
-        Self { quality: builder.quality(), stats, duration: start.elapsed() }
-    }
-}
-
-/// Renders a checked scene with an intersector that is built, and assembles the statistics.
+/// Renders a checked scene with an intersector that is built, and assembles the statistics with those of
+/// the build.
 fn render_scene(
     scene: &Scene,
     options: &RenderOptions,
     intersector: &dyn Intersector,
-    build: BuildRecord,
+    quality: Option<BuildQuality>,
+    (built, build): (BuildStats, Duration),
     progress: &Progress<'_>,
 ) -> Rendering {
     let Traced { film, counts, duration } = trace(scene, options, intersector, progress);
@@ -240,11 +229,11 @@ fn render_scene(
         backend: intersector.name(),
         backend_version: intersector.version(),
         precision: options.precision,
-        quality: build.quality,
+        quality,
         threads: rayon::current_num_threads(),
         counts,
-        built: build.stats,
-        build: build.duration,
+        built,
+        build,
         render: duration,
     };
     Rendering { film, settings: write::Settings::from_film(&scene.film), statistics }

@@ -81,10 +81,9 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
         let ranked = |rank| setup.iter().filter(move |r| r.rank == rank).map(position);
         let (disc, ring) = (color.filled(), color.stroke_width(2));
-        chart.draw_series(ranked(ParetoRank::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
-        chart.draw_series(
-            ranked(ParetoRank::FewerWrongHits).map(|p| Circle::new(p, RADIUS, ring)),
-        )?;
+        let [filled, open] = [disc, ring].map(|style| move |p| Circle::new(p, RADIUS, style));
+        chart.draw_series(ranked(ParetoRank::Front).map(filled))?;
+        chart.draw_series(ranked(ParetoRank::FewerWrongHits).map(open))?;
         chart.draw_series(ranked(ParetoRank::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
         let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
         let label = |row: &Row| {
@@ -95,20 +94,15 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
             EmptyElement::at(position(row)) + Text::new(label(row), (6, -6), above.clone())
         }))?;
     }
-    // The legend of the marks.
+    // The legend of the marks, which belong to no series.
+    let (disc, ring) = (DARK.filled(), DARK.stroke_width(2));
     let none = || std::iter::empty::<Circle<(f64, f64), i32>>();
-    chart
-        .draw_series(none())?
-        .label("on the front")
-        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.filled()));
-    chart
-        .draw_series(none())?
-        .label("behind the front, fewer wrong hits")
-        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
-    chart
-        .draw_series(none())?
-        .label("dominated")
-        .legend(|(x, y)| Cross::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
+    let label = chart.draw_series(none())?.label("on the front");
+    label.legend(move |(x, y)| Circle::new((x + 12, y), RADIUS, disc));
+    let label = chart.draw_series(none())?.label("behind the front, fewer wrong hits");
+    label.legend(move |(x, y)| Circle::new((x + 12, y), RADIUS, ring));
+    let label = chart.draw_series(none())?.label("dominated");
+    label.legend(move |(x, y)| Cross::new((x + 12, y), RADIUS, ring));
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::LowerLeft)
