@@ -64,13 +64,18 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
 /// # Errors
 /// When they are inconsistent.
 fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
-    let defaults = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
-    let reference_spp = arguments.reference_spp.unwrap_or(defaults.reference_spp);
+    // The defaults, and the flags for everything but samples and backends.
+    let mut options = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
+    let reference_spp = arguments.reference_spp.unwrap_or(options.reference_spp);
+    options.reference_spp = reference_spp;
+    options.runs = arguments.runs.unwrap_or(options.runs);
+    (options.budget, options.threads) = (arguments.budget, arguments.input.threads());
+    options.camera = camera;
 
     // The samples of the flags, or the default ones that the reference has as many of.
     let Bench { spp, adaptive, .. } = arguments;
     let adaptive_samples = |&SampleRange { min, max }: &_| Samples::Adaptive { min, max };
-    let mut samples = defaults.samples;
+    let samples = &mut options.samples;
     samples.retain(|samples| match samples {
         Samples::Regular(_) => spp.is_empty(),
         Samples::Adaptive { max, .. } => adaptive.is_empty() && *max <= reference_spp,
@@ -80,15 +85,7 @@ fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
     samples.sort_unstable();
     samples.dedup();
 
-    let mut options = BenchOptions {
-        setups: defaults.setups,
-        samples,
-        reference_spp,
-        runs: arguments.runs.unwrap_or(defaults.runs),
-        budget: arguments.budget,
-        threads: arguments.input.threads(),
-        camera,
-    };
+    // The setups of one backend, or of all.
     if let Some(backend) = arguments.backend {
         options.setups.retain(|setup| setup.backend == backend);
     }

@@ -78,17 +78,15 @@ impl AnimationSummary {
 
 impl fmt::Display for AnimationSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let moved: Vec<String> = [
+        let moved = [
             (self.spheres, "sphere"),
             (self.instances, "instance"),
             (self.meshes, "shape"),
             (self.lights, "light"),
             (self.cameras, "camera"),
-        ]
-        .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, noun)| counted(count, noun))
-        .collect();
+        ];
+        let moved = moved.into_iter().filter(|(count, _)| *count > 0);
+        let moved: Vec<String> = moved.map(|(count, noun)| counted(count, noun)).collect();
         let frames = counted(self.frames as usize, "frame");
         let Self { fps, seconds, .. } = self;
         write!(f, "{frames} at {fps} fps ({seconds:.3} s), moving: {}", or_none(&moved))

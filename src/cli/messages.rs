@@ -13,17 +13,13 @@ pub fn error(error: &Error) {
     to_stderr(&escape_controls(&format(error)));
 }
 
-/// Returns the warnings of a load, and those about lost precision.
+/// Returns the warnings of a load, and those about lost precision, with the flag that avoids these.
 pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec<String> {
-    report.warnings.iter().cloned().chain(precision_warnings(scene, f32_rays)).collect()
-}
-
-/// Returns the warnings about lost precision, with the flag that avoids them.
-fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
-    scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
+    let lost = scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
         let certified = "; --precision certified has no such limit";
         warning.message + if warning.is_of_fast_only { certified } else { "" }
-    })
+    });
+    report.warnings.iter().cloned().chain(lost).collect()
 }
 
 /// Prints a warning.
@@ -115,7 +111,7 @@ mod tests {
         });
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
         scene.spheres.push(Sphere::new(DVec3::ZERO, 0.5, MaterialId(0)));
-        let found: Vec<String> = precision_warnings(&scene, true).collect();
+        let found = scene_warnings(&LoadReport::default(), &scene, true);
         assert!(found.len() == 1 && found[0].contains("--precision certified"), "{found:?}");
     }
     use std::path::Path;

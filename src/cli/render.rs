@@ -272,29 +272,23 @@ fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) 
     totals.is_black.then(|| black.to_owned())
 }
 
+/// The causes of samples that are not finite (light, surface, sum), and what helps.
+const NOT_FINITE_CAUSES: [&str; 3] = [
+    "the light that reaches a surface is not finite: a light with `falloff = \"inverse_square\"` is on \
+     it or very close to it",
+    "a surface's colour or position is not finite: the product of its material and vertex colours is \
+     beyond f32, or the hit is too far away on a plane",
+    "finite values multiply or add up to more than f32 can store: lower the intensity of the lights, \
+     or what the materials reflect and emit",
+];
+
 /// Returns a warning for each cause of samples that are not finite, with what helps.
 fn not_finite_warnings(counts: &NotFinite) -> impl Iterator<Item = String> {
-    let NotFinite { light, surface, sum } = *counts;
-    [
-        (
-            light,
-            "the light that reaches a surface is not finite: a light with \
-             `falloff = \"inverse_square\"` is on it or very close to it",
-        ),
-        (
-            surface,
-            "a surface's colour or position is not finite: the product of its material and vertex \
-             colours is beyond f32, or the hit is too far away on a plane",
-        ),
-        (
-            sum,
-            "finite values multiply or add up to more than f32 can store: lower the intensity of \
-             the lights, or what the materials reflect and emit",
-        ),
-    ]
-    .into_iter()
-    .filter(|(count, _)| *count > 0)
-    .map(|(count, cause)| format!("{count} samples were left out of the image, because {cause}"))
+    let counts = [counts.light, counts.surface, counts.sum].into_iter().zip(NOT_FINITE_CAUSES);
+    let found = counts.filter(|(count, _)| *count > 0);
+    found.map(|(count, cause)| {
+        format!("{count} samples were left out of the image, because {cause}")
+    })
 }
 
 /// Returns the image's metadata: all that determines it, and not the time, the host, the number of

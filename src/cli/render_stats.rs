@@ -162,6 +162,9 @@ impl RenderStats {
         });
         // The work that was done, and the reasons for what was not.
         let work = work(scene, statistics, *images);
+        let features = SceneFeatures::from_scene(scene);
+        let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
+        let skipped = skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0));
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
@@ -182,7 +185,7 @@ impl RenderStats {
                 spheres_moved: built.spheres_moved,
             },
             rays,
-            skipped: skipped(&SceneFeatures::from_scene(scene), &work),
+            skipped: skipped.collect(),
             work,
             not_finite,
             mrays_per_second: rays.total() as f64 / seconds.render.max(1e-9) * 1e-6,
@@ -225,15 +228,6 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
         ("layers", images),
     ]
     .into()
-}
-
-/// Returns the reason why each kind of work that was not done is not needed.
-fn skipped(
-    features: &SceneFeatures,
-    work: &BTreeMap<&'static str, u64>,
-) -> BTreeMap<&'static str, String> {
-    let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
-    skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
 }
 
 /// Returns the peak memory of Embree; none without Embree.

@@ -140,11 +140,8 @@ impl TraceArgs {
         }
         if let Some(time) = self.time {
             if scene.animation.is_none() {
-                return Err(Error::input(
-                    "--time needs an animation, and the scene has no animation",
-                )
-                .at(path)
-                .help("leave out --time"));
+                let message = "--time needs an animation, and the scene has no animation";
+                return Err(Error::input(message).at(path).help("leave out --time"));
             }
             *scene = scene.at_time(time).map_err(|e| e.at(path))?;
         }

@@ -7,10 +7,8 @@ use serde::Serialize;
 
 use crate::cli::{args::Validate, check_status, messages, output, paths, scene_args::SceneInput};
 use crate::error::Result;
-use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::Scene;
 
 /// The result of a validation: `validate --json`.
 #[derive(Serialize)]
@@ -30,7 +28,9 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
     let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
-        return replay(arguments, &scene, ray);
+        let replay = measure::replay(&scene, ray)?;
+        output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
+        return Ok(ExitCode::SUCCESS);
     }
 
     // Warn of what the comparison may find for reasons of precision.
@@ -55,13 +55,6 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
         output::write_heatmap(path, &validation.heatmap)?;
     }
     Ok(check_status(validation.passed))
-}
-
-/// Traces one ray with every intersector: `envers validate --ray`.
-fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Result<ExitCode> {
-    let replay = measure::replay(scene, ray)?;
-    output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Returns the command that traces a ray again, quoted for a shell.

@@ -98,10 +98,8 @@ type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
 
 /// Traces a ray with the intersectors, the first of which is the reference.
 fn replay_with(scene: &Scene, ray: &Ray, intersectors: &[Named<'_>]) -> Replay {
-    let hits: Vec<Option<Hit>> = intersectors
-        .iter()
-        .map(|(_, intersector)| closest(&**intersector, &[*ray], Coherence::Coherent)[0])
-        .collect();
+    let hit = |(_, of): &Named<'_>| closest(&**of, &[*ray], Coherence::Coherent)[0];
+    let hits: Vec<Option<Hit>> = intersectors.iter().map(hit).collect();
 
     // The shadow rays from the reference's hit.
     let reference = hits.first().copied().flatten();

@@ -76,7 +76,7 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
     for (setup, color) in rows.chunk_by(|a, b| a.setup() == b.setup()).zip(COLORS.iter().cycle()) {
         let color = *color;
         chart
-            .draw_series(LineSeries::new(curve(setup, &position), color.stroke_width(1)))?
+            .draw_series(LineSeries::new(curve(setup.iter(), &position), color.stroke_width(1)))?
             .label(setup[0].setup())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
         let ranked = |rank| setup.iter().filter(move |r| r.rank == rank).map(position);
@@ -116,9 +116,12 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
     Ok(())
 }
 
-/// Returns the positions of a setup's modes, from the fastest to the slowest.
-fn curve(rows: &[Row], position: &dyn Fn(&Row) -> (f64, f64)) -> Vec<(f64, f64)> {
-    let mut points: Vec<_> = rows.iter().map(position).collect();
+/// Returns the positions of modes, from the fastest to the slowest.
+fn curve<'r>(
+    rows: impl Iterator<Item = &'r Row>,
+    position: &dyn Fn(&Row) -> (f64, f64),
+) -> Vec<(f64, f64)> {
+    let mut points: Vec<_> = rows.map(position).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
 }
@@ -132,11 +135,8 @@ fn front_steps(
     errors: &Range<f64>,
 ) -> Vec<(f64, f64)> {
     let on_front = rows.iter().filter(|row| row.rank == ParetoRank::Front);
-    let mut corners: Vec<(f64, f64)> = on_front.map(position).collect();
-    corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut error = errors.end;
-    let mut line = Vec::new();
-    for (x, y) in corners {
+    let (mut error, mut line) = (errors.end, Vec::new());
+    for (x, y) in curve(on_front, position) {
         line.extend([(x, error), (x, y)]);
         error = y;
     }

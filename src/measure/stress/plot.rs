@@ -123,12 +123,8 @@ fn draw(
         .draw()?;
     // A curve for each formula.
     for (i, Curve { name, color, .. }) in CURVES.into_iter().enumerate() {
-        let points: Vec<(f64, f64)> = distances
-            .iter()
-            .zip(errors)
-            .map(|(d, e)| (*d, e[i]))
-            .filter(|(_, error)| *error > 0.0)
-            .collect();
+        let points = distances.iter().zip(errors).map(|(distance, errors)| (*distance, errors[i]));
+        let points = points.filter(|(_, error)| *error > 0.0);
         chart
             .draw_series(LineSeries::new(points, color.stroke_width(3)))?
             .label(name)

@@ -48,12 +48,8 @@ impl Comparer<'_> {
         let rays = self.scene.cameras[self.camera].ray_generator(size);
         let mut heatmap = Film::new(size, View::Beauty);
         let width = size[0] as usize;
-        let rows: Vec<Differences> = heatmap
-            .pixels
-            .par_chunks_mut(width)
-            .enumerate()
-            .map(|(y, row)| self.compare_row(&rays, y, row))
-            .collect();
+        let rows = heatmap.pixels.par_chunks_mut(width).enumerate();
+        let rows: Vec<Differences> = rows.map(|(y, row)| self.compare_row(&rays, y, row)).collect();
         let (pictures, secondary) = self.compare_pictures(&mut heatmap);
         let sum = rows.into_iter().fold(secondary, Differences::merge);
 
@@ -159,10 +155,10 @@ impl Comparer<'_> {
             .collect();
         for light in self.scene.lights.iter().filter(|light| light.casts_shadow()) {
             // A shadow ray from each surface that the light may reach, traced with both.
-            let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
-                .iter()
-                .filter_map(|(x, s)| Some((*x, s.shadow_ray(&light.incident(s.position)?))))
-                .unzip();
+            let shadow_ray =
+                |(x, s): &(usize, Surface)| Some((*x, s.shadow_ray(&light.incident(s.position)?)));
+            let (columns, shadow): (Vec<usize>, Vec<Ray>) =
+                surfaces.iter().filter_map(shadow_ray).unzip();
             let [tested, reference] = [self.tested, self.reference]
                 .map(|intersector| occluded(intersector, &shadow, Coherence::Coherent));
             differences.shadow += shadow.len() as u64;
