@@ -144,7 +144,7 @@ impl Texture {
 
     /// Samples the mipmap between two of its levels, of which 0 is the image itself.
     fn sample_trilinear(&self, uv: Vec2, level: f32) -> Vec4 {
-        let levels = self.image.mipmap(self.transfer).levels();
+        let levels = self.image.mipmap(self.transfer);
         let last = levels.len();
         let sample = |level: usize| match level.min(last) {
             0 => {

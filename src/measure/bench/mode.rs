@@ -50,11 +50,8 @@ impl Setup {
         let mut setups = Vec::new();
         for (backend, qualities) in builds {
             for precision in [Precision::Fast, Precision::Certified] {
-                setups.extend(qualities.iter().map(|&quality| Self {
-                    backend,
-                    precision,
-                    quality,
-                }));
+                let setup = |&quality: &_| Self { backend, precision, quality };
+                setups.extend(qualities.iter().map(setup));
             }
         }
         setups

@@ -10,7 +10,7 @@ use super::case::{Case, RaySampler};
 use super::meshes::{BACKENDS, icosphere, torus};
 use crate::error::Result;
 use crate::integrator::Tiling;
-use crate::intersect::Precision;
+use crate::intersect::{Backend, Precision};
 use crate::render::{RenderOptions, Renderer};
 use crate::scene::{
     Camera, Checker, Falloff, Instance, Light, LightKind, Material, Plane, Projection, Scene,
@@ -37,27 +37,25 @@ pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for &(backend, name) in BACKENDS {
         let method = format!("certified, {name}");
-        let options = move |threads, tiling| {
-            let precision = Precision::Certified;
-            RenderOptions { backend, precision, threads, tiling, ..RenderOptions::default() }
-        };
-        let default = move || options(0, Tiling::default());
+        // Variants of the scene's scale, of the number of threads and of the tiling.
         for exponents in SCALE_EXPONENTS {
             let name = format!("scaled by 2^{} … 2^{}", exponents.start(), exponents.end());
             cases.push(Case::new(name, &*method, move |sampler| {
-                compare_variants(sampler, &default(), |scene| {
-                    exponents.clone().map(|k| (scaled(scene, k), default())).collect()
+                compare_variants(sampler, backend, |scene, options| {
+                    exponents.clone().map(|k| (scaled(scene, k), options.clone())).collect()
                 })
             }));
         }
         cases.push(Case::new("on 1, 2 and 5 threads", &*method, move |sampler| {
-            compare_variants(sampler, &default(), |scene| {
-                THREADS.map(|n| (scene.clone(), options(n, Tiling::default()))).into()
+            compare_variants(sampler, backend, |scene, options| {
+                let on = |threads| RenderOptions { threads, ..options.clone() };
+                THREADS.map(|threads| (scene.clone(), on(threads))).into()
             })
         }));
         cases.push(Case::new("in any tiles", &*method, move |sampler| {
-            compare_variants(sampler, &default(), |scene| {
-                TILINGS.map(|tiling| (scene.clone(), options(0, tiling))).into()
+            compare_variants(sampler, backend, |scene, options| {
+                let tiled = |tiling| RenderOptions { tiling, ..options.clone() };
+                TILINGS.map(|tiling| (scene.clone(), tiled(tiling))).into()
             })
         }));
     }
@@ -68,14 +66,18 @@ pub fn cases() -> Vec<Case> {
 /// be the same.
 fn compare_variants(
     sampler: &RaySampler,
-    options: &RenderOptions,
-    variants: impl Fn(&Scene) -> Vec<(Scene, RenderOptions)>,
+    backend: Backend,
+    variants: impl Fn(&Scene, &RenderOptions) -> Vec<(Scene, RenderOptions)>,
 ) -> Result<CaseStats> {
-    let scene = scene(side(sampler));
-    let variants = variants(&scene);
+    // Square pictures, of as many pixels together as the case has rays.
+    let side = (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32;
+    let scene = scene(side);
+    let options =
+        RenderOptions { backend, precision: Precision::Certified, ..RenderOptions::default() };
+    let variants = variants(&scene, &options);
     let mut stats = CaseStats::default();
     for camera in 0..scene.cameras.len() {
-        let (expected, _) = picture(&scene, options, camera)?;
+        let (expected, _) = picture(&scene, &options, camera)?;
         for (scene, options) in &variants {
             let (found, rays) = picture(scene, options, camera)?;
             stats.rays += rays;
@@ -84,11 +86,6 @@ fn compare_variants(
         }
     }
     Ok(stats)
-}
-
-/// Returns the side in pixels of the square pictures of a case.
-fn side(sampler: &RaySampler) -> u32 {
-    (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32
 }
 
 /// Renders a picture; returns the bytes of its PNG, and the number of rays.

@@ -27,11 +27,12 @@ pub fn cases() -> Vec<Case> {
             let name = format!("{what}, {rays} rays, offset {offset:.0e}");
             let method = format!("{}, {INTERSECTORS}", precision.name());
             cases.push(Case::new(name, method, move |sampler| {
-                let scene = scene(offset, meshes, &mut sampler.shared_random());
+                let center = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
+                let scene = scene(center, meshes, &mut sampler.shared_random());
                 let brute = BruteForce::new(&scene, precision);
                 let intersectors = intersectors(&scene, precision)?;
                 // Closest hits and occlusion of each batch of rays, by brute force and by each tree.
-                let ray = |random: &mut Random| sample_ray(&scene, offset, tangent, random);
+                let ray = |random: &mut Random| sample_ray(&scene, center, tangent, random);
                 Ok(sampler.for_each_batch(ray, |rays, stats| {
                     let expected = closest(&brute, rays, Incoherent);
                     let expected_occlusion = occluded(&brute, rays, Incoherent);
@@ -55,16 +56,10 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Returns the centre of the scene.
-fn scene_center(offset: f64) -> DVec3 {
-    DVec3::new(offset, -0.7 * offset, 0.3 * offset)
-}
-
 /// Returns a scene of spheres and, if asked for, planes and meshes.
-fn scene(offset: f64, has_meshes: bool, random: &mut Random) -> Scene {
+fn scene(center: DVec3, has_meshes: bool, random: &mut Random) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let center = scene_center(offset);
     // Spheres of very different sizes.
     for _ in 0..60 {
         let radius = random.power_of_ten(-3.0, 0.0);
@@ -90,8 +85,7 @@ fn scene(offset: f64, has_meshes: bool, random: &mut Random) -> Scene {
 }
 
 /// Returns a random ray through the scene, or one parallel to an axis that is a tangent of a sphere.
-fn sample_ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) -> Ray {
-    let center = scene_center(offset);
+fn sample_ray(scene: &Scene, center: DVec3, tangent: bool, random: &mut Random) -> Ray {
     let length = random.power_of_ten(-3.0, 3.0);
     let ray = if tangent {
         // A ray beside a sphere at exactly its radius, starting at the point of contact or before it.
