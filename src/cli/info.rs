@@ -121,8 +121,9 @@ impl Summary {
         let has_f32_rays = Backend::default() != Backend::Rust;
         let features = SceneFeatures::from_scene(scene);
         // The names of kinds, and those that the objects have in their files.
-        let lights = scene.lights.iter().map(|l| labelled(light_kind(&l.kind), &l.name));
-        let cameras = scene.cameras.iter().map(|c| labelled(&projection(&c.projection), &c.name));
+        let lights = scene.lights.iter().map(|l| messages::labelled(light_kind(&l.kind), &l.name));
+        let cameras =
+            scene.cameras.iter().map(|c| messages::labelled(&projection(&c.projection), &c.name));
         Self {
             size: scene.film.size,
             spp: scene.film.spp,
@@ -143,11 +144,6 @@ impl Summary {
             warnings: messages::scene_warnings(report, scene, has_f32_rays),
         }
     }
-}
-
-/// Returns a kind of object, followed by its name if it has one.
-fn labelled(kind: &str, name: &str) -> String {
-    if name.is_empty() { kind.to_owned() } else { format!("{kind} `{name}`") }
 }
 
 /// Returns the name of a kind of light.

@@ -22,6 +22,11 @@ pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec
     report.warnings.iter().cloned().chain(lost).collect()
 }
 
+/// Returns a kind of object or its index, followed by its name if it has one.
+pub fn labelled(kind: &str, name: &str) -> String {
+    if name.is_empty() { kind.to_owned() } else { format!("{kind} `{name}`") }
+}
+
 /// Prints a warning.
 pub fn warning(text: &str) {
     to_stderr(&escape_controls(&format!("warning: {text}\n")));

@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
-use crate::load;
+use crate::load::add_ground;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
 use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
 use crate::write::{self, Format, Movie, Settings};
@@ -28,14 +28,14 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     output::check_json(arguments.stats.as_ref())?;
     let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
-        load::add_ground(&mut scene);
+        add_ground(&mut scene);
     }
     set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
     let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
-    let load_time = start.elapsed();
+    let load = start.elapsed();
 
     // Render the frames, and write each when it is done.
     let options = RenderOptions {
@@ -56,23 +56,23 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
         .render_frames(&times, |i, frame| writer.write(i, frame))
         .map_err(|e| e.at(&input.scene))?;
     bar.finish_and_clear();
-    let mut totals = writer.into_totals()?;
+    let totals = writer.into_totals()?;
 
     // Report warnings, the summary and the statistics.
     let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
     let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(image_warning(&first, &options, &totals));
-    totals.load = load_time;
-    totals.total = start.elapsed();
+    let total = start.elapsed();
     if !input.quiet {
         warnings.iter().for_each(|w| messages::warning(w));
         if output::stdout_is_free(arguments.stats.as_ref()) {
-            output::print(&plan.summary(totals.total.as_secs_f64()))?;
+            output::print(&plan.summary(total.as_secs_f64()))?;
         }
     }
     if let Some(path) = &arguments.stats {
-        output::write_json(path, &RenderStats::new(&first, &report, &totals, warnings))?;
+        let stats = RenderStats::new(&first, &report, &totals, [load, total], warnings);
+        output::write_json(path, &stats)?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -137,9 +137,7 @@ impl<'a> FrameWriter<'a> {
             frames,
             images: 0,
             is_black: true,
-            load: Duration::ZERO,
             write: Duration::ZERO,
-            total: Duration::ZERO,
         };
         let settings = Settings {
             half,

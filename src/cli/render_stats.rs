@@ -23,12 +23,8 @@ pub struct RenderTotals {
     pub images: u64,
     /// True if all frames are black.
     pub is_black: bool,
-    /// The time to load the scene and check the outputs.
-    pub load: Duration,
     /// The time to encode and write images.
     pub write: Duration,
-    /// The time of the whole command.
-    pub total: Duration,
 }
 
 /// The statistics of a rendering: `render --stats`.
@@ -137,14 +133,16 @@ pub struct Seconds {
 }
 
 impl RenderStats {
-    /// Collects the statistics of a rendering; `scene` is that of the first frame.
+    /// Collects the statistics of a rendering; `scene` is that of the first frame, `load` the time to load
+    /// it and check the outputs, and `total` that of the whole command.
     pub fn new(
         scene: &Scene,
         report: &LoadReport,
         totals: &RenderTotals,
+        [load, total]: [Duration; 2],
         warnings: Vec<String>,
     ) -> Self {
-        let RenderTotals { statistics, frames, images, load, write, total, .. } = totals;
+        let RenderTotals { statistics, frames, images, write, .. } = totals;
         let (Counts { rays, not_finite, .. }, built) = (statistics.counts, statistics.built);
         let seconds = Seconds {
             load: load.as_secs_f64(),

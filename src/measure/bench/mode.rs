@@ -70,9 +70,8 @@ impl Setup {
     pub fn build<'s>(&self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
         let threads = rayon::current_num_threads();
         let quality = self.quality.unwrap_or(BuildQuality::Medium);
-        IntersectorBuilder::new(self.backend, self.precision, threads)
-            .with_quality(quality)
-            .build(scene)
+        let builder = IntersectorBuilder::new(self.backend, self.precision, threads);
+        builder.with_quality(quality).build(scene)
     }
 }
 

@@ -35,9 +35,8 @@ impl<'s> Oracle<'s> {
     pub fn all_hits(&self, ray: &Ray) -> impl Iterator<Item = Hit> {
         let (ray, planes) = (*ray, self.scene.planes.len() as u32);
         let near = self.boxes.iter().filter(move |(_, bounds)| passes_near(bounds, &ray));
-        near.map(|(id, _)| *id)
-            .chain((0..planes).map(PrimitiveId::plane))
-            .filter_map(move |id| self.hit(id, &ray))
+        let ids = near.map(|(id, _)| *id).chain((0..planes).map(PrimitiveId::plane));
+        ids.filter_map(move |id| self.hit(id, &ray))
     }
 
     /// Returns where the ray hits a primitive first, a continuation ray beyond what it crossed.
@@ -46,9 +45,8 @@ impl<'s> Oracle<'s> {
         let Some(past) = ray.continuation else { return self.crossing(id, ray, false) };
         // Another primitive than the one that was crossed: the first crossing that lies beyond that.
         if past.crossed.id != id {
-            return [false, true]
-                .into_iter()
-                .find_map(|far| self.crossing(id, ray, far).filter(|h| !past.excludes(h.t, id)));
+            let beyond = |far| self.crossing(id, ray, far).filter(|hit| !past.excludes(hit.t, id));
+            return beyond(false).or_else(|| beyond(true));
         }
         // The same primitive again: only a sphere is crossed twice, at its far side.
         let inside = id.geometry == Geometry::Spheres && past.crossed.side == Side::Back;

@@ -57,11 +57,8 @@ fn larger_error(a: f64, b: f64) -> f64 {
 }
 
 /// Merges two values where both exist.
-fn merge_options<T>(a: Option<T>, b: Option<T>, merge: impl Fn(T, T) -> T) -> Option<T> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(merge(a, b)),
-        (a, b) => a.or(b),
-    }
+fn merge_options<T: Copy>(a: Option<T>, b: Option<T>, merge: impl Fn(T, T) -> T) -> Option<T> {
+    a.zip(b).map(|(a, b)| merge(a, b)).or(a).or(b)
 }
 
 impl BaselineStats {

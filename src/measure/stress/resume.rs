@@ -73,12 +73,9 @@ impl FinishedCases {
             }
         }
         // The file, without an incomplete last line.
-        let file = OpenOptions::new()
-            .append(true)
-            .create(true)
-            .open(path)
-            .and_then(|file| file.set_len(complete.len() as u64).map(|()| file))
-            .map_err(|e| Error::io("write", path, &e))?;
+        let file = OpenOptions::new().append(true).create(true).open(path);
+        let cut = |file: File| file.set_len(complete.len() as u64).map(|()| file);
+        let file = file.and_then(cut).map_err(|e| Error::io("write", path, &e))?;
         Ok(Self { rows, conditions, file: Some((path.to_owned(), file)) })
     }
 

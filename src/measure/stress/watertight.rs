@@ -40,31 +40,30 @@ pub fn cases() -> Vec<Case> {
         (Target::Grid, "pixel grid"),
     ];
     let mut cases = Vec::new();
-    for mesh in meshes {
-        for (target, target_name) in targets {
-            for offset in OFFSETS {
-                let name = format!("{}, {target_name}, offset {offset:.0e}", mesh().name);
-                let method = format!("certified, {INTERSECTORS}");
-                cases.push(Case::new(name, method, move |sampler| {
-                    let scene = scene(mesh(), target, offset, &mut sampler.shared_random());
-                    let brute = BruteForce::new(&scene, Precision::Certified);
-                    let fast = BruteForce::new(&scene, Precision::Fast);
-                    let intersectors = intersectors(&scene, Precision::Certified)?;
-                    // Brute force tells what the mesh is like; the trees must agree with it.
-                    let sample = |random: &mut Random| sample_ray(&scene, target, random);
-                    Ok(sampler.for_each_batch(sample, |samples, stats| {
-                        let expected = count_crossings(samples, &brute, &fast, stats);
-                        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
-                        for intersector in &intersectors {
-                            let found = closest(&**intersector, &rays, Coherence::Incoherent);
-                            for (found, expected) in found.iter().zip(&expected) {
-                                let [a, b] = [found, expected].map(|hit| hit.map(|h| (h.id, h.t)));
-                                stats.count_wrong(a != b);
-                            }
+    let targeted = meshes.into_iter().flat_map(|mesh| targets.map(|target| (mesh, target)));
+    for (mesh, (target, target_name)) in targeted {
+        for offset in OFFSETS {
+            let name = format!("{}, {target_name}, offset {offset:.0e}", mesh().name);
+            let method = format!("certified, {INTERSECTORS}");
+            cases.push(Case::new(name, method, move |sampler| {
+                let scene = scene(mesh(), target, offset, &mut sampler.shared_random());
+                let brute = BruteForce::new(&scene, Precision::Certified);
+                let fast = BruteForce::new(&scene, Precision::Fast);
+                let intersectors = intersectors(&scene, Precision::Certified)?;
+                // Brute force tells what the mesh is like; the trees must agree with it.
+                let sample = |random: &mut Random| sample_ray(&scene, target, random);
+                Ok(sampler.for_each_batch(sample, |samples, stats| {
+                    let expected = count_crossings(samples, &brute, &fast, stats);
+                    let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+                    for intersector in &intersectors {
+                        let found = closest(&**intersector, &rays, Coherence::Incoherent);
+                        for (found, expected) in found.iter().zip(&expected) {
+                            let [a, b] = [found, expected].map(|hit| hit.map(|h| (h.id, h.t)));
+                            stats.count_wrong(a != b);
                         }
-                    }))
-                }));
-            }
+                    }
+                }))
+            }));
         }
     }
     cases

@@ -147,9 +147,9 @@ impl Influences {
 
     /// Reduces the influences to those of some vertices, in the order given.
     pub(crate) fn retain_vertices(&mut self, vertices: &[usize]) {
-        self.joints = vertices.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
-        self.weights =
-            vertices.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
+        let kept: Vec<usize> = vertices.iter().flat_map(|&v| self.range(v)).collect();
+        self.joints = kept.iter().map(|&i| self.joints[i]).collect();
+        self.weights = kept.iter().map(|&i| self.weights[i]).collect();
     }
 
     /// The range of a vertex's influences.
