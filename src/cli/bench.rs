@@ -67,10 +67,9 @@ fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
     // The defaults, and the flags for everything but samples and backends.
     let mut options = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
     let reference_spp = arguments.reference_spp.unwrap_or(options.reference_spp);
-    options.reference_spp = reference_spp;
     options.runs = arguments.runs.unwrap_or(options.runs);
     (options.budget, options.threads) = (arguments.budget, arguments.input.threads());
-    options.camera = camera;
+    (options.reference_spp, options.camera) = (reference_spp, camera);
 
     // The samples of the flags, or the default ones that the reference has as many of.
     let Bench { spp, adaptive, .. } = arguments;

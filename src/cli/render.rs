@@ -82,6 +82,7 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
     if arguments.view != View::Beauty {
         (film.spp, film.adaptive) = (1, None);
     }
+    // The flag sets the range, and leaves the threshold of the scene.
     if let Some(SampleRange { min, max }) = arguments.adaptive {
         let threshold =
             film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
@@ -299,6 +300,7 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
+    // What only adaptive sampling depends on.
     if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));

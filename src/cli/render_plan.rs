@@ -145,12 +145,14 @@ impl RenderPlan {
         let mut text = String::new();
         match self.frames[..] {
             [] => {}
+            // One frame: its files, by their own names.
             [Frame { number, .. }] => {
                 let stills = self.stills.iter().map(|path| numbered(path, number));
                 for path in stills.chain(self.movies.iter().cloned()) {
                     text += &format!("{} ({seconds:.2} s)\n", path.display());
                 }
             }
+            // Several: the outputs, as they were given.
             _ => {
                 let count = self.frames.len();
                 for path in self.stills.iter().chain(&self.movies) {

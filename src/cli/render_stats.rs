@@ -144,6 +144,7 @@ impl RenderStats {
     ) -> Self {
         let RenderTotals { statistics, frames, images, write, .. } = totals;
         let (Counts { rays, not_finite, .. }, built) = (statistics.counts, statistics.built);
+        // The times, by stage.
         let seconds = Seconds {
             load: load.as_secs_f64(),
             build: statistics.build.as_secs_f64(),
@@ -205,6 +206,7 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
     textures.retain(|image| image.is_read());
     textures.sort_by_key(|image| Arc::as_ptr(image));
     textures.dedup_by_key(|image| Arc::as_ptr(image));
+    // Counts of what the intersectors hold, of what shading did, and of rays.
     [
         (Feature::Spheres.name(), built.sphere_geometries),
         (Feature::Instances.name(), built.object_space_instances),

@@ -209,7 +209,8 @@ fn write_gif(
 /// The smallest rectangle around all pixels in which two pictures of this width differ; one pixel for
 /// equal pictures, since no frame can be empty.
 fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
-    let (mut rows, mut columns) = (usize::MAX..0, usize::MAX..0);
+    let height = after.len() / (3 * width);
+    let (mut rows, mut columns) = (height..0, width..0);
     let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
     for (y, (a, b)) in lines.enumerate().filter(|(_, (a, b))| a != b) {
         // The first and the last pixel of the row that differ; there are some, since the rows do.

@@ -55,6 +55,7 @@ impl<'s> Oracle<'s> {
 
     /// Returns where the ray crosses a primitive; a sphere at its first root, or at its far one.
     fn crossing(&self, id: PrimitiveId, ray: &Ray, far: bool) -> Option<Hit> {
+        // A ray does not hit the plane or triangle that it leaves; a sphere it may hit at its far side.
         if ray.departure.is_some_and(|from| from.id == id && id.geometry != Geometry::Spheres) {
             return None;
         }

@@ -10,6 +10,9 @@ use crate::error::Result;
 /// The number of rays that are generated and traced together.
 const BATCH: u64 = 256;
 
+/// A function that tests the rays of a case.
+pub type Test = dyn Fn(&RaySampler) -> Result<CaseStats>;
+
 /// A case: rays of one kind, and the errors that they may have.
 pub struct Case {
     /// The name of the rays.
@@ -23,7 +26,7 @@ pub struct Case {
     /// The largest relative error that passes.
     pub max_relative: f64,
     /// The test of the rays.
-    pub test: Box<dyn Fn(&RaySampler) -> Result<CaseStats>>,
+    pub test: Box<Test>,
 }
 
 impl Case {

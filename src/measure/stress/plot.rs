@@ -4,8 +4,7 @@ use glam::DVec3;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
-use super::sphere_distance::{self, Method};
-use super::{random::Random, textbook};
+use super::{Method, random::Random, sphere_distance, textbook};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::measure::oracle;

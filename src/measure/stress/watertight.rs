@@ -81,6 +81,7 @@ fn count_crossings(
         .iter()
         .map(|Sample { ray, starts_inside }| {
             let is_closed = |crossings: usize| (crossings % 2 == 1) == *starts_inside;
+            // In exact arithmetic; what the formulas of `fast` find is reported only.
             let mut first = None;
             let mut crossings = 0;
             for hit in brute.all_hits(ray) {

@@ -150,6 +150,7 @@ fn pose_object(
         }
         Animated::Mesh { .. } => {}
         Animated::Light { light, node, rest, direction: curve, intensity } => {
+            // Its direction and intensity change in its own space, which then moves.
             let mut rest = rest.clone();
             if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } =
                 &mut rest.kind
@@ -193,6 +194,7 @@ fn pose_camera(
             Error::input("its transform is too uneven to leave it an upward direction")
         });
     };
+    // The position moves with the node; the direction is toward the aim.
     let position = world.transform_point3(rest.position);
     let forward = match target {
         AimTarget::Anchor(anchor) => anchor.position(worlds) - position,

@@ -21,6 +21,7 @@ pub(super) fn check(i: usize, light: &Light) -> Result<()> {
             require_position(|| format!("{label}: position"), p)?;
             require_unit_length(|| format!("{label}: direction"), direction)?;
             require(range > 0.0, || format!("{label}: range must be above 0, found {range}"))?;
+            // A cone of at most half the space, to within the rounding of degrees.
             let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
             let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;
             require(ordered && outer_angle <= right_angle, || {

@@ -55,6 +55,7 @@ impl Scene {
         require(mesh.has_all_vertices(), || {
             format!("{label}: a triangle names a vertex that is not there ({count} vertices)")
         })?;
+        // The optional attributes are there for every vertex, or for none.
         for (name, length) in [
             ("normals", mesh.normals.len()),
             ("uvs", mesh.uvs.len()),

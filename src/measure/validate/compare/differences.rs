@@ -84,6 +84,7 @@ impl Differences {
         is_shadow_ray: bool,
         t_error_ulp: Option<u64>,
     ) {
+        // Every mismatch counts; only those of camera rays can be shown.
         *self.causes.count_mut(cause) += 1;
         let Some(camera_ray) = camera_ray else { return };
         let ulp = t_error_ulp.unwrap_or(0);

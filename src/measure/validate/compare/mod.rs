@@ -89,6 +89,7 @@ impl Comparer<'_> {
     fn compare_row(&self, camera: &RayGenerator, y: usize, row: &mut [[f32; 3]]) -> Differences {
         let mut differences = Differences::default();
         for [dx, dy] in sample_positions(&self.scene.film) {
+            // One ray of each pixel of the row, traced with both intersectors.
             let rays: Vec<Ray> =
                 (0..row.len()).map(|x| camera.ray(x as f64 + dx, y as f64 + dy)).collect();
             let [tested, reference] = [self.tested, self.reference]
