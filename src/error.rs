@@ -66,14 +66,9 @@ pub enum Location {
 impl Location {
     /// The place of the bytes `span` in `text`; a span past the end means the end.
     pub fn in_text(text: &str, span: std::ops::Range<usize>) -> Self {
-        let floor = |mut at: usize| {
-            at = at.min(text.len());
-            while !text.is_char_boundary(at) {
-                at -= 1;
-            }
-            at
-        };
-        let (start, end) = (floor(span.start), floor(span.end));
+        // The bytes of whole characters, and of the line that they begin in.
+        let floor = |at: usize| (0..=at.min(text.len())).rfind(|&i| text.is_char_boundary(i));
+        let [start, end] = [span.start, span.end].map(|at| floor(at).unwrap_or(0));
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
         let quote = text[line_start..line_end].trim_end_matches('\r');
@@ -199,7 +194,7 @@ impl Error {
     }
 }
 
-/// Writes `FILE:line:column: message (advice)`, as far as these are known.
+/// Writes `FILE:line:column: message (advice)`, as far as these are known; `{:#}` leaves the advice out.
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(path) = &self.0.path {
@@ -212,10 +207,10 @@ impl fmt::Display for Error {
             f.write_str(" ")?;
         }
         f.write_str(&self.0.message)?;
-        if let Some(help) = &self.0.help {
-            write!(f, " ({help})")?;
+        match &self.0.help {
+            Some(help) if !f.alternate() => write!(f, " ({help})"),
+            _ => Ok(()),
         }
-        Ok(())
     }
 }
 

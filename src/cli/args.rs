@@ -14,10 +14,8 @@ use crate::cli::scene_args::{InputArgs, LoadArgs, TraceArgs};
 use crate::film::View;
 use crate::geometry::Ray;
 use crate::intersect::Backend;
-use crate::measure::ray_from_text;
-use crate::measure::stress::Goal;
-use crate::scene::Tone;
-use crate::scene::check::MAX_SPP;
+use crate::measure::{ray_from_text, stress::Goal};
+use crate::scene::{Tone, check::MAX_SPP};
 
 /// Render 3D scenes and models (glTF, VRM, OBJ), and verify every ray-surface hit.
 #[derive(Parser)]

@@ -1,11 +1,8 @@
 //! The subcommand `envers bench`.
 
-use std::path::Path;
+use std::process::ExitCode;
 
-use crate::cli::args::Bench;
-use crate::cli::flag_values::SampleRange;
-use crate::cli::scene_args::SceneInput;
-use crate::cli::{Outcome, messages, output};
+use crate::cli::{args::Bench, flag_values::SampleRange, messages, output, scene_args::SceneInput};
 use crate::error::{Error, Result};
 use crate::intersect::{Backend, Precision};
 use crate::measure::bench::{self, BenchOptions, Samples, Setup};
@@ -14,8 +11,12 @@ use crate::write;
 /// The longest side of a quick picture in pixels.
 const QUICK_SIDE: u32 = 320;
 
-pub fn run(arguments: &Bench) -> Result<Outcome> {
-    check_folder(&arguments.out)?;
+pub fn run(arguments: &Bench) -> Result<ExitCode> {
+    // Check the folder, and load the scene as it is at the first frame.
+    let out = &arguments.out;
+    if out.exists() && !out.is_dir() {
+        return Err(Error::input("this is a file, not a folder").at(out).help("name a folder"));
+    }
     let input = &arguments.input;
     let SceneInput { scene, report, camera } = input.load(false)?;
     let mut scene = scene.at_time(0.0)?;
@@ -23,10 +24,13 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
         scene.film.size = quick_size(scene.film.size);
     }
     let options = options(arguments, camera)?;
+
+    // Make the folder, and check that all files of the report can be written.
     let files = ["bench.json", "bench.csv", "time-vs-error.svg", "report.html"];
-    let files = files.map(|name| arguments.out.join(name));
-    std::fs::create_dir_all(&arguments.out).map_err(|e| Error::io("create", &arguments.out, &e))?;
+    let files = files.map(|name| out.join(name));
+    std::fs::create_dir_all(out).map_err(|e| Error::io("create", out, &e))?;
     files.iter().try_for_each(|path| write::check_file(path))?;
+    // Warn of lost precision if any mode is subject to it.
     if !input.quiet {
         let has_f32_rays =
             |setup: &Setup| setup.backend != Backend::Rust && setup.precision == Precision::Fast;
@@ -35,6 +39,7 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
         warnings.iter().for_each(|w| messages::warning(w));
     }
 
+    // Run the modes.
     let bar = messages::progress_bar(input.quiet);
     let name = input.scene.file_name().unwrap_or_default().to_string_lossy();
     let progress = |share| messages::set_progress(&bar, share);
@@ -42,6 +47,7 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
     bar.finish_and_clear();
     let results = results.map_err(|e| e.at(&input.scene))?;
 
+    // Write the report.
     let svg = bench::plot(&results)?;
     let page = bench::html(&results, &svg)?;
     let [json, csv, plot, html] = &files;
@@ -50,15 +56,7 @@ pub fn run(arguments: &Bench) -> Result<Outcome> {
         write::write_atomically(path, |out| out.write_all(text.as_bytes()))?;
     }
     output::print(&format!("{results}{}\n", html.display()))?;
-    Ok(Outcome::Success)
-}
-
-/// Checks that a path is a folder, or does not exist yet.
-fn check_folder(path: &Path) -> Result<()> {
-    if path.exists() && !path.is_dir() {
-        return Err(Error::input("this is a file, not a folder").at(path).help("name a folder"));
-    }
-    Ok(())
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Returns the options of the benchmark.
@@ -66,13 +64,17 @@ fn check_folder(path: &Path) -> Result<()> {
 /// # Errors
 /// When they are inconsistent.
 fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
-    let defaults = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
-    let reference_spp = arguments.reference_spp.unwrap_or(defaults.reference_spp);
+    // The defaults, and the flags for everything but samples and backends.
+    let mut options = if arguments.quick { BenchOptions::quick() } else { BenchOptions::default() };
+    let reference_spp = arguments.reference_spp.unwrap_or(options.reference_spp);
+    options.runs = arguments.runs.unwrap_or(options.runs);
+    (options.budget, options.threads) = (arguments.budget, arguments.input.threads());
+    (options.reference_spp, options.camera) = (reference_spp, camera);
 
     // The samples of the flags, or the default ones that the reference has as many of.
     let Bench { spp, adaptive, .. } = arguments;
     let adaptive_samples = |&SampleRange { min, max }: &_| Samples::Adaptive { min, max };
-    let mut samples = defaults.samples;
+    let samples = &mut options.samples;
     samples.retain(|samples| match samples {
         Samples::Regular(_) => spp.is_empty(),
         Samples::Adaptive { max, .. } => adaptive.is_empty() && *max <= reference_spp,
@@ -82,15 +84,7 @@ fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
     samples.sort_unstable();
     samples.dedup();
 
-    let mut options = BenchOptions {
-        setups: defaults.setups,
-        samples,
-        reference_spp,
-        runs: arguments.runs.unwrap_or(defaults.runs),
-        budget: arguments.budget,
-        threads: arguments.input.threads(),
-        camera,
-    };
+    // The setups of one backend, or of all.
     if let Some(backend) = arguments.backend {
         options.setups.retain(|setup| setup.backend == backend);
     }

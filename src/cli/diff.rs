@@ -1,13 +1,13 @@
 //! The subcommand `envers diff`.
 
+use std::process::ExitCode;
+
 use serde::Serialize;
 
-use crate::cli::args::Diff;
-use crate::cli::{Outcome, output, paths};
+use crate::cli::{args::Diff, check_status, output, paths};
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
-use crate::measure::flip::PerceivedImage;
-use crate::measure::{Comparison, Picture, compare_pictures};
+use crate::measure::{Comparison, Picture, compare_pictures, flip::PerceivedImage};
 use crate::scene::Transfer;
 use crate::write::Format;
 
@@ -20,9 +20,10 @@ struct DiffResult {
     flip: Option<f64>,
 }
 
-pub fn run(arguments: &Diff) -> Result<Outcome> {
+pub fn run(arguments: &Diff) -> Result<ExitCode> {
+    // Check the outputs, and then the inputs, which must be of one format.
     output::check_json(arguments.json.as_ref())?;
-    output::check_heatmap(arguments.heatmap.as_ref())?;
+    output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     for input in [&arguments.a, &arguments.b] {
         paths::check_input(input)?;
         if let Some(path) = arguments.heatmap.as_ref().filter(|path| paths::is_same(path, input)) {
@@ -37,6 +38,7 @@ pub fn run(arguments: &Diff) -> Result<Outcome> {
             .at(&arguments.b)
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
+    // Compare the values, and what a viewer perceives of them.
     let (a, b) = (Picture::read(&arguments.a)?, Picture::read(&arguments.b)?);
     let comparison =
         compare_pictures(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
@@ -44,25 +46,19 @@ pub fn run(arguments: &Diff) -> Result<Outcome> {
     let [first, second] = [&a, &b].map(|p| PerceivedImage::from_picture(p, transfer));
     let flip = first.zip(second).map(|(a, b)| a.flip(&b).mean);
 
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        let flip = flip.map_or(String::new(), |mean| format!(", FLIP {mean:.6}"));
-        output::print(&format!(
-            "RMSE {:.6e}, PSNR {:.2} dB{flip}, largest difference {:.6e}, {} pixels differ by more \
-             than {}\n",
-            comparison.rmse,
-            comparison.psnr,
-            comparison.max,
-            comparison.pixels_differing,
-            arguments.tolerance
-        ))?;
-    }
-    if let Some(path) = &arguments.json {
-        output::write_json(path, &DiffResult { comparison, flip })?;
-    }
+    // Report the differences.
+    let Comparison { rmse, psnr, max, pixels_differing } = comparison;
+    let mean = flip.map_or(String::new(), |mean| format!(", FLIP {mean:.6}"));
+    let text = format!(
+        "RMSE {rmse:.6e}, PSNR {psnr:.2} dB{mean}, largest difference {max:.6e}, \
+         {pixels_differing} pixels differ by more than {}\n",
+        arguments.tolerance
+    );
+    output::report(arguments.json.as_ref(), &text, &DiffResult { comparison, flip })?;
     if let Some(path) = &arguments.heatmap {
-        output::write_heatmap(path, &heatmap(&a, &b, comparison.max))?;
+        output::write_heatmap(path, &heatmap(&a, &b, max))?;
     }
-    Ok(Outcome::of_check(comparison.pixels_differing == 0))
+    Ok(check_status(pixels_differing == 0))
 }
 
 /// Returns the largest difference of each pixel, as a share of the largest of all.

@@ -142,10 +142,8 @@ impl FromStr for NamedLimit {
             let names = Limit::ALL.map(Limit::name).join(", ");
             Error::input(format!("no limit is called `{name}`; they are {names}"))
         })?;
-        match number.parse() {
-            Ok(number) => Ok(Self(limit, number)),
-            Err(_) => Err(Error::input(format!("`{number}` is no whole number below 2^64"))),
-        }
+        let parsed = number.parse().map(|number| Self(limit, number));
+        parsed.map_err(|_| Error::input(format!("`{number}` is no whole number below 2^64")))
     }
 }
 

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::args::Info;
 use crate::cli::load_report::{self, LoadSummary};
-use crate::cli::render_stats::Geometry;
-use crate::cli::{Outcome, messages, output, paths};
+use crate::cli::{args::Info, messages, output, paths, render_stats::Geometry};
 use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
@@ -79,24 +78,22 @@ impl AnimationSummary {
 
 impl fmt::Display for AnimationSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let moved: Vec<String> = [
+        let moved = [
             (self.spheres, "sphere"),
             (self.instances, "instance"),
             (self.meshes, "shape"),
             (self.lights, "light"),
             (self.cameras, "camera"),
-        ]
-        .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, noun)| counted(count, noun))
-        .collect();
+        ];
+        let moved = moved.into_iter().filter(|(count, _)| *count > 0);
+        let moved: Vec<String> = moved.map(|(count, noun)| counted(count, noun)).collect();
         let frames = counted(self.frames as usize, "frame");
         let Self { fps, seconds, .. } = self;
         write!(f, "{frames} at {fps} fps ({seconds:.3} s), moving: {}", or_none(&moved))
     }
 }
 
-pub fn run(arguments: &Info) -> Result<Outcome> {
+pub fn run(arguments: &Info) -> Result<ExitCode> {
     output::check_json(arguments.json.as_ref())?;
     paths::check_input(&arguments.scene)?;
     let Loaded { scene, report } = arguments.load.options(None).load(&arguments.scene)?;
@@ -113,7 +110,7 @@ pub fn run(arguments: &Info) -> Result<Outcome> {
     if arguments.strict {
         load_report::check_strictly(&report, &arguments.scene)?;
     }
-    Ok(Outcome::Success)
+    Ok(ExitCode::SUCCESS)
 }
 
 impl Summary {
@@ -123,6 +120,10 @@ impl Summary {
         // The default of `render`: precision fast, on Embree if it is built in.
         let has_f32_rays = Backend::default() != Backend::Rust;
         let features = SceneFeatures::from_scene(scene);
+        // The names of kinds, and those that the objects have in their files.
+        let lights = scene.lights.iter().map(|l| messages::labelled(light_kind(&l.kind), &l.name));
+        let cameras =
+            scene.cameras.iter().map(|c| messages::labelled(&projection(&c.projection), &c.name));
         Self {
             size: scene.film.size,
             spp: scene.film.spp,
@@ -132,12 +133,8 @@ impl Summary {
             meshes: scene.meshes.len(),
             materials: scene.materials.len(),
             textures: scene.textures.len(),
-            lights: scene.lights.iter().map(|l| labelled(light_kind(&l.kind), &l.name)).collect(),
-            cameras: scene
-                .cameras
-                .iter()
-                .map(|c| labelled(&projection(&c.projection), &c.name))
-                .collect(),
+            lights: lights.collect(),
+            cameras: cameras.collect(),
             animation,
             bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
             needed: features.used().map(|(feature, why)| (feature.name(), why)).collect(),
@@ -147,11 +144,6 @@ impl Summary {
             warnings: messages::scene_warnings(report, scene, has_f32_rays),
         }
     }
-}
-
-/// Returns a kind of object, followed by its name if it has one.
-fn labelled(kind: &str, name: &str) -> String {
-    if name.is_empty() { kind.to_owned() } else { format!("{kind} `{name}`") }
 }
 
 /// Returns the name of a kind of light.
@@ -176,21 +168,20 @@ fn projection(lens: &Projection) -> String {
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [width, height] = self.size;
-        let g = &self.geometry;
+        // The picture, and the numbers of objects.
+        let &Summary { size: [width, height], spp, meshes, mesh_triangles, .. } = self;
+        let Geometry { spheres, triangles, planes, instances } = self.geometry;
         let max_spp = self.max_spp.map_or(String::new(), |max| format!(" to {max}"));
-        writeln!(f, "image      {width}x{height}, {}{max_spp} samples per pixel", self.spp)?;
-        writeln!(f, "spheres    {}", g.spheres)?;
-        writeln!(f, "planes     {}", g.planes)?;
-        writeln!(
-            f,
-            "triangles  {} in {} instances of {} meshes ({} stored)",
-            g.triangles, g.instances, self.meshes, self.mesh_triangles
-        )?;
+        writeln!(f, "image      {width}x{height}, {spp}{max_spp} samples per pixel")?;
+        writeln!(f, "spheres    {spheres}")?;
+        writeln!(f, "planes     {planes}")?;
+        write!(f, "triangles  {triangles} in {instances} instances of {meshes} meshes ")?;
+        writeln!(f, "({mesh_triangles} stored)")?;
         writeln!(f, "faces      {}", self.faces)?;
         writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
         writeln!(f, "lights     {}", or_none(&self.lights))?;
         writeln!(f, "cameras    {}", or_none(&self.cameras))?;
+        // What only some scenes have.
         let variants: Vec<String> = self.report.variants.iter().map(|v| format!("`{v}`")).collect();
         if !variants.is_empty() {
             writeln!(f, "variants   {}", variants.join(", "))?;
@@ -202,6 +193,7 @@ impl fmt::Display for Summary {
             Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
             None => writeln!(f, "bounds     nothing finite")?,
         }
+        // The work that the scene needs, and the work that it does not.
         for (verb, features) in [("needs", &self.needed), ("skips", &self.skipped)] {
             for (feature, reason) in features {
                 writeln!(f, "{verb:10} {feature}: {reason}")?;

@@ -13,17 +13,18 @@ pub fn error(error: &Error) {
     to_stderr(&escape_controls(&format(error)));
 }
 
-/// Returns the warnings of a load, and those about lost precision.
+/// Returns the warnings of a load, and those about lost precision, with the flag that avoids these.
 pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec<String> {
-    report.warnings.iter().cloned().chain(precision_warnings(scene, f32_rays)).collect()
-}
-
-/// Returns the warnings about lost precision, with the flag that avoids them.
-fn precision_warnings(scene: &Scene, f32_rays: bool) -> impl Iterator<Item = String> {
-    scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
+    let lost = scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
         let certified = "; --precision certified has no such limit";
         warning.message + if warning.is_of_fast_only { certified } else { "" }
-    })
+    });
+    report.warnings.iter().cloned().chain(lost).collect()
+}
+
+/// Returns a kind of object or its index, followed by its name if it has one.
+pub fn labelled(kind: &str, name: &str) -> String {
+    if name.is_empty() { kind.to_owned() } else { format!("{kind} `{name}`") }
 }
 
 /// Prints a warning.
@@ -68,18 +69,8 @@ pub fn set_progress(bar: &ProgressBar, share: f32) {
 
 /// Returns the text of an error.
 fn format(error: &Error) -> String {
-    let mut text = String::from("error: ");
-    if let Some(path) = error.path() {
-        text += &format!("{}:", path.display());
-    }
-    if let Some(place) = error.location() {
-        text += &format!("{place}:");
-    }
-    if error.path().is_some() || error.location().is_some() {
-        text.push(' ');
-    }
-    text += error.message();
-    text.push('\n');
+    let mut text = format!("error: {error:#}\n");
+    // The line of the file, with its number and a mark under the place.
     if let Some(Location::Text { line, column, length, quote }) = error.location() {
         let number = line.to_string();
         let margin = " ".repeat(number.len());
@@ -89,6 +80,7 @@ fn format(error: &Error) -> String {
         let mark = "^".repeat(*length);
         text += &format!("{margin} |\n{number} | {quote}\n{margin} | {indent}{mark}\n");
     }
+    // The advice, and the flag that does what it says.
     let flag = error.remedy().map(flag);
     let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
     if !help.is_empty() {
@@ -124,7 +116,7 @@ mod tests {
         });
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
         scene.spheres.push(Sphere::new(DVec3::ZERO, 0.5, MaterialId(0)));
-        let found: Vec<String> = precision_warnings(&scene, true).collect();
+        let found = scene_warnings(&LoadReport::default(), &scene, true);
         assert!(found.len() == 1 && found[0].contains("--precision certified"), "{found:?}");
     }
     use std::path::Path;

@@ -31,7 +31,7 @@ use args::{Arguments, Command};
 pub fn run() -> ExitCode {
     let arguments = Arguments::parse();
     if arguments.version {
-        return exit_code(output::print(&format!("{}\n", version())).map(|()| Outcome::Success));
+        return exit_code(output::print(&format!("{}\n", version())).map(|()| ExitCode::SUCCESS));
     }
     let Some(command) = arguments.command else {
         messages::to_stderr(&Arguments::command().render_help().to_string());
@@ -48,32 +48,19 @@ pub fn run() -> ExitCode {
 }
 
 /// Prints the error, if there is one, and returns the exit status.
-fn exit_code(result: Result<Outcome>) -> ExitCode {
-    match result {
-        Ok(Outcome::Success) => ExitCode::SUCCESS,
-        Ok(Outcome::CheckFailed) => ExitCode::FAILURE,
-        Err(error) => {
-            messages::error(&error);
-            match error.kind() {
-                ErrorKind::Input => ExitCode::from(2),
-                ErrorKind::Failed => ExitCode::FAILURE,
-            }
+fn exit_code(result: Result<ExitCode>) -> ExitCode {
+    result.unwrap_or_else(|error| {
+        messages::error(&error);
+        match error.kind() {
+            ErrorKind::Input => ExitCode::from(2),
+            ErrorKind::Failed => ExitCode::FAILURE,
         }
-    }
+    })
 }
 
-/// The outcome of a command that did its work.
-enum Outcome {
-    Success,
-    /// A check failed, or two images differ.
-    CheckFailed,
-}
-
-impl Outcome {
-    /// Returns the outcome of a check.
-    fn of_check(passed: bool) -> Self {
-        if passed { Self::Success } else { Self::CheckFailed }
-    }
+/// Returns the exit status of a check: a failure too if two images differ.
+fn check_status(passed: bool) -> ExitCode {
+    if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 /// Returns the versions of envers and Embree.

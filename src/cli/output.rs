@@ -32,14 +32,6 @@ pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
     write::check_file(path)
 }
 
-/// Checks that a heat map can be written to `path` as PNG.
-///
-/// # Errors
-/// When it cannot, or the file is not named .png.
-pub fn check_heatmap(path: Option<&PathBuf>) -> Result<()> {
-    check_extension(path, "png", "a heat map must be a PNG")
-}
-
 /// Checks that a file can be written to `path`, and is named with an extension.
 ///
 /// # Errors
@@ -50,6 +42,17 @@ pub fn check_extension(path: Option<&PathBuf>, extension: &str, message: &str) -
         return Err(Error::input(message).at(path).help(format!("name it .{extension}")));
     }
     write::check_file(path)
+}
+
+/// Prints the text of a result, unless its JSON is printed, and writes its JSON if that is asked for.
+///
+/// # Errors
+/// When one of the two cannot be written.
+pub fn report(json: Option<&PathBuf>, text: &str, value: &impl Serialize) -> Result<()> {
+    if stdout_is_free(json) {
+        print(text)?;
+    }
+    json.map_or(Ok(()), |path| write_json(path, value))
 }
 
 /// Writes `value` as JSON, to standard output if `path` is `-`.

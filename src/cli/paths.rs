@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
+use crate::write::folder_of;
 
 /// Checks that an input exists and is a regular file; a pipe could make the program wait forever.
 ///
@@ -40,16 +41,14 @@ pub fn check_not_a_texture<'a>(
 ) -> Result<()> {
     let is_texture =
         |path: &Path| scene.textures.iter().any(|t| is_same(Path::new(&t.image.name), path));
-    for path in outputs {
-        if path.exists() && is_texture(path) {
-            return Err(Error::input(
-                "the output is a texture of the scene, and would overwrite it",
-            )
-            .at(path)
-            .help("choose another name with -o"));
+    match outputs.into_iter().find(|path| path.exists() && is_texture(path)) {
+        None => Ok(()),
+        Some(path) => {
+            Err(Error::input("the output is a texture of the scene, and would overwrite it")
+                .at(path)
+                .help("choose another name with -o"))
         }
     }
-    Ok(())
 }
 
 /// True if two paths name the same file, which need not exist yet.
@@ -59,10 +58,7 @@ pub fn is_same(a: &Path, b: &Path) -> bool {
 
 /// Returns the canonical path of a file; the folder at least must exist.
 fn canonical(path: &Path) -> PathBuf {
-    let in_folder = || {
-        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        Some(folder.canonicalize().ok()?.join(path.file_name()?))
-    };
+    let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
     path.canonicalize().ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 

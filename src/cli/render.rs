@@ -1,6 +1,7 @@
 //! The subcommand `envers render`.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use crate::cli::args::Render;
@@ -8,18 +9,17 @@ use crate::cli::flag_values::SampleRange;
 use crate::cli::render_plan::RenderPlan;
 use crate::cli::render_stats::{RenderStats, RenderTotals};
 use crate::cli::scene_args::SceneInput;
-use crate::cli::{Outcome, messages, output, paths};
+use crate::cli::{messages, output, paths};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
 use crate::intersect::{Backend, Precision};
-use crate::load;
+use crate::load::add_ground;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
-use crate::scene::animation::PosedScene;
-use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
 use crate::write::{self, Format, Movie, Settings};
 
-pub fn run(arguments: &Render) -> Result<Outcome> {
+pub fn run(arguments: &Render) -> Result<ExitCode> {
     let start = Instant::now();
 
     // Check the flags, then load the scene and apply them.
@@ -28,14 +28,14 @@ pub fn run(arguments: &Render) -> Result<Outcome> {
     output::check_json(arguments.stats.as_ref())?;
     let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
-        load::add_ground(&mut scene);
+        add_ground(&mut scene);
     }
     set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
     let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
-    let load_time = start.elapsed();
+    let load = start.elapsed();
 
     // Render the frames, and write each when it is done.
     let options = RenderOptions {
@@ -56,25 +56,25 @@ pub fn run(arguments: &Render) -> Result<Outcome> {
         .render_frames(&times, |i, frame| writer.write(i, frame))
         .map_err(|e| e.at(&input.scene))?;
     bar.finish_and_clear();
-    let mut totals = writer.into_totals()?;
+    let totals = writer.into_totals()?;
 
     // Report warnings, the summary and the statistics.
     let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
     let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(image_warning(&first, &options, &totals));
-    totals.load = load_time;
-    totals.total = start.elapsed();
+    let total = start.elapsed();
     if !input.quiet {
         warnings.iter().for_each(|w| messages::warning(w));
         if output::stdout_is_free(arguments.stats.as_ref()) {
-            output::print(&plan.summary(totals.total.as_secs_f64()))?;
+            output::print(&plan.summary(total.as_secs_f64()))?;
         }
     }
     if let Some(path) = &arguments.stats {
-        output::write_json(path, &RenderStats::new(&first, &report, &totals, warnings))?;
+        let stats = RenderStats::new(&first, &report, &totals, [load, total], warnings);
+        output::write_json(path, &stats)?;
     }
-    Ok(Outcome::Success)
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Applies the flags for the number of samples.
@@ -82,19 +82,18 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
     if arguments.view != View::Beauty {
         (film.spp, film.adaptive) = (1, None);
     }
+    // The flag sets the range, and leaves the threshold of the scene.
     if let Some(SampleRange { min, max }) = arguments.adaptive {
         let threshold =
             film.adaptive.map_or(AdaptiveSampling::THRESHOLD, |adaptive| adaptive.threshold);
         (film.spp, film.adaptive) = (min, Some(AdaptiveSampling { max, threshold }));
     }
-    match (arguments.threshold, &mut film.adaptive) {
-        (Some(threshold), Some(adaptive)) => adaptive.threshold = threshold,
-        (Some(_), None) => {
-            return Err(Error::input("--threshold needs adaptive sampling")
-                .help("add `--adaptive 1..25`, or leave out --threshold"));
-        }
-        _ => {}
-    }
+    let Some(threshold) = arguments.threshold else { return Ok(()) };
+    let adaptive = film.adaptive.as_mut().ok_or_else(|| {
+        Error::input("--threshold needs adaptive sampling")
+            .help("add `--adaptive 1..25`, or leave out --threshold")
+    })?;
+    adaptive.threshold = threshold;
     Ok(())
 }
 
@@ -132,15 +131,14 @@ impl<'a> FrameWriter<'a> {
         half: bool,
     ) -> Result<Self> {
         let frames = plan.frames.len();
+        // The animated images, each of which is one file for all frames.
         let movie = |path: &PathBuf| Movie::create(path, scene.film.size, frames as u32, plan.fps);
         let totals = RenderTotals {
             statistics: Statistics::zero(options),
             frames,
             images: 0,
             is_black: true,
-            load: Duration::ZERO,
             write: Duration::ZERO,
-            total: Duration::ZERO,
         };
         let settings = Settings {
             half,
@@ -153,12 +151,14 @@ impl<'a> FrameWriter<'a> {
 
     /// Writes a frame.
     fn write(&mut self, index: usize, rendering: Rendering) -> Result<()> {
+        // The settings of this frame, whose time the metadata of an animation tells.
         let start = Instant::now();
         let frame = self.plan.frames[index];
         let mut settings = self.settings.clone();
         if frame.number.is_some() {
             settings.metadata.push(("time".to_owned(), format!("{} s", frame.time)));
         }
+        // The stills and the next picture of each animated image.
         for path in self.plan.files(frame.number) {
             write::write(&rendering.film, &path, &settings)?;
             self.totals.images += 1;
@@ -167,6 +167,7 @@ impl<'a> FrameWriter<'a> {
             movie.push(&rendering.film, &settings)?;
             self.totals.images += 1;
         }
+        // The sums over all frames. A picture is black if every byte of its PNG rounds to 0.
         let darkest = 0.5 / 255.0 / self.settings.exposure.exp2();
         let is_black = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= darkest);
         self.totals.is_black &= rendering.film.pixels.iter().all(is_black);
@@ -187,6 +188,7 @@ impl<'a> FrameWriter<'a> {
 /// Returns the output files, after checking that they are distinct, writable, and of formats to
 /// which the other flags apply.
 fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
+    // Without -o, a PNG in the current folder that is called like the scene.
     let mut outputs = arguments.output.clone();
     if outputs.is_empty() {
         let stem = arguments.trace.input.scene.file_stem().unwrap_or("out".as_ref());
@@ -194,6 +196,7 @@ fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
         path.as_mut_os_string().push(".png");
         outputs.push(path);
     }
+    // All of them distinct, writable, and of a format that the flags apply to.
     for (i, path) in outputs.iter().enumerate() {
         write::check(path)?;
         if outputs[..i].iter().any(|other| paths::is_same(other, path)) {
@@ -214,6 +217,7 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
     let not_for_exr = "does not apply to EXR, which stores the radiance itself";
     let for_beauty = "applies to the beauty view only: other views are one sample of raw values";
     let Render { half, exposure, tone, adaptive, threshold, .. } = arguments;
+    // Each flag, whether it is given, whether it has an effect, and why it has none otherwise.
     let flags = [
         ("--half", *half, has_exr, for_exr),
         ("--exposure", exposure.is_some(), has_other, not_for_exr),
@@ -226,16 +230,17 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
         ("--threshold", threshold.is_some(), is_beauty, for_beauty),
         ("--max-depth", arguments.trace.max_depth.is_some(), is_beauty, for_beauty),
     ];
-    for (flag, is_given, applies, reason) in flags {
-        if is_given && !applies {
-            return Err(Error::input(format!("{flag} {reason}")).help(format!("leave out {flag}")));
+    match flags.into_iter().find(|&(_, is_given, applies, _)| is_given && !applies) {
+        Some((flag, .., reason)) => {
+            Err(Error::input(format!("{flag} {reason}")).help(format!("leave out {flag}")))
         }
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Returns a warning if the image is empty or black, with the likely cause.
 fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) -> Option<String> {
+    // Nothing was hit.
     let counts = &totals.statistics.counts;
     if counts.rays.primary == 0 {
         return None; // Every frame was skipped.
@@ -252,44 +257,37 @@ fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) 
             )
         });
     }
+    // Something was hit, and is black for want of light.
     if options.view != View::Beauty {
         return None;
     }
     let is_emissive = scene.materials.iter().any(|m| m.emission != glam::Vec3::ZERO);
-    let warning = if scene.lights.is_empty() && !is_emissive {
-        "the scene has no light, so surfaces are black (add a [[light]], or `emission` to a material)"
-    } else if totals.is_black {
-        "the image is completely black: the lights may be behind the surfaces, in their shadow, or \
-         too weak at this distance (try `--exposure 4`)"
-    } else {
-        return None;
-    };
-    Some(warning.to_owned())
+    if scene.lights.is_empty() && !is_emissive {
+        let no_light = "the scene has no light, so surfaces are black";
+        return Some(format!("{no_light} (add a [[light]], or `emission` to a material)"));
+    }
+    let black = "the image is completely black: the lights may be behind the surfaces, in their \
+                 shadow, or too weak at this distance (try `--exposure 4`)";
+    totals.is_black.then(|| black.to_owned())
 }
+
+/// The causes of samples that are not finite (light, surface, sum), and what helps.
+const NOT_FINITE_CAUSES: [&str; 3] = [
+    "the light that reaches a surface is not finite: a light with `falloff = \"inverse_square\"` is on \
+     it or very close to it",
+    "a surface's colour or position is not finite: the product of its material and vertex colours is \
+     beyond f32, or the hit is too far away on a plane",
+    "finite values multiply or add up to more than f32 can store: lower the intensity of the lights, \
+     or what the materials reflect and emit",
+];
 
 /// Returns a warning for each cause of samples that are not finite, with what helps.
 fn not_finite_warnings(counts: &NotFinite) -> impl Iterator<Item = String> {
-    let NotFinite { light, surface, sum } = *counts;
-    [
-        (
-            light,
-            "the light that reaches a surface is not finite: a light with \
-             `falloff = \"inverse_square\"` is on it or very close to it",
-        ),
-        (
-            surface,
-            "a surface's colour or position is not finite: the product of its material and vertex \
-             colours is beyond f32, or the hit is too far away on a plane",
-        ),
-        (
-            sum,
-            "finite values multiply or add up to more than f32 can store: lower the intensity of \
-             the lights, or what the materials reflect and emit",
-        ),
-    ]
-    .into_iter()
-    .filter(|(count, _)| *count > 0)
-    .map(|(count, cause)| format!("{count} samples were left out of the image, because {cause}"))
+    let counts = [counts.light, counts.surface, counts.sum].into_iter().zip(NOT_FINITE_CAUSES);
+    let found = counts.filter(|(count, _)| *count > 0);
+    found.map(|(count, cause)| {
+        format!("{count} samples were left out of the image, because {cause}")
+    })
 }
 
 /// Returns the image's metadata: all that determines it, and not the time, the host, the number of
@@ -302,6 +300,7 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
         ("size", format!("{width}x{height}")),
         ("spp", scene.film.spp.to_string()),
     ];
+    // What only adaptive sampling depends on.
     if let Some(AdaptiveSampling { max, threshold }) = scene.film.adaptive {
         entries.push(("adaptive", format!("{}..{max}", scene.film.spp)));
         entries.push(("threshold", threshold.to_string()));

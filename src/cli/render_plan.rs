@@ -2,11 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::cli::args::Render;
-use crate::cli::frame_range::FrameRange;
+use crate::cli::{args::Render, frame_range::FrameRange};
 use crate::error::{Error, Result};
-use crate::scene::Scene;
-use crate::scene::animation::Animation;
+use crate::scene::{Scene, animation::Animation};
 use crate::write::Format;
 
 /// The frames and files of a rendering.
@@ -74,6 +72,7 @@ impl RenderPlan {
             None if is_sequence => all,
             None => FrameRange { last: 1, ..all },
         };
+        // The frames, which an animated image shows at the same speed when some are left out.
         let frames = (range.first..=range.last).step_by(range.step as usize);
         let frame = |number| Frame { number: Some(number), time: animation.time(number) };
         self.frames = frames.map(frame).collect();
@@ -92,9 +91,9 @@ impl RenderPlan {
         if let Some(path) = self.stills.iter().find(|path| !has_placeholder(path)) {
             let message =
                 format!("{} frames cannot all be written to this file", self.frames.len());
-            return Err(Error::input(message).at(path).help(
-                "put #### in place of the frame number, as in frame-####.png, or choose .gif or .apng",
-            ));
+            let help = "put #### in place of the frame number, as in frame-####.png, or choose .gif \
+                        or .apng";
+            return Err(Error::input(message).at(path).help(help));
         }
         let last = self.frames.last().and_then(|frame| frame.number);
         for (i, path) in self.stills.iter().enumerate() {
@@ -119,13 +118,9 @@ impl RenderPlan {
                 .at(&arguments.trace.input.scene)
                 .help("a scene file has an animation in [animation], a glTF file may have one"));
         }
-        match self.movies.first() {
-            Some(path) => {
-                let message = format!("an animated image needs an animation, and {reason}");
-                Err(Error::input(message).at(path).help("choose .png or .exr"))
-            }
-            None => Ok(()),
-        }
+        let Some(path) = self.movies.first() else { return Ok(()) };
+        let message = format!("an animated image needs an animation, and {reason}");
+        Err(Error::input(message).at(path).help("choose .png or .exr"))
     }
 
     /// Removes the frames whose files exist.
@@ -135,6 +130,7 @@ impl RenderPlan {
                 .at(path)
                 .help("leave out --skip-existing, or this output"));
         }
+        // The frames of which some file is missing.
         self.skips_existing = true;
         let mut frames = std::mem::take(&mut self.frames);
         let count = frames.len();
@@ -149,12 +145,14 @@ impl RenderPlan {
         let mut text = String::new();
         match self.frames[..] {
             [] => {}
+            // One frame: its files, by their own names.
             [Frame { number, .. }] => {
                 let stills = self.stills.iter().map(|path| numbered(path, number));
                 for path in stills.chain(self.movies.iter().cloned()) {
                     text += &format!("{} ({seconds:.2} s)\n", path.display());
                 }
             }
+            // Several: the outputs, as they were given.
             _ => {
                 let count = self.frames.len();
                 for path in self.stills.iter().chain(&self.movies) {

@@ -11,7 +11,7 @@ use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
 use crate::intersect::BuildQuality;
 use crate::load::LoadReport;
 use crate::render::Statistics;
-use crate::scene::{self, Feature, FilmSettings, Scene, SceneFeatures};
+use crate::scene::{AdaptiveSampling, Feature, Scene, SceneFeatures};
 
 /// The sums of all frames, and the times of the command.
 pub struct RenderTotals {
@@ -23,12 +23,8 @@ pub struct RenderTotals {
     pub images: u64,
     /// True if all frames are black.
     pub is_black: bool,
-    /// The time to load the scene and check the outputs.
-    pub load: Duration,
     /// The time to encode and write images.
     pub write: Duration,
-    /// The time of the whole command.
-    pub total: Duration,
 }
 
 /// The statistics of a rendering: `render --stats`.
@@ -75,15 +71,6 @@ pub struct Adaptive {
     pub steps: Vec<usize>,
     /// The numbers of pixels that were refined in each step after the first, in all frames.
     pub refined: Vec<u64>,
-}
-
-impl Adaptive {
-    fn new(film: &FilmSettings, counts: &Counts) -> Option<Self> {
-        let scene::AdaptiveSampling { max, threshold } = film.adaptive?;
-        let steps = sample_steps(film);
-        let refined = counts.refined[..steps.len() - 1].to_vec();
-        Some(Self { max, threshold, steps, refined })
-    }
 }
 
 /// The ray tracing backend.
@@ -135,22 +122,6 @@ pub struct Build {
     pub spheres_moved: u64,
 }
 
-impl From<&Statistics> for Build {
-    fn from(statistics: &Statistics) -> Self {
-        let built = statistics.built;
-        Self {
-            meshes: built.meshes_built,
-            reused: built.meshes_reused,
-            bvh: statistics.quality.map(BuildQuality::name),
-            top_levels_built: built.tlas_built,
-            top_levels_kept: built.tlas_updated,
-            instances_placed: built.instances_built,
-            instances_moved: built.instances_moved,
-            spheres_moved: built.spheres_moved,
-        }
-    }
-}
-
 /// The times in seconds.
 #[derive(Serialize)]
 pub struct Seconds {
@@ -162,15 +133,18 @@ pub struct Seconds {
 }
 
 impl RenderStats {
-    /// Collects the statistics of a rendering; `scene` is that of the first frame.
+    /// Collects the statistics of a rendering; `scene` is that of the first frame, `load` the time to load
+    /// it and check the outputs, and `total` that of the whole command.
     pub fn new(
         scene: &Scene,
         report: &LoadReport,
         totals: &RenderTotals,
+        [load, total]: [Duration; 2],
         warnings: Vec<String>,
     ) -> Self {
-        let RenderTotals { statistics, frames, images, load, write, total, .. } = totals;
-        let Counts { rays, not_finite, .. } = statistics.counts;
+        let RenderTotals { statistics, frames, images, write, .. } = totals;
+        let (Counts { rays, not_finite, .. }, built) = (statistics.counts, statistics.built);
+        // The times, by stage.
         let seconds = Seconds {
             load: load.as_secs_f64(),
             build: statistics.build.as_secs_f64(),
@@ -179,19 +153,38 @@ impl RenderStats {
             total: total.as_secs_f64(),
         };
         let (name, version) = (statistics.backend, statistics.backend_version.clone());
+        // The steps of adaptive sampling, and how many pixels took each after the first.
+        let adaptive = scene.film.adaptive.map(|AdaptiveSampling { max, threshold }| {
+            let steps = sample_steps(&scene.film);
+            let refined = statistics.counts.refined[..steps.len() - 1].to_vec();
+            Adaptive { max, threshold, steps, refined }
+        });
+        // The work that was done, and the reasons for what was not.
         let work = work(scene, statistics, *images);
+        let features = SceneFeatures::from_scene(scene);
+        let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
+        let skipped = skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0));
         Self {
             backend: Backend { name, version },
             precision: statistics.precision.name(),
             threads: statistics.threads,
             size: scene.film.size,
             spp: scene.film.spp,
-            adaptive: Adaptive::new(&scene.film, &statistics.counts),
+            adaptive,
             frames: *frames,
             geometry: Geometry::new(scene),
-            build: statistics.into(),
+            build: Build {
+                meshes: built.meshes_built,
+                reused: built.meshes_reused,
+                bvh: statistics.quality.map(BuildQuality::name),
+                top_levels_built: built.tlas_built,
+                top_levels_kept: built.tlas_updated,
+                instances_placed: built.instances_built,
+                instances_moved: built.instances_moved,
+                spheres_moved: built.spheres_moved,
+            },
             rays,
-            skipped: skipped(&SceneFeatures::from_scene(scene), &work),
+            skipped: skipped.collect(),
             work,
             not_finite,
             mrays_per_second: rays.total() as f64 / seconds.render.max(1e-9) * 1e-6,
@@ -208,10 +201,12 @@ impl RenderStats {
 fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'static str, u64> {
     let Statistics { built, counts, .. } = statistics;
     let (rays, done) = (&counts.rays, &counts.work);
+    // The pictures that were read, each once however many textures show it.
     let mut textures: Vec<_> = scene.textures.iter().map(|t| &t.image).collect();
     textures.retain(|image| image.is_read());
     textures.sort_by_key(|image| Arc::as_ptr(image));
     textures.dedup_by_key(|image| Arc::as_ptr(image));
+    // Counts of what the intersectors hold, of what shading did, and of rays.
     [
         (Feature::Spheres.name(), built.sphere_geometries),
         (Feature::Instances.name(), built.object_space_instances),
@@ -233,15 +228,6 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
         ("layers", images),
     ]
     .into()
-}
-
-/// Returns the reason why each kind of work that was not done is not needed.
-fn skipped(
-    features: &SceneFeatures,
-    work: &BTreeMap<&'static str, u64>,
-) -> BTreeMap<&'static str, String> {
-    let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
-    skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0)).collect()
 }
 
 /// Returns the peak memory of Embree; none without Embree.

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::flag_values::{NamedLimit, PRECISIONS, choice, seconds, size};
-use crate::cli::{load_report, paths};
+use crate::cli::{load_report, messages, paths};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::load::{Limits, LoadOptions, LoadReport, Loaded};
-use crate::scene::Scene;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
+use crate::scene::{Camera, Scene};
 
 /// The flags for loading a scene's files; shared by the commands that load one.
 #[derive(Args, Clone)]
@@ -140,11 +140,8 @@ impl TraceArgs {
         }
         if let Some(time) = self.time {
             if scene.animation.is_none() {
-                return Err(Error::input(
-                    "--time needs an animation, and the scene has no animation",
-                )
-                .at(path)
-                .help("leave out --time"));
+                let message = "--time needs an animation, and the scene has no animation";
+                return Err(Error::input(message).at(path).help("leave out --time"));
             }
             *scene = scene.at_time(time).map_err(|e| e.at(path))?;
         }
@@ -154,19 +151,14 @@ impl TraceArgs {
 
 /// Returns the index of a camera, given by its name or index.
 fn find_camera(scene: &Scene, camera: &str) -> Result<usize> {
-    if let Some(index) = scene.cameras.iter().position(|c| c.name == camera) {
-        return Ok(index);
-    }
-    match camera.parse::<usize>() {
-        Ok(index) if index < scene.cameras.len() => Ok(index),
-        _ => {
-            let label = |(i, name): (usize, &str)| {
-                if name.is_empty() { i.to_string() } else { format!("{i} `{name}`") }
-            };
-            let cameras = scene.cameras.iter().map(|c| &*c.name).enumerate();
-            let labels: Vec<String> = cameras.map(label).collect();
-            Err(Error::input(format!("there is no camera `{camera}`"))
-                .help(format!("the scene has {}", labels.join(", "))))
-        }
-    }
+    // A name counts before an index, since a camera may be called like a number.
+    let by_name = scene.cameras.iter().position(|c| c.name == camera);
+    let by_index = || camera.parse().ok().filter(|&index: &usize| index < scene.cameras.len());
+    by_name.or_else(by_index).ok_or_else(|| {
+        let cameras = scene.cameras.iter().enumerate();
+        let label = |(i, c): (usize, &Camera)| messages::labelled(&i.to_string(), &c.name);
+        let labels: Vec<String> = cameras.map(label).collect();
+        Error::input(format!("there is no camera `{camera}`"))
+            .help(format!("the scene has {}", labels.join(", ")))
+    })
 }

@@ -1,7 +1,8 @@
 //! The subcommand `envers stress`.
 
-use crate::cli::args::Stress;
-use crate::cli::{Outcome, messages, output, paths};
+use std::process::ExitCode;
+
+use crate::cli::{args::Stress, check_status, messages, output, paths};
 use crate::error::{Error, Result};
 use crate::measure::stress::{self, StressOptions, Table, plot};
 use crate::write;
@@ -9,7 +10,8 @@ use crate::write;
 /// The number of rays for each point of the plot.
 const PLOT_RAYS: u64 = 20_000;
 
-pub fn run(arguments: &Stress) -> Result<Outcome> {
+pub fn run(arguments: &Stress) -> Result<ExitCode> {
+    // Check the outputs.
     output::check_json(arguments.json.as_ref())?;
     output::check_extension(arguments.plot.as_ref(), "svg", "a plot must be an SVG")?;
     let message = "finished test cases are recorded as JSON lines";
@@ -21,6 +23,7 @@ pub fn run(arguments: &Stress) -> Result<Outcome> {
             .at(json)
             .help("name two different files"));
     }
+    // Run the sweeps of the goals that are asked for, or of all.
     let mut options = StressOptions {
         rays: if arguments.quick { StressOptions::QUICK } else { StressOptions::FULL },
         seed: arguments.seed,
@@ -35,16 +38,12 @@ pub fn run(arguments: &Stress) -> Result<Outcome> {
     let rows = stress::run(&options, &|share| messages::set_progress(&bar, share))?;
     bar.finish_and_clear();
 
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&Table(&rows).to_string())?;
-    }
-    if let Some(path) = &arguments.json {
-        output::write_json(path, &rows)?;
-    }
+    // Report the results.
+    output::report(arguments.json.as_ref(), &Table(&rows).to_string(), &rows)?;
     if let Some(path) = &arguments.plot {
         let rays = if arguments.quick { options.rays } else { PLOT_RAYS };
         let svg = plot(arguments.seed, rays)?;
         write::write_atomically(path, |out| out.write_all(svg.as_bytes()))?;
     }
-    Ok(Outcome::of_check(rows.iter().all(|row| row.passed)))
+    Ok(check_status(rows.iter().all(|row| row.passed)))
 }

@@ -1,17 +1,14 @@
 //! The subcommand `envers validate`.
 
 use std::path::Path;
+use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::args::Validate;
-use crate::cli::scene_args::SceneInput;
-use crate::cli::{Outcome, messages, output, paths};
+use crate::cli::{args::Validate, check_status, messages, output, paths, scene_args::SceneInput};
 use crate::error::Result;
-use crate::geometry::Ray;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
-use crate::scene::Scene;
 
 /// The result of a validation: `validate --json`.
 #[derive(Serialize)]
@@ -23,15 +20,20 @@ struct ValidationResult<'a> {
     warnings: &'a [String],
 }
 
-pub fn run(arguments: &Validate) -> Result<Outcome> {
+pub fn run(arguments: &Validate) -> Result<ExitCode> {
+    // Check the outputs, and load the scene; a single ray is another command in all but name.
     output::check_json(arguments.json.as_ref())?;
-    output::check_heatmap(arguments.heatmap.as_ref())?;
+    output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     let input = &arguments.trace.input;
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
     let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
-        return replay(arguments, &scene, ray);
+        let replay = measure::replay(&scene, ray)?;
+        output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
+        return Ok(ExitCode::SUCCESS);
     }
+
+    // Warn of what the comparison may find for reasons of precision.
     paths::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = arguments.trace.precision;
     let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
@@ -39,36 +41,20 @@ pub fn run(arguments: &Validate) -> Result<Outcome> {
         warnings.iter().for_each(|w| messages::warning(w));
     }
 
+    // Compare, and report the result with the command that traces the worst ray again.
     let validation = measure::validate(&scene, precision, camera, input.threads())?;
     let worst = validation.worst.as_ref();
     let replay = worst.map(|worst| replay_command(&input.scene, &worst.ray));
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        let mut text = format!("{validation}\n");
-        if let Some((worst, replay)) = worst.zip(replay.as_ref()) {
-            text += &format!("{worst}\n  {replay}\n");
-        }
-        output::print(&text)?;
+    let mut text = format!("{validation}\n");
+    if let Some((worst, replay)) = worst.zip(replay.as_ref()) {
+        text += &format!("{worst}\n  {replay}\n");
     }
-    if let Some(path) = &arguments.json {
-        let result = ValidationResult { validation: &validation, replay, warnings: &warnings };
-        output::write_json(path, &result)?;
-    }
+    let result = ValidationResult { validation: &validation, replay, warnings: &warnings };
+    output::report(arguments.json.as_ref(), &text, &result)?;
     if let Some(path) = &arguments.heatmap {
         output::write_heatmap(path, &validation.heatmap)?;
     }
-    Ok(Outcome::of_check(validation.passed))
-}
-
-/// Traces one ray with every intersector: `envers validate --ray`.
-fn replay(arguments: &Validate, scene: &Scene, ray: &Ray) -> Result<Outcome> {
-    let replay = measure::replay(scene, ray)?;
-    if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&replay.to_string())?;
-    }
-    if let Some(path) = &arguments.json {
-        output::write_json(path, &replay)?;
-    }
-    Ok(Outcome::Success)
+    Ok(check_status(validation.passed))
 }
 
 /// Returns the command that traces a ray again, quoted for a shell.

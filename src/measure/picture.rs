@@ -39,6 +39,7 @@ impl Picture {
     /// # Errors
     /// When the file cannot be read, or is neither.
     pub fn read(path: &Path) -> Result<Self> {
+        // A file that cannot be read is told from one that cannot be decoded.
         std::fs::File::open(path).map_err(|e| Error::io("read", path, &e))?;
         let damaged = |e: &dyn std::fmt::Display| {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
@@ -67,6 +68,7 @@ impl Picture {
                 let layer = image.layer_data;
                 let (width, height) = (layer.size.width(), layer.size.height());
                 let list = &layer.channel_data.list;
+                // The channels are stored one after the other, and become the values of each pixel.
                 let mut values = vec![0.0; width * height * list.len()];
                 for (c, channel) in list.iter().enumerate() {
                     let pixels = channel.sample_data.values_as_f32();
@@ -98,6 +100,7 @@ pub fn compare_pictures(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comp
         return Err(Error::input(format!("channels {a} and channels {b} cannot be compared"))
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
+    // The same infinity or NaN in both does not differ.
     let difference = |(x, y): (&f32, &f32)| {
         if x == y || (x.is_nan() && y.is_nan()) {
             0.0
@@ -106,6 +109,7 @@ pub fn compare_pictures(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comp
             if d.is_nan() { f64::INFINITY } else { d }
         }
     };
+    // The sums over all values, and the pixels with one beyond the tolerance.
     let (mut squares, mut max, mut differing) = (0.0, 0.0f64, 0);
     let n = a.channels.len().max(1);
     for (p, q) in a.values.chunks(n).zip(b.values.chunks(n)) {

@@ -13,8 +13,7 @@ use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
-use crate::scene::Scene;
-use crate::scene::check::MAX_COORDINATE;
+use crate::scene::{Light, Scene, check::MAX_COORDINATE};
 use crate::surface::Surface;
 
 /// The answers of all intersectors for one ray.
@@ -99,23 +98,20 @@ type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
 
 /// Traces a ray with the intersectors, the first of which is the reference.
 fn replay_with(scene: &Scene, ray: &Ray, intersectors: &[Named<'_>]) -> Replay {
-    let hits: Vec<Option<Hit>> = intersectors
-        .iter()
-        .map(|(_, intersector)| closest(&**intersector, &[*ray], Coherence::Coherent)[0])
-        .collect();
+    let hit = |(_, of): &Named<'_>| closest(&**of, &[*ray], Coherence::Coherent)[0];
+    let hits: Vec<Option<Hit>> = intersectors.iter().map(hit).collect();
 
     // The shadow rays from the reference's hit.
     let reference = hits.first().copied().flatten();
     let surface = reference.map(|hit| Surface::new(scene, ray, &hit));
-    let shadow_rays: Vec<(usize, Ray)> = (0..)
-        .zip(&scene.lights)
-        .filter(|(_, light)| light.casts_shadow())
-        .filter_map(|(i, light)| {
-            let surface = surface.as_ref()?;
-            Some((i, surface.shadow_ray(ray.direction, &light.incident(surface.position)?)))
-        })
-        .collect();
+    let lights = (0..).zip(&scene.lights).filter(|(_, light)| light.casts_shadow());
+    let shadow_ray = |(i, light): (usize, &Light)| {
+        let surface = surface.as_ref()?;
+        Some((i, surface.shadow_ray(ray.direction, &light.incident(surface.position)?)))
+    };
+    let shadow_rays: Vec<(usize, Ray)> = lights.filter_map(shadow_ray).collect();
 
+    // What each intersector finds for the ray and for these shadow rays.
     let answers = intersectors.iter().zip(&hits).map(|((name, intersector), hit)| {
         let lights = shadow_rays.iter().map(|&(light, ray)| {
             let is_occluded = occluded(&**intersector, &[ray], Coherence::Coherent)[0];
@@ -193,6 +189,7 @@ pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let parts: [&str; 6] =
         parts.try_into().map_err(|p: Vec<_>| format!("{expected}; found {} parts", p.len()))?;
+    // Six finite numbers.
     let mut numbers = [0.0; 6];
     for (number, part) in numbers.iter_mut().zip(parts) {
         *number = part.parse().map_err(|_| format!("{expected}; `{part}` is not a number"))?;
@@ -200,6 +197,7 @@ pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
             return Err(format!("{expected}; `{part}` is not finite"));
         }
     }
+    // The ray, whose origin and direction the intersectors must be able to use.
     let [ox, oy, oz, dx, dy, dz] = numbers;
     let ray = Ray::new(DVec3::new(ox, oy, oz), DVec3::new(dx, dy, dz));
     if ray.direction == DVec3::ZERO {
@@ -214,7 +212,7 @@ pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, Light, LightKind, Material, Plane, Shadow, Sphere};
+    use crate::scene::{Falloff, LightKind, Material, Plane, Shadow, Sphere};
     use glam::Vec3;
     use proptest::prelude::*;
 

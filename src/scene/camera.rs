@@ -101,9 +101,7 @@ impl Camera {
         let (focal, pixel) = match self.projection {
             Projection::FovY(angle) => (height * 0.5 / (angle * 0.5).tan(), 1.0),
             Projection::FovX(angle) => (width * 0.5 / (angle * 0.5).tan(), 1.0),
-            Projection::FocalPx { focal, width: nominal } => {
-                (focal * width / f64::from(nominal), 1.0)
-            }
+            Projection::FocalPx { focal, width: given } => (focal * width / f64::from(given), 1.0),
             Projection::OrthoHeight(world) => (1.0, world / height),
         };
         RayGenerator {

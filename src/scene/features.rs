@@ -1,8 +1,10 @@
 //! The features that a scene uses; work for all others is left out.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
-use crate::scene::{Image, Material, Mesh, Scene, TextureId};
+use crate::scene::{Image, Light, Material, Mesh, Scene, TextureId};
 
 /// A feature that not every scene uses, and that costs work where one does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -62,12 +64,13 @@ impl Feature {
 
     /// The name in reports.
     pub const fn name(self) -> &'static str {
-        self.words().name
+        self.words().0
     }
 
-    /// The words for it in reports.
-    const fn words(self) -> Words {
-        let (name, objects, predicate) = match self {
+    /// The words for it in reports: its name, the objects that may use it, and the predicate of those
+    /// that do.
+    const fn words(self) -> (&'static str, &'static str, &'static str) {
+        match self {
             Self::Spheres => ("spheres", "spheres", "are user geometry"),
             Self::Instances => ("instances", "meshes", "stand more than once"),
             Self::Planes => ("planes", "planes", "are tried"),
@@ -83,18 +86,8 @@ impl Feature {
             Self::Shadows => ("shadows", "lights", "cast shadows"),
             Self::Reflection => ("reflection", "materials in use", "are mirrors or glass"),
             Self::Refraction => ("refraction", "materials in use", "let light through"),
-        };
-        Words { name, objects, predicate }
+        }
     }
-}
-
-/// The words for a feature in reports.
-struct Words {
-    name: &'static str,
-    /// The objects that may use the feature.
-    objects: &'static str,
-    /// The predicate of those that do.
-    predicate: &'static str,
 }
 
 /// The features that a scene uses; what is absent costs nothing.
@@ -111,54 +104,48 @@ struct Usage {
     total: usize,
 }
 
+impl Usage {
+    /// Counts the objects that use a feature.
+    fn count<T>(objects: &[T], uses: impl Fn(&T) -> bool) -> Self {
+        Self { users: objects.iter().filter(|object| uses(object)).count(), total: objects.len() }
+    }
+}
+
 impl SceneFeatures {
     /// Detects the features of a checked scene.
     pub fn from_scene(scene: &Scene) -> Self {
+        // What is in use: materials that some object has, and meshes with an instance.
         let materials: Vec<&Material> = scene.materials_in_use().collect();
         let mut instances = vec![0; scene.meshes.len()];
         scene.instances.iter().for_each(|i| instances[i.mesh.0 as usize] += 1);
-        let meshes = scene.meshes.iter().zip(&instances).filter(|(_, count)| **count > 0);
-        let meshes: Vec<&Mesh> = meshes.map(|(mesh, _)| &**mesh).collect();
+        let meshes = scene.meshes.iter().zip(instances).filter(|(_, count)| *count > 0);
+        let (meshes, instances): (Vec<&Arc<Mesh>>, Vec<usize>) = meshes.unzip();
 
-        let all = |count: usize| Usage { users: count, total: count };
-        let of_materials = |uses: &dyn Fn(&Material) -> bool| Usage {
-            users: materials.iter().filter(|m| uses(m)).count(),
-            total: materials.len(),
-        };
-        let of_meshes = |uses: fn(&Mesh) -> bool| Usage {
-            users: meshes.iter().filter(|mesh| uses(mesh)).count(),
-            total: meshes.len(),
-        };
+        // The number of these that use each feature.
+        let of_materials =
+            |uses: &dyn Fn(&Material) -> bool| Usage::count(&materials, |material| uses(material));
+        let is_mipmapped = |id: TextureId| scene.textures[id.0 as usize].mipmap;
         let usage = Feature::ALL.map(|feature| match feature {
-            Feature::Spheres => all(scene.spheres.len()),
-            Feature::Instances => Usage {
-                users: instances.iter().filter(|&&count| count > 1).count(),
-                total: meshes.len(),
-            },
-            Feature::Planes => all(scene.planes.len()),
+            Feature::Spheres => Usage::count(&scene.spheres, |_| true),
+            Feature::Instances => Usage::count(&instances, |count| *count > 1),
+            Feature::Planes => Usage::count(&scene.planes, |_| true),
             Feature::Pictures => Usage {
                 users: images_in(scene, materials.iter().copied()).len(),
                 total: images_in(scene, scene.materials.iter()).len(),
             },
             Feature::Uv => of_materials(&Material::is_textured),
-            Feature::Mipmaps => of_materials(&|m| {
-                m.textures().any(|id: TextureId| scene.textures[id.0 as usize].mipmap)
-            }),
+            Feature::Mipmaps => of_materials(&|m| m.textures().any(is_mipmapped)),
             Feature::NormalMaps => of_materials(&|m| m.normal_map.is_some()),
             Feature::AlphaTests => of_materials(&Material::is_masked),
-            Feature::Checkers => Usage {
-                users: scene.planes.iter().filter(|p| p.checker.is_some()).count(),
-                total: scene.planes.len(),
-            },
-            Feature::VertexColors => of_meshes(|m| !(m.colors.is_empty() && m.alphas.is_empty())),
-            Feature::SmoothNormals => of_meshes(|m| !m.normals.is_empty()),
+            Feature::Checkers => Usage::count(&scene.planes, |plane| plane.checker.is_some()),
+            Feature::VertexColors => {
+                Usage::count(&meshes, |m| !(m.colors.is_empty() && m.alphas.is_empty()))
+            }
+            Feature::SmoothNormals => Usage::count(&meshes, |mesh| !mesh.normals.is_empty()),
             Feature::Highlights => {
                 of_materials(&|m| m.specular != Vec3::ZERO || m.metallic.is_some())
             }
-            Feature::Shadows => Usage {
-                users: scene.lights.iter().filter(|light| light.casts_shadow()).count(),
-                total: scene.lights.len(),
-            },
+            Feature::Shadows => Usage::count(&scene.lights, Light::casts_shadow),
             Feature::Reflection => of_materials(&Material::spawns_rays),
             Feature::Refraction => of_materials(&Material::may_transmit),
         });
@@ -189,7 +176,7 @@ impl SceneFeatures {
     /// A sentence with the number of objects that use a feature.
     fn reason(&self, feature: Feature) -> String {
         let Usage { users, total } = self.usage[feature as usize];
-        let Words { objects, predicate, .. } = feature.words();
+        let (_, objects, predicate) = feature.words();
         if total == 0 {
             return format!("there are no {objects}");
         }

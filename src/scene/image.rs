@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::mipmap::Mipmap;
+use super::mipmap::{self, MipLevel};
 use super::texels::{Texel, Texels};
 use crate::scene::Transfer;
 
@@ -18,7 +18,7 @@ pub struct Image {
     /// The `width · height` pixels.
     pub texels: Texels,
     /// The mipmaps by the encoding of colours, in the order of [`Transfer`]; built when first asked for.
-    mipmaps: [OnceLock<Mipmap>; 2],
+    mipmaps: [OnceLock<Vec<MipLevel>>; 2],
 }
 
 impl Image {
@@ -60,10 +60,11 @@ impl Image {
         }
     }
 
-    /// The mipmap of the image, its colours encoded by `transfer`.
-    pub(crate) fn mipmap(&self, transfer: Transfer) -> &Mipmap {
-        self.mipmaps[transfer as usize]
-            .get_or_init(|| Mipmap::new(&self.texels, [self.width, self.height], transfer))
+    /// The mipmap of the image, its colours encoded by `transfer`: the levels after the image itself,
+    /// largest first.
+    pub(crate) fn mipmap(&self, transfer: Transfer) -> &[MipLevel] {
+        let size = [self.width, self.height];
+        self.mipmaps[transfer as usize].get_or_init(|| mipmap::levels(&self.texels, size, transfer))
     }
 }
 

@@ -185,14 +185,12 @@ impl Light {
     pub fn transformed(&self, transform: &DAffine3) -> Self {
         let turned = |v: DVec3| transform.transform_vector3(v).normalize();
         let mut light = self.clone();
-        match &mut light.kind {
-            LightKind::Ambient => {}
-            LightKind::Directional { direction } => *direction = turned(*direction),
-            LightKind::Point { position, .. } => *position = transform.transform_point3(*position),
-            LightKind::Spot { position, direction, .. } => {
-                *position = transform.transform_point3(*position);
-                *direction = turned(*direction);
-            }
+        let kind = &mut light.kind;
+        if let LightKind::Point { position, .. } | LightKind::Spot { position, .. } = kind {
+            *position = transform.transform_point3(*position);
+        }
+        if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } = kind {
+            *direction = turned(*direction);
         }
         light
     }
@@ -203,15 +201,13 @@ impl Light {
         let (position, falloff, range) = match self.kind {
             LightKind::Ambient => return None,
             LightKind::Directional { direction } => {
-                return Some(IncidentLight {
-                    toward: -direction,
-                    is_bounded: false,
-                    intensity: self.intensity,
-                });
+                let (toward, intensity) = (-direction, self.intensity);
+                return Some(IncidentLight { toward, is_bounded: false, intensity });
             }
             LightKind::Point { position, falloff, range }
             | LightKind::Spot { position, falloff, range, .. } => (position, falloff, range),
         };
+        // The way to a light with a position; at that position itself no light arrives.
         let toward = position - point;
         let distance_squared = toward.length_squared();
         if distance_squared == 0.0 {

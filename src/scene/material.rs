@@ -232,17 +232,13 @@ impl Material {
 
     /// True if light may pass through it unchanged, between two media with this index of refraction.
     pub fn is_clear_in(&self, ior: f64) -> bool {
-        let is_clear = if self.varies() {
+        // What it transmits may differ from point to point.
+        let is_clear = if self.metallic.is_some() || self.coverage.is_some() {
             self.may_transmit()
         } else {
             self.transmit == Vec3::ONE && self.emission == Vec3::ZERO
         };
         is_clear && self.ior == ior
-    }
-
-    /// True if what it transmits differs from point to point.
-    fn varies(&self) -> bool {
-        self.metallic.is_some() || self.coverage.is_some()
     }
 
     /// True if a mask cuts holes into it.

@@ -6,43 +6,34 @@ use rayon::prelude::*;
 use super::texels::Texels;
 use crate::scene::Transfer;
 
-/// The smaller copies of an image, each half as large as the one before, down to one pixel.
-#[derive(Clone, Debug)]
-pub(crate) struct Mipmap(Vec<MipLevel>);
-
 /// One level of a mipmap.
 #[derive(Clone, Debug)]
-pub(super) struct MipLevel {
+pub(crate) struct MipLevel {
     /// The width and height in texels.
     pub size: [u32; 2],
     /// The texels.
     pub texels: Texels,
 }
 
-impl Mipmap {
-    /// Builds the levels of an image.
-    ///
-    /// A texel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
-    /// transparent texels add no colour.
-    pub(super) fn new(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Self {
-        let mut levels = Vec::new();
-        let base = |i: usize| texels.linear(i, transfer);
-        let mut before: Option<(Vec<Vec4>, [u32; 2])> = None;
-        while before.as_ref().map_or(size, |(_, size)| *size) != [1, 1] {
-            let (colors, size) = match &before {
-                Some((colors, size)) => downsampled(&|i| colors[i], *size),
-                None => downsampled(&base, size),
-            };
-            levels.push(MipLevel { size, texels: texels.encoded_like(&colors, transfer) });
-            before = Some((colors, size));
-        }
-        Self(levels)
+/// Builds the levels of an image: smaller copies, each half as large as the one before, down to one
+/// pixel. The image itself is not among them.
+///
+/// A texel is the mean, in linear colours, of the area that it covers, weighted by alpha, so that
+/// transparent texels add no colour.
+pub(super) fn levels(texels: &Texels, size: [u32; 2], transfer: Transfer) -> Vec<MipLevel> {
+    let mut levels = Vec::new();
+    let base = |i: usize| texels.linear(i, transfer);
+    let mut before: Option<(Vec<Vec4>, [u32; 2])> = None;
+    while before.as_ref().map_or(size, |(_, size)| *size) != [1, 1] {
+        // From the level before, as it was before its colours were rounded.
+        let (colors, size) = match &before {
+            Some((colors, size)) => downsampled(&|i| colors[i], *size),
+            None => downsampled(&base, size),
+        };
+        levels.push(MipLevel { size, texels: texels.encoded_like(&colors, transfer) });
+        before = Some((colors, size));
     }
-
-    /// The levels, largest first; the first has half the size of the image, which is not among them.
-    pub(super) fn levels(&self) -> &[MipLevel] {
-        &self.0
-    }
+    levels
 }
 
 /// Returns an image at half its size, rounded down but at least 1.
@@ -105,42 +96,37 @@ mod tests {
 
     #[test]
     fn each_level_has_half_the_size_down_to_one_pixel() {
-        let mipmap = Mipmap::new(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
-        let sizes: Vec<_> = mipmap.levels().iter().map(|level| level.size).collect();
+        let mipmap = levels(&grey(&[7; 35]), [7, 5], Transfer::Srgb);
+        let sizes: Vec<_> = mipmap.iter().map(|level| level.size).collect();
         assert_eq!(sizes, [[3, 2], [1, 1]]);
-        assert!(
-            mipmap
-                .levels()
-                .iter()
-                .all(|level| level.texels.linear(0, Transfer::None).x == 7.0 / 255.0)
-        );
+        assert!(mipmap.iter().all(|level| level.texels.linear(0, Transfer::None).x == 7.0 / 255.0));
     }
 
     #[test]
     fn the_mean_is_that_of_linear_colours() {
-        let mipmap = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
+        let mipmap = levels(&grey(&[0, 255]), [2, 1], Transfer::Srgb);
         // Half the light is 188 of 255 in sRGB.
-        assert_eq!(mipmap.levels()[0].texels, grey(&[188]));
-        let plain = Mipmap::new(&grey(&[0, 255]), [2, 1], Transfer::None);
-        assert_eq!(plain.levels()[0].texels, grey(&[128]));
+        assert_eq!(mipmap[0].texels, grey(&[188]));
+        let plain = levels(&grey(&[0, 255]), [2, 1], Transfer::None);
+        assert_eq!(plain[0].texels, grey(&[128]));
     }
 
     #[test]
     fn a_texel_between_two_gives_half_to_each() {
-        let mipmap = Mipmap::new(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
+        let mipmap = levels(&grey(&[0, 0, 30, 90, 90]), [5, 1], Transfer::None);
         // (0 + 0 + 30/2) / 2.5 and (30/2 + 90 + 90) / 2.5.
-        assert_eq!(mipmap.levels()[0].texels, grey(&[6, 78]));
+        assert_eq!(mipmap[0].texels, grey(&[6, 78]));
     }
 
     #[test]
     fn transparent_texels_add_no_colour() {
         let texels = Texels::Bytes(vec![[200, 0, 0, 255], [0, 200, 0, 0]]);
-        let mipmap = Mipmap::new(&texels, [2, 1], Transfer::None);
-        assert_eq!(mipmap.levels()[0].texels, Texels::Bytes(vec![[200, 0, 0, 128]]));
+        let mipmap = levels(&texels, [2, 1], Transfer::None);
+        assert_eq!(mipmap[0].texels, Texels::Bytes(vec![[200, 0, 0, 128]]));
     }
 
     #[test]
     fn one_pixel_has_no_smaller_copies() {
-        assert!(Mipmap::new(&grey(&[1]), [1, 1], Transfer::Srgb).levels().is_empty());
+        assert!(levels(&grey(&[1]), [1, 1], Transfer::Srgb).is_empty());
     }
 }

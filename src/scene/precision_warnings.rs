@@ -65,13 +65,12 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning
         extent: bounds.max_abs(),
     });
     let message = worst(stored, F32_SPACING).map(|Loss { object, detail, extent }| {
+        let (ratio, supported) = (extent / detail, 1.0 / F32_SPACING);
         format!(
             "{object} stands too far from its file's origin: its triangles are about {detail:.1e} \
              large at coordinates of {extent:.1e}, where f32, in which meshes are stored, has \
-             lost them (ratio {:.1e}, supported up to {:.1e}); model it about the origin and \
-             translate it",
-            extent / detail,
-            1.0 / F32_SPACING
+             lost them (ratio {ratio:.1e}, supported up to {supported:.1e}); model it about the \
+             origin and translate it"
         )
     });
     warn(message, false);
@@ -94,12 +93,12 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning
         let size = bounds.size().max_element();
         let lost = worst(instances(&|_| size), 1.0 / FAST_RATIO);
         let message = lost.map(|Loss { object, detail, extent }| {
+            let ratio = extent / detail;
             format!(
                 "{object} is fine for so large a scene: its triangles are about {detail:.1e} large \
-                 in {extent:.1e} (ratio {:.1e}, supported up to {FAST_RATIO:.0e} in precision \
+                 in {extent:.1e} (ratio {ratio:.1e}, supported up to {FAST_RATIO:.0e} in precision \
                  fast on Embree), so that more than one ray in 10,000 may meet a neighbour of \
-                 the triangle in its way",
-                extent / detail
+                 the triangle in its way"
             )
         });
         warn(message, true);

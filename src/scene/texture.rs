@@ -4,9 +4,7 @@ use std::sync::Arc;
 
 use glam::{Affine2, Vec2, Vec4};
 
-use crate::scene::Transfer;
-use crate::scene::image::Image;
-use crate::scene::texels::Texels;
+use crate::scene::{Transfer, image::Image, texels::Texels};
 
 /// The index of a texture in `Scene::textures`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -146,7 +144,7 @@ impl Texture {
 
     /// Samples the mipmap between two of its levels, of which 0 is the image itself.
     fn sample_trilinear(&self, uv: Vec2, level: f32) -> Vec4 {
-        let levels = self.image.mipmap(self.transfer).levels();
+        let levels = self.image.mipmap(self.transfer);
         let last = levels.len();
         let sample = |level: usize| match level.min(last) {
             0 => {

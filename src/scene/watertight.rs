@@ -86,6 +86,7 @@ impl Mesh {
 
 /// Warns of each dielectric mesh that is not closed.
 pub fn open_dielectric_warnings(scene: &Scene) -> Vec<String> {
+    // The dielectric material of each mesh that has one in any instance.
     let mut dielectrics: Vec<Option<&Material>> = vec![None; scene.meshes.len()];
     for instance in &scene.instances {
         let material = &scene.materials[instance.material.0 as usize];

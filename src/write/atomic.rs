@@ -20,7 +20,7 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
         // The permissions of any new file, by the user's umask, instead of those of temporary files.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(&folder).map_err(|e| match e.kind() {
+    builder.tempfile_in(folder).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound if !folder.exists() => {
             let folder = folder.display();
             Error::input(format!("the output's folder {folder} does not exist"))
@@ -33,11 +33,8 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
 }
 
 /// The folder of a file.
-fn folder_of(target: &Path) -> PathBuf {
-    match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-        _ => PathBuf::from("."),
-    }
+pub fn folder_of(target: &Path) -> &Path {
+    target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Resolves symbolic links: a link stays, and the file that it names is replaced.

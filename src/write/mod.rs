@@ -21,9 +21,9 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-#[cfg(feature = "cli")]
-pub use atomic::check as check_file;
 pub use atomic::write_atomically;
+#[cfg(feature = "cli")]
+pub use atomic::{check as check_file, folder_of};
 pub use movie::Movie;
 pub use png::encode as png_bytes;
 
@@ -83,12 +83,13 @@ impl Format {
             "exr" => Ok(Format::Exr),
             "gif" => Ok(Format::Gif),
             "apng" => Ok(Format::Apng),
-            "" => Err(Error::input("the output has no extension that tells its format").at(path)),
-            other => {
-                Err(Error::input(format!("pictures that end in .{other} are not written")).at(path))
-            }
+            "" => Err("the output has no extension that tells its format".to_owned()),
+            other => Err(format!("pictures that end in .{other} are not written")),
         }
-        .map_err(|e| e.help("name it .png (8 bits), .exr (floats), .gif or .apng (animated)"))
+        .map_err(|message| {
+            let help = "name it .png (8 bits), .exr (floats), .gif or .apng (animated)";
+            Error::input(message).at(path).help(help)
+        })
     }
 
     /// True if it can hold several frames.

@@ -11,8 +11,7 @@ use gif::{DisposalMethod, Repeat};
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::write::atomic::PendingFile;
-use crate::write::{Format, Settings, png_bytes};
+use crate::write::{Format, Settings, atomic::PendingFile, png_bytes};
 
 /// The sampling factor of NeuQuant, which chooses a GIF's colours: from 1 (all pixels) to 30.
 const GIF_SAMPLING: i32 = 10;
@@ -60,32 +59,21 @@ impl Movie {
         let file = PendingFile::new(path)?;
         let failed = |e: io::Error| Error::io("write", path, &e);
         let handle = file.handle().map_err(failed)?;
+        // The header of the format.
         let [width, height] = size;
         let encoder = match format {
-            Format::Gif => {
-                if width.max(height) > GIF_MAX_SIDE {
-                    return Err(Error::input(format!("a GIF cannot have {width}x{height} pixels"))
-                        .at(path)
-                        .help(format!(
-                            "at most {GIF_MAX_SIDE} on a side; an .apng can have more"
-                        )));
-                }
-                let encoder =
-                    gif::Encoder::new(BufWriter::new(handle), width as u16, height as u16, &[]);
-                let repeating = encoder.and_then(|mut encoder| {
-                    encoder.set_repeat(Repeat::Infinite)?;
-                    Ok(encoder)
-                });
-                Encoder::Gif(Box::new(repeating.map_err(|e| failed(gif_error(e)))?))
+            Format::Gif if width.max(height) > GIF_MAX_SIDE => {
+                return Err(Error::input(format!("a GIF cannot have {width}x{height} pixels"))
+                    .at(path)
+                    .help(format!("at most {GIF_MAX_SIDE} on a side; an .apng can have more")));
             }
-            Format::Apng => {
-                let header = begin_apng(handle, size, frames, fps);
-                Encoder::Apng(Box::new(header.map_err(|e| failed(io::Error::other(e)))?))
-            }
+            Format::Gif => begin_gif(handle, size).map_err(gif_error).map(Encoder::Gif),
+            Format::Apng => begin_apng(handle, size, frames, fps).map(Encoder::Apng),
             Format::Png | Format::Exr => {
                 return Err(Error::input("this format holds one frame").at(path));
             }
-        };
+        }
+        .map_err(failed)?;
         Ok(Self { file, encoder, size, fps, frames: 0, previous: None })
     }
 
@@ -97,6 +85,7 @@ impl Movie {
     /// # Panics
     /// When its size is not that of the animation.
     pub fn push(&mut self, film: &Film, settings: &Settings) -> Result<()> {
+        // The part of the picture that is not as it was in the frame before.
         assert_eq!(film.size, self.size, "all frames of a picture are of one size");
         let bytes = png_bytes(film, settings);
         let part = match &self.previous {
@@ -104,10 +93,11 @@ impl Movie {
             None => Rectangle { left: 0, top: 0, width: film.size[0], height: film.size[1] },
         };
         let pixels = crop(&bytes, self.size[0] as usize, part);
+        // Its bytes, in the encoder's format.
         let delay = gif_delay(self.frames, self.fps);
         match &mut self.encoder {
             Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
-            Encoder::Apng(writer) => write_apng(writer, &pixels, part).map_err(io::Error::other),
+            Encoder::Apng(writer) => write_apng(writer, &pixels, part),
         }
         .map_err(|e| Error::io("write", self.file.path(), &e))?;
         self.frames += 1;
@@ -126,7 +116,7 @@ impl Movie {
                 let writer = encoder.into_inner().map_err(gif_error);
                 writer.and_then(|mut writer| writer.flush())
             }
-            Encoder::Apng(writer) => writer.finish().map_err(io::Error::other),
+            Encoder::Apng(writer) => writer.finish().map_err(io::Error::from),
         }
         .map_err(|e| Error::io("write", &path, &e))?;
         self.file.commit()
@@ -164,13 +154,23 @@ fn apng_delay(fps: f64) -> (u16, u16) {
     best.1
 }
 
+/// Begins a looping GIF.
+fn begin_gif(
+    file: File,
+    [width, height]: [u32; 2],
+) -> Result<Box<gif::Encoder<BufWriter<File>>>, gif::EncodingError> {
+    let mut encoder = gif::Encoder::new(BufWriter::new(file), width as u16, height as u16, &[])?;
+    encoder.set_repeat(Repeat::Infinite)?;
+    Ok(Box::new(encoder))
+}
+
 /// Begins an animated PNG.
 fn begin_apng(
     file: File,
     [width, height]: [u32; 2],
     frames: u32,
     fps: f64,
-) -> std::result::Result<png::Writer<File>, png::EncodingError> {
+) -> io::Result<Box<png::Writer<File>>> {
     let mut encoder = png::Encoder::new(file, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
@@ -179,20 +179,16 @@ fn begin_apng(
     encoder.set_animated(frames, 0)?;
     let (numerator, denominator) = apng_delay(fps);
     encoder.set_frame_delay(numerator, denominator)?;
-    encoder.write_header()
+    Ok(Box::new(encoder.write_header()?))
 }
 
 /// Writes one rectangle as a frame of an animated PNG.
-fn write_apng(
-    writer: &mut png::Writer<File>,
-    pixels: &[u8],
-    part: Rectangle,
-) -> std::result::Result<(), png::EncodingError> {
+fn write_apng(writer: &mut png::Writer<File>, pixels: &[u8], part: Rectangle) -> io::Result<()> {
     // First to the corner, where any dimension is valid.
     writer.reset_frame_position()?;
     writer.set_frame_dimension(part.width, part.height)?;
     writer.set_frame_position(part.left, part.top)?;
-    writer.write_image_data(pixels)
+    Ok(writer.write_image_data(pixels)?)
 }
 
 /// Writes one rectangle as a frame of a GIF.
@@ -213,25 +209,22 @@ fn write_gif(
 /// The smallest rectangle around all pixels in which two pictures of this width differ; one pixel for
 /// equal pictures, since no frame can be empty.
 fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
-    let mut columns = width..0;
-    let mut rows: Option<std::ops::RangeInclusive<usize>> = None;
+    let height = after.len() / (3 * width);
+    let (mut rows, mut columns) = (height..0, width..0);
     let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
     for (y, (a, b)) in lines.enumerate().filter(|(_, (a, b))| a != b) {
-        rows = Some(rows.map_or(y, |rows| *rows.start())..=y);
+        // The first and the last pixel of the row that differ; there are some, since the rows do.
         let differs = |x: &usize| a[3 * x..3 * x + 3] != b[3 * x..3 * x + 3];
         let first = (0..width).find(differs).unwrap_or(0);
         let last = (0..width).rfind(differs).unwrap_or(0);
         columns = columns.start.min(first)..columns.end.max(last + 1);
+        rows = rows.start.min(y)..y + 1;
     }
-    match rows {
-        None => Rectangle { left: 0, top: 0, width: 1, height: 1 },
-        Some(rows) => Rectangle {
-            left: columns.start as u32,
-            top: *rows.start() as u32,
-            width: columns.len() as u32,
-            height: (rows.end() - rows.start() + 1) as u32,
-        },
+    if rows.is_empty() {
+        return Rectangle { left: 0, top: 0, width: 1, height: 1 };
     }
+    let [left, top] = [columns.start, rows.start].map(|x| x as u32);
+    Rectangle { left, top, width: columns.len() as u32, height: rows.len() as u32 }
 }
 
 /// The bytes of a rectangle of a picture of this width.

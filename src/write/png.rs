@@ -29,11 +29,13 @@ pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
 /// Views other than beauty are black where nothing is hit.
 pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
     let byte = |x: f32| (x * 255.0).round() as u8;
+    // The range of the depths, which is mapped to greys.
     let depths = || film.pixels.iter().map(|p| p[0]).filter(|z| z.is_finite());
     let (near, far) = match film.view {
         View::Depth => depths().fold((f32::MAX, 0.0f32), |(a, b), z| (a.min(z), b.max(z))),
         _ => (0.0, 1.0),
     };
+    // The colour of a pixel, by the view.
     let table = (film.view == View::Beauty).then(|| ByteTable::new(settings));
     let color = |pixel: &[f32; 3]| match film.view {
         View::Beauty => pixel.map(|x| table.as_ref().map_or(0, |table| table.byte(x))),
@@ -44,6 +46,7 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Id if pixel[0] == 0.0 => [0; 3],
         View::Id => id_color(pixel.map(|x| x as u32)),
     };
+    // All pixels, on all threads.
     let mut bytes = vec![0; film.pixels.len() * 3];
     let (triples, _) = bytes.as_chunks_mut::<3>();
     triples.par_iter_mut().zip(&film.pixels).with_min_len(GRAIN).for_each(|(to, pixel)| {

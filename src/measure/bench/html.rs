@@ -7,7 +7,8 @@ use image::ImageEncoder;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use rayon::prelude::*;
 
-use super::report::{BenchReport, ModeImage, ParetoRank, Row, SkippedMode};
+use super::machine::Machine;
+use super::report::{BenchReport, ModeImage, ParetoRank, ReferenceSummary, Row, SkippedMode};
 use crate::error::{Error, Result};
 
 /// The style sheet, for light and dark mode.
@@ -47,12 +48,17 @@ reference in its place. Modes that render the same bytes share an image.";
 /// # Errors
 /// When an image cannot be encoded.
 pub fn html(report: &BenchReport, svg: &str) -> Result<String> {
-    let BenchReport { machine, reference, size: [width, height], .. } = report;
-    let name = escape(&report.scene);
+    // The report, with the names of files and of the system escaped.
+    let BenchReport { camera, threads, machine, reference, size: [width, height], .. } = report;
+    let ReferenceSummary { spp, build_ms, render_ms, .. } = reference;
+    let Machine { threads: logical, envers, .. } = machine;
+    let [name, reference] = [&report.scene, &reference.mode].map(|name| escape(name));
+    let [processor, system] = [&machine.processor, &machine.system].map(|name| escape(name));
     // Within a page the plot needs no name space, and fits the column.
     let svg = svg.replace(r#" xmlns="http://www.w3.org/2000/svg""#, "");
     let cores = machine.cores.map_or(String::new(), |cores| format!("{cores} cores, "));
     let embree = machine.embree.as_ref().map_or("none".to_owned(), |version| escape(version));
+    // The images as data URIs, of which the first is the reference.
     let encoded = report.images.par_iter().map(|image| DataUris::new(image, report.size));
     let encoded = encoded.collect::<Result<Vec<_>>>()?;
     let figures = report.images.iter().zip(&encoded).skip(1);
@@ -80,8 +86,8 @@ img, .flip {{ image-rendering: {rendering}; }}
 <p>{RANKS}</p>
 <p>{COLUMNS}</p>
 {skipped}<h2>Reference</h2>
-<p><b>{reference_name}</b>: certified hits, {reference_spp} samples per pixel; built in {build:.0} ms and
-rendered in {render:.0} ms, once. Its hits equal those of exact arithmetic, on either backend. Its
+<p><b>{reference}</b>: certified hits, {spp} samples per pixel; built in {build_ms:.0} ms and
+rendered in {render_ms:.0} ms, once. Its hits equal those of exact arithmetic, on either backend. Its
 samples are limited in number, so the error of a mode with nearly as many is underestimated.</p>
 <h2>Machine</h2>
 <table class="facts">
@@ -101,22 +107,12 @@ samples are limited in number, so the error of a mode with nearly as many is und
 {figures}</body>
 </html>
 "#,
-        camera = report.camera,
-        threads = report.threads,
         picture = encoded[0].image,
         // A picture that is scaled down needs smoothing; one that is scaled up keeps its pixels.
         rendering = if *width > SHOWN_WIDTH { "auto" } else { "pixelated" },
         table = table(&report.modes),
         skipped = skipped(&report.skipped),
-        reference_name = escape(&reference.mode),
-        reference_spp = reference.spp,
-        build = reference.build_ms,
-        render = reference.render_ms,
-        processor = escape(&machine.processor),
-        logical = machine.threads,
         features = machine.features.join(", "),
-        envers = machine.envers,
-        system = escape(&machine.system),
     ))
 }
 
@@ -129,20 +125,13 @@ fn table(rows: &[Row]) -> String {
     for r in rows {
         let by = r.dominated_by.as_ref().map_or(String::new(), |by| format!(" by {}", escape(by)));
         let class = if r.rank == ParetoRank::Front { " class=\"front\"" } else { "" };
+        let Row { runs, build_ms, render_ms, total_ms, rmse, max, flip, wrong_hits, .. } = r;
+        let (mode, rank) = (escape(&r.mode), r.rank.name());
         let _ = writeln!(
             html,
-            "<tr{class}><td>{}</td><td>{}</td><td>{:.1}</td><td>{:.1}</td><td>{:.1}</td>\
-             <td>{:.2e}</td><td>{:.2e}</td><td>{:.5}</td><td>{}</td><td>{}{by}</td></tr>",
-            escape(&r.mode),
-            r.runs,
-            r.build_ms,
-            r.render_ms,
-            r.total_ms,
-            r.rmse,
-            r.max,
-            r.flip,
-            r.wrong_hits,
-            r.rank.name()
+            "<tr{class}><td>{mode}</td><td>{runs}</td><td>{build_ms:.1}</td><td>{render_ms:.1}</td>\
+             <td>{total_ms:.1}</td><td>{rmse:.2e}</td><td>{max:.2e}</td><td>{flip:.5}</td>\
+             <td>{wrong_hits}</td><td>{rank}{by}</td></tr>"
         );
     }
     html + "</table></div>"

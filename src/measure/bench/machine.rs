@@ -49,16 +49,14 @@ impl Machine {
 /// Returns the names of the instruction sets that the processor supports.
 #[cfg(target_arch = "x86_64")]
 fn features() -> Vec<&'static str> {
-    [
+    let sets = [
         ("SSE4.2", is_x86_feature_detected!("sse4.2")),
         ("AVX", is_x86_feature_detected!("avx")),
         ("FMA", is_x86_feature_detected!("fma")),
         ("AVX2", is_x86_feature_detected!("avx2")),
         ("AVX-512", is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")),
-    ]
-    .into_iter()
-    .filter_map(|(name, is_supported)| is_supported.then_some(name))
-    .collect()
+    ];
+    sets.into_iter().filter_map(|(name, is_supported)| is_supported.then_some(name)).collect()
 }
 
 /// Returns the names of the instruction sets that this build uses.

@@ -139,6 +139,7 @@ pub fn run(
             done.set(done.get() + f64::from(mode.samples.max_spp()));
             progress((done.get() / total) as f32);
         };
+        // Each round runs every mode once, so that what slows the machine slows all.
         let mut runs: Vec<SetupRuns> =
             options.setups.iter().map(|&setup| SetupRuns::new(scene, options, setup)).collect();
         for _ in 0..options.runs {

@@ -50,11 +50,8 @@ impl Setup {
         let mut setups = Vec::new();
         for (backend, qualities) in builds {
             for precision in [Precision::Fast, Precision::Certified] {
-                setups.extend(qualities.iter().map(|&quality| Self {
-                    backend,
-                    precision,
-                    quality,
-                }));
+                let setup = |&quality: &_| Self { backend, precision, quality };
+                setups.extend(qualities.iter().map(setup));
             }
         }
         setups
@@ -73,9 +70,8 @@ impl Setup {
     pub fn build<'s>(&self, scene: &'s Scene) -> Result<Box<dyn Intersector + 's>> {
         let threads = rayon::current_num_threads();
         let quality = self.quality.unwrap_or(BuildQuality::Medium);
-        IntersectorBuilder::new(self.backend, self.precision, threads)
-            .with_quality(quality)
-            .build(scene)
+        let builder = IntersectorBuilder::new(self.backend, self.precision, threads);
+        builder.with_quality(quality).build(scene)
     }
 }
 

@@ -76,15 +76,14 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
     for (setup, color) in rows.chunk_by(|a, b| a.setup() == b.setup()).zip(COLORS.iter().cycle()) {
         let color = *color;
         chart
-            .draw_series(LineSeries::new(curve(setup, &position), color.stroke_width(1)))?
+            .draw_series(LineSeries::new(curve(setup.iter(), &position), color.stroke_width(1)))?
             .label(setup[0].setup())
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
         let ranked = |rank| setup.iter().filter(move |r| r.rank == rank).map(position);
         let (disc, ring) = (color.filled(), color.stroke_width(2));
-        chart.draw_series(ranked(ParetoRank::Front).map(|p| Circle::new(p, RADIUS, disc)))?;
-        chart.draw_series(
-            ranked(ParetoRank::FewerWrongHits).map(|p| Circle::new(p, RADIUS, ring)),
-        )?;
+        let [filled, open] = [disc, ring].map(|style| move |p| Circle::new(p, RADIUS, style));
+        chart.draw_series(ranked(ParetoRank::Front).map(filled))?;
+        chart.draw_series(ranked(ParetoRank::FewerWrongHits).map(open))?;
         chart.draw_series(ranked(ParetoRank::Dominated).map(|p| Cross::new(p, RADIUS, ring)))?;
         let above = text(13).color(&color).pos(Pos::new(HPos::Left, VPos::Bottom));
         let label = |row: &Row| {
@@ -95,20 +94,15 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
             EmptyElement::at(position(row)) + Text::new(label(row), (6, -6), above.clone())
         }))?;
     }
-    // The legend of the marks.
+    // The legend of the marks, which belong to no series.
+    let (disc, ring) = (DARK.filled(), DARK.stroke_width(2));
     let none = || std::iter::empty::<Circle<(f64, f64), i32>>();
-    chart
-        .draw_series(none())?
-        .label("on the front")
-        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.filled()));
-    chart
-        .draw_series(none())?
-        .label("behind the front, fewer wrong hits")
-        .legend(|(x, y)| Circle::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
-    chart
-        .draw_series(none())?
-        .label("dominated")
-        .legend(|(x, y)| Cross::new((x + 12, y), RADIUS, DARK.stroke_width(2)));
+    let label = chart.draw_series(none())?.label("on the front");
+    label.legend(move |(x, y)| Circle::new((x + 12, y), RADIUS, disc));
+    let label = chart.draw_series(none())?.label("behind the front, fewer wrong hits");
+    label.legend(move |(x, y)| Circle::new((x + 12, y), RADIUS, ring));
+    let label = chart.draw_series(none())?.label("dominated");
+    label.legend(move |(x, y)| Cross::new((x + 12, y), RADIUS, ring));
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::LowerLeft)
@@ -122,9 +116,12 @@ fn draw(svg: &mut String, report: &BenchReport) -> Result<(), Box<dyn std::error
     Ok(())
 }
 
-/// Returns the positions of a setup's modes, from the fastest to the slowest.
-fn curve(rows: &[Row], position: &dyn Fn(&Row) -> (f64, f64)) -> Vec<(f64, f64)> {
-    let mut points: Vec<_> = rows.iter().map(position).collect();
+/// Returns the positions of modes, from the fastest to the slowest.
+fn curve<'r>(
+    rows: impl Iterator<Item = &'r Row>,
+    position: &dyn Fn(&Row) -> (f64, f64),
+) -> Vec<(f64, f64)> {
+    let mut points: Vec<_> = rows.map(position).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
 }
@@ -138,11 +135,8 @@ fn front_steps(
     errors: &Range<f64>,
 ) -> Vec<(f64, f64)> {
     let on_front = rows.iter().filter(|row| row.rank == ParetoRank::Front);
-    let mut corners: Vec<(f64, f64)> = on_front.map(position).collect();
-    corners.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut error = errors.end;
-    let mut line = Vec::new();
-    for (x, y) in corners {
+    let (mut error, mut line) = (errors.end, Vec::new());
+    for (x, y) in curve(on_front, position) {
         line.extend([(x, error), (x, y)]);
         error = y;
     }

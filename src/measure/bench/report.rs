@@ -4,12 +4,11 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::BenchOptions;
-use super::machine::Machine;
 use super::mode::{Mode, Setup};
-use super::pareto::dominators;
-use super::reference::Reference;
+use super::reference::{ImageError, Reference};
 use super::runs::{ModeRuns, SetupRuns};
+use super::{BenchOptions, machine::Machine, pareto::dominators};
+use crate::measure::flip::Flip;
 use crate::scene::Scene;
 
 /// The results of a benchmark.
@@ -152,26 +151,23 @@ impl BenchReport {
         let bytes = reference.bytes;
         let mut images = vec![ModeImage { modes: Vec::new(), bytes, flip: Vec::new(), mean: 0.0 }];
         let (mut modes, mut skipped) = (Vec::new(), Vec::new());
-        for setup in setups {
-            for runs in &setup.modes {
-                match Row::new(runs, &setup) {
-                    Some(row) => modes.push(row),
-                    None => skipped.push(SkippedMode {
-                        mode: runs.mode.name(),
-                        reason: setup.skip_reason(&runs.mode),
-                    }),
-                }
-            }
-            for runs in setup.modes {
-                let (mode, Some(error)) = (runs.mode.name(), runs.error) else { continue };
-                match images[1..].iter_mut().find(|image| image.bytes == error.bytes) {
+        for mut setup in setups {
+            for runs in std::mem::take(&mut setup.modes) {
+                // A row, or the reason why there is none.
+                let mode = runs.mode.name();
+                let Some(row) = Row::new(&runs, &setup) else {
+                    skipped.push(SkippedMode { mode, reason: setup.skip_reason(&runs.mode) });
+                    continue;
+                };
+                modes.push(row);
+                // The image, with all modes that render the same one.
+                let Some(ImageError { bytes, flip: Flip { map: flip, mean }, .. }) = runs.error
+                else {
+                    continue;
+                };
+                match images[1..].iter_mut().find(|image| image.bytes == bytes) {
                     Some(image) => image.modes.push(mode),
-                    None => images.push(ModeImage {
-                        modes: vec![mode],
-                        bytes: error.bytes,
-                        flip: error.flip.map,
-                        mean: error.flip.mean,
-                    }),
+                    None => images.push(ModeImage { modes: vec![mode], bytes, flip, mean }),
                 }
             }
         }

@@ -107,16 +107,19 @@ impl<'a> SetupRuns<'a> {
         build: Duration,
         reference: &Reference,
     ) -> Result<()> {
+        // Render the picture, whose time also corrects the estimate for later modes.
         let mode = self.modes[index].mode;
         let scene = Scene { film: mode.samples.film(&self.scene.film), ..self.scene.clone() };
         let Traced { film, duration, .. } = self.render(&scene, intersector);
         if let Samples::Regular(spp) = mode.samples {
             self.sample_time = duration / spp;
         }
+        // The hits are those of the setup, whatever the number of samples.
         if self.wrong_hits.is_none() {
             let camera = self.options.camera;
             self.wrong_hits = Some(reference.wrong_hits(self.scene, camera, intersector));
         }
+        // Record the run, and compare its picture the first time.
         let runs = &mut self.modes[index];
         runs.renders.push(duration);
         runs.spent += build + duration;

@@ -20,8 +20,7 @@ mod tests;
 use glam::DVec3;
 
 use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, triangle};
-use crate::intersect::Precision;
-use crate::intersect::primitive::Primitives;
+use crate::intersect::{Precision, primitive::Primitives};
 use crate::scene::Scene;
 
 /// The explanation of a mismatch.
@@ -76,6 +75,7 @@ impl MismatchClassifier<'_> {
         a: Option<&Hit>,
         b: Option<&Hit>,
     ) -> Option<MismatchCause> {
+        // Two surfaces that lie so close together along the ray that either may be the first.
         let hits = || [a, b].into_iter().flatten();
         if let (Some(a), Some(b)) = (a, b) {
             let cosine = hits().map(|h| self.cosine(ray, h)).fold(1.0, f64::min);
@@ -85,6 +85,7 @@ impl MismatchClassifier<'_> {
                 return Some(MismatchCause::Tie);
             }
         }
+        // A sphere or a triangle that the ray meets in one answer only, and just so.
         if hits().any(|h| self.is_tangent(ray, h.id)) {
             return Some(MismatchCause::Tangency);
         }
@@ -96,6 +97,7 @@ impl MismatchClassifier<'_> {
     ///
     /// Tests every primitive, which is slow: mismatches are few.
     pub fn classify_occlusion(&self, ray: &Ray, is_occluded: bool) -> Option<MismatchCause> {
+        // All primitives that block light; one that certainly does decides.
         let mut cause = None;
         let spheres = (0..self.scene.spheres.len() as u32).map(PrimitiveId::sphere);
         let planes = (0..self.scene.planes.len() as u32).map(PrimitiveId::plane);
@@ -127,6 +129,7 @@ impl MismatchClassifier<'_> {
         if self.is_tangent(ray, id) {
             return Occlusion::Uncertain(MismatchCause::Tangency);
         }
+        // The hit on the unbounded ray, and where it lies relative to the ray's end.
         let primitives = Primitives { scene: self.scene, precision: Precision::Certified };
         let unbounded = Ray { tmax: f64::INFINITY, ..*ray };
         let Some(hit) = primitives.with_ray(&unbounded).primitive(id) else {
@@ -159,12 +162,15 @@ impl MismatchClassifier<'_> {
         }
         let corners = self.scene.triangle_vertices(id);
         let edges = triangle::EdgeFunctions::new(corners, ray.origin, ray.direction);
+        // Whether the line passes an edge within the margin, at the triangle and not beyond its corners.
         let margin = self.primitive_margin(ray, id);
+        let distances = edge_distances(&edges, corners, ray);
         let near_edge =
-            self.passes_near_edge(ray, id) && crosses_within(&edges, corners, ray, margin);
+            distances.iter().any(|d| *d <= margin) && crosses_within(&edges, distances, margin);
         if !edges.crosses() && !near_edge {
             return Occlusion::Clear;
         }
+        // The distance, relative to both ends of the ray.
         let hit = Hit { t: edges.t, u: 0.0, v: 0.0, id };
         let slack = self.t_margin(ray, &hit);
         if edges.t < -slack || edges.t > ray.tmax + slack {
@@ -239,16 +245,10 @@ fn occlusion_between_ends(ray: &Ray, t: f64, slack: f64) -> Occlusion {
     }
 }
 
-/// True if the line crosses the triangle enlarged by the margin: it passes each edge on the inner
-/// side, or outside by no more than the margin.
-fn crosses_within(
-    edges: &triangle::EdgeFunctions,
-    corners: [DVec3; 3],
-    ray: &Ray,
-    margin: f64,
-) -> bool {
+/// True if the line, at these distances from the edges, crosses the triangle enlarged by the margin: it
+/// passes each edge on the inner side, or outside by no more than the margin.
+fn crosses_within(edges: &triangle::EdgeFunctions, distances: [f64; 3], margin: f64) -> bool {
     let sign = (edges.values[0] + edges.values[1] + edges.values[2]).signum();
-    let distances = edge_distances(edges, corners, ray);
     edges.values.iter().zip(distances).all(|(f, d)| f * sign >= 0.0 || d <= margin)
 }
 

@@ -4,7 +4,7 @@
 use dashu_int::{IBig, Sign};
 use glam::DVec3;
 
-use super::integers::{IntegerVector, common_scale_of_vectors, cross, dot, sub};
+use super::integers::{IntegerVector, common_scale, cross, dot, sub};
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::scene::Scene;
 
@@ -88,9 +88,8 @@ fn extent(scene: &Scene, id: PrimitiveId) -> f64 {
 /// True if a ray from a point on a sphere goes into it by a chord of more than twice the slack.
 fn enters(scene: &Scene, id: PrimitiveId, point: DVec3, direction: DVec3, slack: f64) -> bool {
     let s = &scene.spheres[id.primitive as usize];
-    let ([center, point, slack], _) =
-        common_scale_of_vectors([s.center, point, DVec3::splat(slack)]);
-    let ([direction], _) = common_scale_of_vectors([direction]);
+    let ([center, point, slack], _) = common_scale([s.center, point, DVec3::splat(slack)]);
+    let ([direction], _) = common_scale([direction]);
     let depth = dot(&sub(&center, &point), &direction);
     depth > IBig::ZERO && &depth * &depth > &slack[0] * &slack[0] * dot(&direction, &direction)
 }
@@ -116,20 +115,18 @@ impl Contact {
             Geometry::Spheres => {
                 let s = &scene.spheres[index];
                 let all = [s.center, DVec3::splat(s.radius), point, slack];
-                let ([center, [radius, ..], point, [slack, ..]], _) = common_scale_of_vectors(all);
+                let ([center, [radius, ..], point, [slack, ..]], _) = common_scale(all);
                 Self { shape: ContactShape::Sphere { center, radius }, point, slack }
             }
             Geometry::Planes => {
                 let p = &scene.planes[index];
-                let ([on, point, [slack, ..]], _) =
-                    common_scale_of_vectors([p.point, point, slack]);
-                let ([normal], _) = common_scale_of_vectors([p.normal]);
+                let ([on, point, [slack, ..]], _) = common_scale([p.point, point, slack]);
+                let ([normal], _) = common_scale([p.normal]);
                 Self { shape: ContactShape::Plane { on, normal }, point, slack }
             }
             Geometry::Mesh(_) => {
                 let [a, b, c] = scene.triangle_vertices(id);
-                let ([a, b, c, point, [slack, ..]], _) =
-                    common_scale_of_vectors([a, b, c, point, slack]);
+                let ([a, b, c, point, [slack, ..]], _) = common_scale([a, b, c, point, slack]);
                 let normal = cross(&sub(&b, &a), &sub(&c, &a));
                 Self { shape: ContactShape::Triangle { corners: [a, b, c], normal }, point, slack }
             }
@@ -159,8 +156,8 @@ impl Contact {
     /// True if the surface, on which the point lies, is crossed by a ray along `direction` from the point
     /// displaced toward the viewer, and by far smaller steps along the axes.
     fn separates(&self, viewer: DVec3, direction: DVec3) -> bool {
-        let ([viewer], _) = common_scale_of_vectors([viewer]);
-        let ([direction], _) = common_scale_of_vectors([direction]);
+        let ([viewer], _) = common_scale([viewer]);
+        let ([direction], _) = common_scale([direction]);
         // In integers the displacement is v·2³ᴷ + (2²ᴷ, 2ᴷ, 1): with K large enough each term outweighs
         // those after it in any of the products below.
         let bits =

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, Sign, UBig};
 
-use super::integers::decode;
+use super::integers::{decode, significand};
 
 /// The least number of bits of an approximation.
 const BITS: usize = 130;
@@ -14,36 +14,25 @@ const BITS: usize = 130;
 #[derive(Clone, Debug)]
 pub struct ExactNumber {
     /// p.
-    rational: IBig,
+    pub(super) rational: IBig,
     /// The sign of the root; without meaning when q is 0.
-    root: Sign,
+    pub(super) root: Sign,
     /// q.
-    radicand: UBig,
+    pub(super) radicand: UBig,
     /// a, above 0.
-    denominator: IBig,
+    pub(super) denominator: IBig,
     /// k.
-    exponent: i64,
+    pub(super) exponent: i64,
 }
 
 impl ExactNumber {
     /// Returns numerator / denominator · 2^exponent.
     pub(super) fn quotient(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
-        let (numerator, denominator) = match denominator.sign() {
+        let (rational, denominator) = match denominator.sign() {
             Sign::Negative => (-numerator, -denominator),
             Sign::Positive => (numerator, denominator),
         };
-        Self::root(numerator, Sign::Positive, UBig::ZERO, denominator, exponent)
-    }
-
-    /// Returns (rational ± √radicand) / denominator · 2^exponent, with a denominator above 0.
-    pub(super) fn root(
-        rational: IBig,
-        root: Sign,
-        radicand: UBig,
-        denominator: IBig,
-        exponent: i64,
-    ) -> Self {
-        Self { rational, root, radicand, denominator, exponent }
+        Self { rational, root: Sign::Positive, radicand: UBig::ZERO, denominator, exponent }
     }
 
     /// Returns the least positive float.
@@ -160,6 +149,7 @@ impl ExactNumber {
         if below == f64::MAX {
             return below;
         }
+        // The middle between the two neighbours, which has one bit more.
         let (mantissa, exponent) = significand(below);
         let middle = IBig::from(2 * mantissa + 1);
         let up = match self.compare_dyadic(&middle, exponent - 1) {
@@ -179,6 +169,7 @@ impl ExactNumber {
     pub fn ulps_from(&self, x: f64) -> f64 {
         let (mantissa, exponent) = self.approximate();
         let ulp = (exponent + mantissa.bit_len() as i64 - 53).max(-1074);
+        // Both numbers in units of the smaller power of two.
         let (x, x_exponent) = decode(x);
         let low = exponent.min(if x == 0 { exponent } else { x_exponent });
         let shift = if x == 0 { 0 } else { (x_exponent - low) as usize };
@@ -186,12 +177,6 @@ impl ExactNumber {
             (IBig::from(x) << shift) - (IBig::from(mantissa) << (exponent - low) as usize);
         truncate(&difference.unsigned_abs(), low - ulp)
     }
-}
-
-/// Returns the significand, hidden bit included, and the exponent of a float ≥ 0.
-fn significand(x: f64) -> (u64, i64) {
-    let (stored, fraction) = (x.to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
-    if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored as i64 - 1075) }
 }
 
 /// Returns mantissa · 2^exponent, truncated to 53 bits; at most `f64::MAX`.
@@ -222,6 +207,10 @@ mod tests {
         ExactNumber::quotient(IBig::from(n), IBig::from(d), exponent)
     }
 
+    fn root(rational: IBig, root: Sign, radicand: UBig) -> ExactNumber {
+        ExactNumber { rational, root, radicand, denominator: IBig::from(1), exponent: 0 }
+    }
+
     #[test]
     fn quotients_round_as_the_processor_rounds() {
         for (n, d) in [(1, 3), (2, 3), (10, 7), (1, 1 << 40), (i64::MAX >> 11, 3), (-5, -9)] {
@@ -232,8 +221,7 @@ mod tests {
     #[test]
     fn square_root_rounds_as_the_processor_rounds() {
         for n in [2u64, 3, 5, 1 << 50, (1 << 53) - 1] {
-            let root =
-                ExactNumber::root(IBig::ZERO, Sign::Positive, UBig::from(n), IBig::from(1), 0);
+            let root = root(IBig::ZERO, Sign::Positive, UBig::from(n));
             assert_eq!(root.to_f64(), (n as f64).sqrt(), "{n}");
         }
     }
@@ -260,7 +248,7 @@ mod tests {
         // 10^17 − √(10^34 − 1) = 5·10^-18 (1 + 2.5·10^-35 …).
         let p = IBig::from(10u64).pow(17);
         let q = (&p * &p - IBig::from(1)).unsigned_abs();
-        let root = ExactNumber::root(p, Sign::Negative, q, IBig::from(1), 0);
+        let root = root(p, Sign::Negative, q);
         assert_eq!(root.to_f64(), 5e-18);
     }
 
@@ -282,8 +270,12 @@ mod tests {
 
     #[test]
     fn two_numbers_compare_exactly_where_they_round_alike() {
-        let root = |p: i64, sign, q: u64, a: i64, k| {
-            ExactNumber::root(IBig::from(p), sign, UBig::from(q), IBig::from(a), k)
+        let root = |p: i64, sign, q: u64, a: i64, k| ExactNumber {
+            rational: IBig::from(p),
+            root: sign,
+            radicand: UBig::from(q),
+            denominator: IBig::from(a),
+            exponent: k,
         };
         let (plus, minus) = (Sign::Positive, Sign::Negative);
         let pairs = [

@@ -6,27 +6,15 @@ use glam::DVec3;
 /// A vector of integers, in units of a power of two that is stored elsewhere.
 pub type IntegerVector = [IBig; 3];
 
-/// Returns integers `n` and one exponent `e`, so that each float is its n · 2^e.
-///
-/// # Panics
-/// When a value is not finite.
-pub fn common_scale<const N: usize>(values: [f64; N]) -> ([IBig; N], i64) {
-    let exponent = least_exponent(values.into_iter());
-    (values.map(|x| integer(x, exponent)), exponent)
-}
-
 /// Returns vectors of integers and one exponent `e`, so that each coordinate is its n · 2^e.
 ///
 /// # Panics
 /// When a value is not finite.
-pub fn common_scale_of_vectors<const N: usize>(vectors: [DVec3; N]) -> ([IntegerVector; N], i64) {
-    let exponent = least_exponent(vectors.iter().flat_map(|v| v.to_array()));
+pub fn common_scale<const N: usize>(vectors: [DVec3; N]) -> ([IntegerVector; N], i64) {
+    // The least exponent of the coordinates that are not 0, of which all others are multiples.
+    let coordinates = vectors.iter().flat_map(|v| v.to_array()).filter(|x| *x != 0.0);
+    let exponent = coordinates.map(|x| decode(x).1).min().unwrap_or(0);
     (vectors.map(|v| v.to_array().map(|x| integer(x, exponent))), exponent)
-}
-
-/// Returns the least exponent of the floats that are not 0, as [`decode`] defines it.
-fn least_exponent(values: impl Iterator<Item = f64>) -> i64 {
-    values.filter(|x| *x != 0.0).map(|x| decode(x).1).min().unwrap_or(0)
 }
 
 /// Returns x / 2^exponent, for an exponent that makes this an integer.
@@ -41,18 +29,20 @@ fn integer(x: f64, exponent: i64) -> IBig {
 /// When `x` is not finite.
 pub fn decode(x: f64) -> (i64, i64) {
     assert!(x.is_finite(), "the oracle needs finite numbers, not {x}");
-    let bits = x.to_bits();
-    let stored = (bits >> 52 & 0x7ff) as i64;
-    let fraction = (bits & ((1 << 52) - 1)) as i64;
-    // A subnormal has no hidden bit, and the exponent of the least normal number.
-    let (mantissa, exponent) =
-        if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored - 1075) };
+    let (mantissa, exponent) = significand(x.abs());
     if mantissa == 0 {
         return (0, 0);
     }
     let zeros = mantissa.trailing_zeros();
     let sign = if x < 0.0 { -1 } else { 1 };
-    (sign * (mantissa >> zeros), exponent + i64::from(zeros))
+    (sign * (mantissa >> zeros) as i64, exponent + i64::from(zeros))
+}
+
+/// Returns the significand, hidden bit included, and the exponent of a float ≥ 0.
+pub fn significand(x: f64) -> (u64, i64) {
+    let (stored, fraction) = (x.to_bits() >> 52, x.to_bits() & ((1 << 52) - 1));
+    // A subnormal has no hidden bit, and the exponent of the least normal number.
+    if stored == 0 { (fraction, -1074) } else { (fraction | 1 << 52, stored as i64 - 1075) }
 }
 
 /// Returns a − b.

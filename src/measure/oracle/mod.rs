@@ -23,7 +23,7 @@ use crate::geometry::Ray;
 pub use exact_number::ExactNumber;
 pub use intersector::Oracle;
 
-use integers::{IntegerVector, common_scale, common_scale_of_vectors, cross, decode, dot, sub};
+use integers::{IntegerVector, common_scale, cross, decode, dot, sub};
 
 /// The point at which a ray crosses a triangle.
 #[derive(Clone, Debug)]
@@ -55,12 +55,14 @@ pub fn sphere(center: DVec3, radius: f64, ray: &Ray, leaving_inward: bool) -> Op
 ///
 /// The point is exact; the distance is rounded to about 15 digits.
 pub fn signed_distance(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
-    let ([center, origin], scale) = common_scale_of_vectors([center, ray.origin]);
-    let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
+    // The point's way from the ray's origin: t times the direction.
+    let ([center, origin], scale) = common_scale([center, ray.origin]);
+    let ([direction], direction_scale) = common_scale([ray.direction]);
     let (t, t_scale) = decode(t);
     let (r, r_scale) = decode(radius);
     let way = direction.map(|x| x * IBig::from(t));
     let way_scale = direction_scale + t_scale;
+    // The point relative to the centre, and the radius, in the same units.
     let low = scale.min(way_scale).min(r_scale);
     let lift = |x: &IBig, from: i64| x << (from - low) as usize;
     let from_center: IntegerVector =
@@ -78,9 +80,9 @@ pub fn signed_distance(center: DVec3, radius: f64, ray: &Ray, t: f64) -> f64 {
 /// Returns where the ray hits the plane through `point` with a `normal` of any length, at
 /// 0 < t < `ray.tmax`; a ray parallel to the plane does not hit it.
 pub fn plane(point: DVec3, normal: DVec3, ray: &Ray) -> Option<ExactNumber> {
-    let ([point, origin], scale) = common_scale_of_vectors([point, ray.origin]);
-    let ([normal], _) = common_scale_of_vectors([normal]);
-    let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
+    let ([point, origin], scale) = common_scale([point, ray.origin]);
+    let ([normal], _) = common_scale([normal]);
+    let ([direction], direction_scale) = common_scale([ray.direction]);
     let toward = dot(&normal, &direction);
     if toward.is_zero() {
         return None;
@@ -133,8 +135,8 @@ struct RayTriangle {
 
 impl RayTriangle {
     fn new([a, b, c]: [DVec3; 3], ray: &Ray) -> Self {
-        let ([a, b, c, origin], scale) = common_scale_of_vectors([a, b, c, ray.origin]);
-        let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
+        let ([a, b, c, origin], scale) = common_scale([a, b, c, ray.origin]);
+        let ([direction], direction_scale) = common_scale([ray.direction]);
         let normal = cross(&sub(&b, &a), &sub(&c, &a));
         let (toward, away) = (dot(&direction, &normal), dot(&normal, &sub(&a, &origin)));
         let exponent = scale - direction_scale;
@@ -164,10 +166,8 @@ impl Edge {
         let function = dot(direction, &cross(&sub(p, origin), &sub(q, origin)));
         // Moving the origin by δ adds δ · (d × (q − p)); a lower power of ε outweighs a higher one.
         let shift = cross(direction, &sub(q, p));
-        let side = std::iter::once(&function)
-            .chain(&shift)
-            .find(|x| !x.is_zero())
-            .map_or(Sign::Positive, IBig::sign);
+        let mut powers = std::iter::once(&function).chain(&shift);
+        let side = powers.find(|x| !x.is_zero()).map_or(Sign::Positive, IBig::sign);
         Self { function, side }
     }
 }
@@ -185,11 +185,10 @@ struct Quadratic {
 impl Quadratic {
     /// Sets up the equation; none if the line misses the sphere.
     fn new(center: DVec3, radius: f64, ray: &Ray) -> Option<Self> {
-        let (c, o) = (center, ray.origin);
-        let (all, scale) = common_scale([c.x, c.y, c.z, o.x, o.y, o.z, radius]);
-        let [cx, cy, cz, ox, oy, oz, radius] = all;
-        let ([direction], direction_scale) = common_scale_of_vectors([ray.direction]);
-        let to_center = [cx - ox, cy - oy, cz - oz];
+        let ([center, origin, [radius, ..]], scale) =
+            common_scale([center, ray.origin, DVec3::splat(radius)]);
+        let ([direction], direction_scale) = common_scale([ray.direction]);
+        let to_center = sub(&center, &origin);
         let a = dot(&direction, &direction);
         let h = dot(&to_center, &direction);
         let c = dot(&to_center, &to_center) - &radius * &radius;
@@ -198,9 +197,10 @@ impl Quadratic {
         crosses.then(|| Self { a, h, discriminant, exponent: scale - direction_scale })
     }
 
-    fn root(&self, which: Sign) -> ExactNumber {
+    fn root(&self, root: Sign) -> ExactNumber {
+        let (rational, denominator) = (self.h.clone(), self.a.clone());
         let radicand = self.discriminant.clone().unsigned_abs();
-        ExactNumber::root(self.h.clone(), which, radicand, self.a.clone(), self.exponent)
+        ExactNumber { rational, root, radicand, denominator, exponent: self.exponent }
     }
 }
 

@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::random::Random;
-use super::report::{CaseStats, Row};
+use super::{CaseStats, Row, random::Random};
 use crate::error::Result;
 
 /// The number of rays that are generated and traced together.

@@ -2,9 +2,7 @@
 
 use glam::DVec3;
 
-use super::case::Case;
-use super::random::Random;
-use super::report::CaseStats;
+use super::{CaseStats, case::Case, random::Random};
 use crate::geometry::{Ray, triangle};
 use crate::measure::oracle;
 
@@ -17,34 +15,28 @@ const DISTANCES: [f64; 3] = [10.0, 100.0, 1000.0];
 /// The largest error of a barycentric weight that passes: four units in the last place of 1.
 const MAX_WEIGHT_ERROR: f64 = 4.0 * f64::EPSILON;
 
+/// A check of a triangle and a ray against the oracle.
+type Check = fn([DVec3; 3], &Ray, &mut CaseStats);
+
+/// The methods that are tested, with the largest errors that pass: in ulp, and relative.
+const METHODS: [(&str, f64, f64, Check); 2] =
+    [("certified", 0.5, 0.0, check_certified), ("fast: t of the plane", 0.0, 1e-10, check_fast)];
+
 /// Returns the cases.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for (aspect, angle) in ASPECTS.into_iter().flat_map(|a| ANGLES.map(|b| (a, b))) {
-        let name = format!("aspect {aspect:.0e}, angle {angle:.0e}");
-        let kinds = DISTANCES.len() as u64;
-        cases.push(Case {
-            kinds,
-            max_ulp: 0.5,
-            ..Case::new(name.clone(), "certified", move |sampler| {
+        for (method, max_ulp, max_relative, check) in METHODS {
+            let name = format!("aspect {aspect:.0e}, angle {angle:.0e}");
+            let case = Case::new(name, method, move |sampler| {
                 Ok(sampler.for_each_ray(|index, random, stats| {
                     let distance = DISTANCES[index as usize % DISTANCES.len()];
                     let (corners, ray) = sample_ray(aspect, angle, distance, random);
-                    check_certified(corners, &ray, stats);
+                    check(corners, &ray, stats);
                 }))
-            })
-        });
-        cases.push(Case {
-            kinds,
-            max_relative: 1e-10,
-            ..Case::new(name, "fast: t of the plane", move |sampler| {
-                Ok(sampler.for_each_ray(|index, random, stats| {
-                    let distance = DISTANCES[index as usize % DISTANCES.len()];
-                    let (corners, ray) = sample_ray(aspect, angle, distance, random);
-                    check_fast(corners, &ray, stats);
-                }))
-            })
-        });
+            });
+            cases.push(Case { kinds: DISTANCES.len() as u64, max_ulp, max_relative, ..case });
+        }
     }
     cases
 }
@@ -61,9 +53,11 @@ fn sample_ray(aspect: f64, angle: f64, distance: f64, random: &mut Random) -> ([
     if random.coin() {
         weights[random.below(3)] = random.pick(&[1.0, -1.0]) * random.power_of_ten(-16.0, -2.0);
     }
+    // Weights that nearly cancel are not divided by their sum: the target would be far away.
     let sum = weights.iter().sum::<f64>();
     let sum = if sum.abs() < 0.1 { 1.0 } else { sum };
     let target: DVec3 = corners.iter().zip(weights).map(|(c, w)| *c * (w / sum)).sum();
+    // The direction, at this angle to the plane and from either side of it.
     let heading = random.range(0.0, std::f64::consts::TAU);
     let flat = DVec3::new(heading.cos(), heading.sin(), 0.0) * angle.cos();
     let direction = flat + DVec3::Z * (angle.sin() * random.pick(&[1.0, -1.0]));
@@ -76,10 +70,12 @@ fn sample_ray(aspect: f64, angle: f64, distance: f64, random: &mut Random) -> ([
 fn check_certified(corners: [DVec3; 3], ray: &Ray, stats: &mut CaseStats) {
     let exact = oracle::triangle(corners, ray);
     let found = triangle::certified::crossing(corners, ray.origin, ray.direction, ray.tmax);
+    // The estimate, with its bound, must allow for the exact distance.
     if let Some(exact) = &exact {
         let estimate = triangle::certified::estimate(corners, ray.origin, ray.direction);
         stats.count_wrong(estimate.is_outside(exact.t.to_f64().next_up()));
     }
+    // The crossing itself: hit or miss, the distance and the weights.
     match (&exact, found) {
         (None, None) => {}
         (Some(exact), Some(found)) => {
@@ -89,6 +85,7 @@ fn check_certified(corners: [DVec3; 3], ray: &Ray, stats: &mut CaseStats) {
         }
         _ => stats.misclassified += 1,
     }
+    // The formula of precision `fast`, for comparison.
     let plucker = triangle::intersect(corners, ray.origin, ray.direction)
         .filter(|hit| hit.t > 0.0 && hit.t < ray.tmax);
     stats.count_fast(match (&exact, plucker) {

@@ -3,11 +3,11 @@
 
 use std::ops::RangeInclusive;
 
-use glam::{DAffine3, DMat3, DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
+use super::CaseStats;
 use super::case::{Case, RaySampler};
-use super::meshes::{icosphere, torus};
-use super::report::CaseStats;
+use super::meshes::{BACKENDS, icosphere, torus};
 use crate::error::Result;
 use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
@@ -35,29 +35,27 @@ const TILINGS: [Tiling; 4] = [
 /// Returns the cases.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for backend in backends() {
-        let method = format!("certified, {}", name(backend));
-        let options = move |threads, tiling| {
-            let precision = Precision::Certified;
-            RenderOptions { backend, precision, threads, tiling, ..RenderOptions::default() }
-        };
-        let default = move || options(0, Tiling::default());
+    for &(backend, name) in BACKENDS {
+        let method = format!("certified, {name}");
+        // Variants of the scene's scale, of the number of threads and of the tiling.
         for exponents in SCALE_EXPONENTS {
             let name = format!("scaled by 2^{} … 2^{}", exponents.start(), exponents.end());
             cases.push(Case::new(name, &*method, move |sampler| {
-                compare_variants(sampler, &default(), |scene| {
-                    exponents.clone().map(|k| (scaled(scene, k), default())).collect()
+                compare_variants(sampler, backend, |scene, options| {
+                    exponents.clone().map(|k| (scaled(scene, k), options.clone())).collect()
                 })
             }));
         }
         cases.push(Case::new("on 1, 2 and 5 threads", &*method, move |sampler| {
-            compare_variants(sampler, &default(), |scene| {
-                THREADS.map(|n| (scene.clone(), options(n, Tiling::default()))).into()
+            compare_variants(sampler, backend, |scene, options| {
+                let on = |threads| RenderOptions { threads, ..options.clone() };
+                THREADS.map(|threads| (scene.clone(), on(threads))).into()
             })
         }));
         cases.push(Case::new("in any tiles", &*method, move |sampler| {
-            compare_variants(sampler, &default(), |scene| {
-                TILINGS.map(|tiling| (scene.clone(), options(0, tiling))).into()
+            compare_variants(sampler, backend, |scene, options| {
+                let tiled = |tiling| RenderOptions { tiling, ..options.clone() };
+                TILINGS.map(|tiling| (scene.clone(), tiled(tiling))).into()
             })
         }));
     }
@@ -68,46 +66,26 @@ pub fn cases() -> Vec<Case> {
 /// be the same.
 fn compare_variants(
     sampler: &RaySampler,
-    options: &RenderOptions,
-    variants: impl Fn(&Scene) -> Vec<(Scene, RenderOptions)>,
+    backend: Backend,
+    variants: impl Fn(&Scene, &RenderOptions) -> Vec<(Scene, RenderOptions)>,
 ) -> Result<CaseStats> {
-    let scene = scene(side(sampler));
-    let variants = variants(&scene);
+    // Square pictures, of as many pixels together as the case has rays.
+    let side = (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32;
+    let scene = scene(side);
+    let options =
+        RenderOptions { backend, precision: Precision::Certified, ..RenderOptions::default() };
+    let variants = variants(&scene, &options);
     let mut stats = CaseStats::default();
     for camera in 0..scene.cameras.len() {
-        let (expected, _) = picture(&scene, options, camera)?;
+        let (expected, _) = picture(&scene, &options, camera)?;
         for (scene, options) in &variants {
             let (found, rays) = picture(scene, options, camera)?;
             stats.rays += rays;
-            let pixels = expected.chunks(3).zip(found.chunks(3));
-            stats.misclassified += pixels.filter(|(a, b)| a != b).count() as u64;
+            stats.count_different(expected.as_chunks::<3>().0, found.as_chunks::<3>().0);
             stats.count_wrong(expected.len() != found.len());
         }
     }
     Ok(stats)
-}
-
-/// Returns the backends of this build.
-fn backends() -> Vec<Backend> {
-    vec![
-        #[cfg(feature = "embree")]
-        Backend::Embree,
-        Backend::Rust,
-    ]
-}
-
-/// Returns the name of a backend in the report.
-fn name(backend: Backend) -> &'static str {
-    match backend {
-        #[cfg(feature = "embree")]
-        Backend::Embree => "embree",
-        Backend::Rust => "bvh",
-    }
-}
-
-/// Returns the side in pixels of the square pictures of a case.
-fn side(sampler: &RaySampler) -> u32 {
-    (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32
 }
 
 /// Renders a picture; returns the bytes of its PNG, and the number of rays.
@@ -121,14 +99,13 @@ fn picture(scene: &Scene, options: &RenderOptions, camera: usize) -> Result<(Vec
 fn scene(side: u32) -> Scene {
     let mut scene = Scene::default();
     scene.film.size = [side, side];
-    let glossy =
-        Material { diffuse: Vec3::new(0.3, 0.5, 0.8), specular: Vec3::ONE, ..<_>::default() };
-    let glossy = scene.add_material(glossy);
-    let matt = scene.add_material(Material::default());
+    // One material of each kind.
+    let (diffuse, absorption) = (Vec3::new(0.3, 0.5, 0.8), Vec3::new(1.0, 0.25, 0.0));
+    let glossy = Material { diffuse, specular: Vec3::ONE, ..<_>::default() };
     let mirror = Material { reflect: Vec3::new(0.9, 0.8, 0.6), ..<_>::default() };
-    let absorption = Vec3::new(1.0, 0.25, 0.0);
     let glass = Material { transmit: Vec3::ONE, absorption, ..<_>::default() };
-    let [mirror, glass] = [mirror, glass].map(|material| scene.add_material(material));
+    let [glossy, matt, mirror, glass] =
+        [glossy, Material::default(), mirror, glass].map(|material| scene.add_material(material));
     // Spheres and a plane.
     for i in 0..12 {
         let angle = f64::from(i) * 0.7;
@@ -188,12 +165,10 @@ fn scene(side: u32) -> Scene {
 fn scaled(scene: &Scene, k: i32) -> Scene {
     let by = f64::powi(2.0, k);
     let mut scene = scene.clone();
+    // Spheres, and planes with their checkerboards.
     for sphere in &mut scene.spheres {
         sphere.center *= by;
         sphere.radius *= by;
-    }
-    for material in &mut scene.materials {
-        material.absorption /= by as f32;
     }
     for plane in &mut scene.planes {
         plane.point *= by;
@@ -202,9 +177,12 @@ fn scaled(scene: &Scene, k: i32) -> Scene {
         }
     }
     for instance in &mut scene.instances {
-        let DAffine3 { matrix3, translation } = instance.transform;
-        let matrix3: DMat3 = matrix3 * by;
-        instance.transform = DAffine3 { matrix3, translation: translation * by };
+        instance.transform.matrix3 *= by;
+        instance.transform.translation *= by;
+    }
+    // Absorption is per unit of length, and light falls off with the square of the distance.
+    for material in &mut scene.materials {
+        material.absorption /= by as f32;
     }
     for light in &mut scene.lights {
         if let LightKind::Point { position, falloff, range }

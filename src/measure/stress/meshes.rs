@@ -5,23 +5,22 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::error::Result;
-use crate::intersect::{Bvh, Intersector, Precision};
+use crate::intersect::{Backend, Intersector, Precision};
 use crate::scene::{Mesh, Scene};
+
+/// The backends of this build, and their names in the report.
+pub const BACKENDS: &[(Backend, &str)] = &[
+    #[cfg(feature = "embree")]
+    (Backend::Embree, "embree"),
+    (Backend::Rust, "bvh"),
+];
 
 /// Builds the intersectors of this build for a scene.
 pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn Intersector + '_>>> {
-    let rust: Box<dyn Intersector> = Box::new(Bvh::build(scene, precision));
-    #[cfg(feature = "embree")]
-    let embree: Box<dyn Intersector> =
-        Box::new(crate::intersect::Embree::build(scene, precision, 1)?);
-    Ok(vec![
-        #[cfg(feature = "embree")]
-        embree,
-        rust,
-    ])
+    BACKENDS.iter().map(|(backend, _)| backend.build(scene, precision, 1)).collect()
 }
 
-/// The names of the intersectors of this build.
+/// The names of all backends of this build.
 pub const INTERSECTORS: &str = if cfg!(feature = "embree") { "embree and bvh" } else { "bvh" };
 
 /// Returns a mesh of vertices rounded to f32.
@@ -32,6 +31,7 @@ fn mesh(name: &str, positions: &[DVec3], triangles: Vec<[u32; 3]>) -> Mesh {
 
 /// Returns a sphere of radius 1: an icosahedron whose triangles are divided in four, `level` times.
 pub fn icosphere(level: u32) -> Mesh {
+    // The twelve vertices of an icosahedron: the corners of three golden rectangles.
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut positions: Vec<DVec3> = [0, 1, 2]
         .into_iter()
@@ -57,6 +57,7 @@ pub fn icosphere(level: u32) -> Mesh {
             }
         }
     }
+    // Each triangle becomes four, by the middles of its edges, which its neighbours share.
     for _ in 0..level {
         let mut middles = HashMap::new();
         let mut middle = |a: u32, b: u32| {
@@ -82,6 +83,7 @@ pub fn cube(n: u32) -> Mesh {
     let (mut positions, mut triangles) = (Vec::new(), Vec::new());
     let mut indices = HashMap::new();
     for (axis, side) in (0..3).flat_map(|axis| [(axis, 0), (axis, n)]) {
+        // The vertices of a face, of which those on the cube's edges belong to its neighbours as well.
         let mut vertex = |i: u32, j: u32| {
             let mut at = [0; 3];
             (at[axis], at[(axis + 1) % 3], at[(axis + 2) % 3]) = (side, i, j);
@@ -91,6 +93,7 @@ pub fn cube(n: u32) -> Mesh {
                 positions.len() as u32 - 1
             })
         };
+        // The squares of a face, each two triangles that wind counterclockwise seen from outside.
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             let [a, b, c, d] =
                 [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| vertex(i, j));

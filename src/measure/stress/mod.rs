@@ -122,12 +122,15 @@ pub fn run(options: &StressOptions, progress: &dyn Fn(f32)) -> Result<Vec<Row>> 
         seed: options.seed,
         size: options.rays,
     };
+    // The cases of an earlier run under the same conditions.
     let mut finished = FinishedCases::open(options.resume.as_deref(), conditions)?;
+    // The cases of all sweeps, whose number tells the share that is done.
     let sweeps: Vec<(Goal, Vec<Case>)> =
         options.goals.iter().map(|goal| (*goal, goal.cases(options.method))).collect();
     let total: usize = sweeps.iter().map(|(_, cases)| cases.len()).sum();
     let mut rows = Vec::with_capacity(total);
     for (goal, cases) in &sweeps {
+        // A sweep of few cases tests more rays in each.
         let rays = options.rays.max((10 * options.rays).div_ceil(cases.len() as u64));
         for case in cases {
             let row = match finished.row(goal.name(), case) {

@@ -4,9 +4,7 @@ use glam::DVec3;
 use plotters::prelude::*;
 use rayon::prelude::*;
 
-use super::random::Random;
-use super::sphere_distance::{self, Method};
-use super::textbook;
+use super::{Method, random::Random, sphere_distance, textbook};
 use crate::error::{Error, Result};
 use crate::geometry::Ray;
 use crate::measure::oracle;
@@ -63,6 +61,7 @@ fn max_errors(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
     let mut errors = [0.0f64; CURVES.len()];
     let round = |v: DVec3, is_f32: bool| if is_f32 { v.as_vec3().as_dvec3() } else { v };
     for index in 0..rays {
+        // A ray at a disc a little larger than the sphere, so that it also meets the silhouette.
         let random = &mut Random::new(seed, &format!("plot/{distance:e}"), index);
         let toward = random.direction();
         let center = toward * distance;
@@ -74,7 +73,7 @@ fn max_errors(distance: f64, seed: u64, rays: u64) -> [f64; CURVES.len()] {
             let ray = Ray::new(DVec3::ZERO, direction);
             (center, ray, oracle::sphere(center, 1.0, &ray, false).is_some())
         });
-        // A curve for each formula.
+        // The error of each formula, if the ray hits the sphere of its arguments.
         for (i, Curve { method, is_f32, .. }) in CURVES.iter().enumerate() {
             let (center, ray, is_hit) = arguments[usize::from(*is_f32)];
             if !is_hit {
@@ -123,17 +122,14 @@ fn draw(
         .draw()?;
     // A curve for each formula.
     for (i, Curve { name, color, .. }) in CURVES.into_iter().enumerate() {
-        let points: Vec<(f64, f64)> = distances
-            .iter()
-            .zip(errors)
-            .map(|(d, e)| (*d, e[i]))
-            .filter(|(_, error)| *error > 0.0)
-            .collect();
+        let points = distances.iter().zip(errors).map(|(distance, errors)| (*distance, errors[i]));
+        let points = points.filter(|(_, error)| *error > 0.0);
         chart
             .draw_series(LineSeries::new(points, color.stroke_width(3)))?
             .label(name)
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 24, y)], color.stroke_width(3)));
     }
+    // The legend.
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperLeft)

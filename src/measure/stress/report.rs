@@ -57,11 +57,8 @@ fn larger_error(a: f64, b: f64) -> f64 {
 }
 
 /// Merges two values where both exist.
-fn merge_options<T>(a: Option<T>, b: Option<T>, merge: impl Fn(T, T) -> T) -> Option<T> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(merge(a, b)),
-        (a, b) => a.or(b),
-    }
+fn merge_options<T: Copy>(a: Option<T>, b: Option<T>, merge: impl Fn(T, T) -> T) -> Option<T> {
+    a.zip(b).map(|(a, b)| merge(a, b)).or(a).or(b)
 }
 
 impl BaselineStats {
@@ -84,6 +81,12 @@ impl CaseStats {
     /// Counts a result that may be wrong.
     pub fn count_wrong(&mut self, is_wrong: bool) {
         self.misclassified += u64::from(is_wrong);
+    }
+
+    /// Counts the results that differ from the expected ones.
+    pub fn count_different<T: PartialEq>(&mut self, found: &[T], expected: &[T]) {
+        let different = found.iter().zip(expected).filter(|(found, expected)| found != expected);
+        self.misclassified += different.count() as u64;
     }
 
     /// Counts the error of a distance, in ulp.
@@ -138,6 +141,7 @@ const BASELINES: [BaselineColumn; 2] =
 
 /// Writes the table of one goal, with columns for the baselines that its cases have.
 fn write_goal(f: &mut fmt::Formatter<'_>, rows: &[Row]) -> fmt::Result {
+    // The columns are as wide as their contents; a baseline has one only if a case has it.
     let width = |text: fn(&Row) -> &str| {
         rows.iter().map(|row| text(row).chars().count()).max().unwrap_or(0)
     };
@@ -145,12 +149,14 @@ fn write_goal(f: &mut fmt::Formatter<'_>, rows: &[Row]) -> fmt::Result {
     let mut baselines = BASELINES.to_vec();
     baselines.retain(|(_, stats)| rows.iter().any(|row| stats(&row.stats).is_some()));
 
+    // The titles.
     write!(f, "goal  {:case$}  {:method$}", "case", "method")?;
     write!(f, "  {:>8}  {:>6}  {:>9}", "rays", "wrong", "max error")?;
     for (title, _) in &baselines {
         write!(f, "  {title:>BASELINE_WIDTH$}")?;
     }
     writeln!(f)?;
+    // The rows, without blanks at the end.
     for Row { goal, case: name, method: tested, stats, passed } in rows {
         let CaseStats { rays, misclassified, .. } = stats;
         let mut line = format!("{goal:4}  {name:case$}  {tested:method$}  {rays:>8}  ");

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::case::Case;
-use super::report::Row;
+use super::{Row, case::Case};
 use crate::error::{Error, Result};
 
 /// The conditions of a run, on which the results of its cases depend.
@@ -53,6 +52,7 @@ impl FinishedCases {
         };
         // A run that was killed may have left its last line incomplete.
         let (complete, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
+        // The rows of runs under the same conditions; others stay in the file.
         let mut rows = HashMap::new();
         let incomplete = Some(rest).filter(|rest| !rest.is_empty());
         for (i, line) in complete.lines().chain(incomplete).enumerate() {
@@ -65,21 +65,17 @@ impl FinishedCases {
                 Ok(_) => {}
                 Err(_) if incomplete == Some(line) && line.starts_with("{\"version\":") => {}
                 Err(e) => {
-                    return Err(Error::input(format!(
-                        "line {} is not a finished case: {e}",
-                        i + 1
-                    ))
-                    .at(path)
-                    .help("name a file of an earlier run, or one that does not exist"));
+                    let message = format!("line {} is not a finished case: {e}", i + 1);
+                    return Err(Error::input(message)
+                        .at(path)
+                        .help("name a file of an earlier run, or one that does not exist"));
                 }
             }
         }
-        let file = OpenOptions::new()
-            .append(true)
-            .create(true)
-            .open(path)
-            .and_then(|file| file.set_len(complete.len() as u64).map(|()| file))
-            .map_err(|e| Error::io("write", path, &e))?;
+        // The file, without an incomplete last line.
+        let file = OpenOptions::new().append(true).create(true).open(path);
+        let cut = |file: File| file.set_len(complete.len() as u64).map(|()| file);
+        let file = file.and_then(cut).map_err(|e| Error::io("write", path, &e))?;
         Ok(Self { rows, conditions, file: Some((path.to_owned(), file)) })
     }
 

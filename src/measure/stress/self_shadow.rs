@@ -5,8 +5,7 @@ use glam::{DVec3, Vec3};
 
 use super::case::{Case, RaySampler};
 use super::meshes::{INTERSECTORS, intersectors};
-use super::random::Random;
-use super::report::CaseStats;
+use super::{CaseStats, random::Random};
 use crate::error::Result;
 use crate::geometry::Ray;
 use crate::intersect::{Coherence::Incoherent, Precision};
@@ -46,6 +45,15 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
+/// Returns a scene of spheres, given by their centres and radii.
+fn scene(spheres: &[(DVec3, f64)]) -> Scene {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    let sphere = |&(center, radius): &_| Sphere::new(center, radius, material);
+    scene.spheres.extend(spheres.iter().map(sphere));
+    scene
+}
+
 /// Returns the light of a source at a finite distance, given as a vector toward it.
 fn incident_light(toward: DVec3) -> IncidentLight {
     IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE }
@@ -58,11 +66,10 @@ fn check_sphere(
     precision: Precision,
     sampler: &RaySampler,
 ) -> Result<CaseStats> {
-    let mut scene = Scene::default();
-    let material = scene.add_material(Material::default());
     let center = sampler.shared_random().direction() * (offset * radius);
-    scene.spheres.push(Sphere::new(center, radius, material));
+    let scene = scene(&[(center, radius)]);
     let intersectors = intersectors(&scene, precision)?;
+    // Rays at the sphere from inside or outside, each with a light inside it or anywhere near.
     let ray = |random: &mut Random| {
         let reach = if random.coin() { 0.9 } else { random.range(1.5, 20.0) };
         let origin = center + random.direction() * (radius * reach);
@@ -73,6 +80,7 @@ fn check_sphere(
     Ok(sampler.for_each_batch(ray, |rays, stats| {
         let (rays, lights): (Vec<Ray>, Vec<DVec3>) = rays.iter().copied().unzip();
         for intersector in &intersectors {
+            // The primary rays: all must hit, at the right point.
             let (mut shadow, mut expected) = (Vec::new(), Vec::new());
             let hits = closest(&**intersector, &rays, Incoherent);
             for ((ray, light), hit) in rays.iter().zip(&lights).zip(hits) {
@@ -93,22 +101,18 @@ fn check_sphere(
                 let inward = surface.geometric_normal.dot(toward) <= 0.0;
                 expected.push(inward && light.distance(center) > radius);
             }
-            let found = occluded(&**intersector, &shadow, Incoherent);
-            for (found, expected) in found.into_iter().zip(expected) {
-                stats.count_wrong(found != expected);
-            }
+            // The shadow rays from these hits.
+            stats.count_different(&occluded(&**intersector, &shadow, Incoherent), &expected);
         }
     }))
 }
 
 /// Checks that a shell just above a sphere blocks every shadow ray from the sphere to the outside.
 fn check_shell(radius: f64, precision: Precision, sampler: &RaySampler) -> Result<CaseStats> {
-    let mut scene = Scene::default();
-    let material = scene.add_material(Material::default());
-    scene.spheres.push(Sphere::new(DVec3::ZERO, radius, material));
-    let inner = scene.clone();
-    scene.spheres.push(Sphere::new(DVec3::ZERO, radius * (1.0 + GAP), material));
-    let (primary, shadow) = (intersectors(&inner, precision)?, intersectors(&scene, precision)?);
+    // Primary rays see the sphere alone; its shell is there for shadow rays only.
+    let (sphere, shell) = ((DVec3::ZERO, radius), (DVec3::ZERO, radius * (1.0 + GAP)));
+    let (inner, both) = (scene(&[sphere]), scene(&[sphere, shell]));
+    let (primary, shadow) = (intersectors(&inner, precision)?, intersectors(&both, precision)?);
     let ray = |random: &mut Random| {
         let origin = random.direction() * (radius * random.range(1.5, 20.0));
         let light = random.direction() * (radius * random.range(1.5, 20.0));

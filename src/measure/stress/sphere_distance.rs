@@ -2,10 +2,7 @@
 
 use glam::DVec3;
 
-use super::case::Case;
-use super::random::Random;
-use super::report::CaseStats;
-use super::textbook;
+use super::{CaseStats, case::Case, random::Random, textbook};
 use crate::geometry::{Ray, sphere};
 use crate::measure::oracle;
 
@@ -52,31 +49,44 @@ pub fn cases(method: Method) -> Vec<Case> {
     for (kind, name) in kinds {
         for distance in DISTANCES {
             let name = format!("{name}, D/R {distance:.0e}");
-            cases.push(Case {
-                kinds: RADII.len() as u64,
-                max_ulp: 0.5,
-                ..Case::new(name, "certified", move |sampler| {
-                    Ok(sampler.for_each_ray(|index, random, stats| {
-                        let radius = RADII[index as usize % RADII.len()];
-                        let (center, ray) = sample_ray(kind, radius, distance * radius, random);
-                        check(method, center, radius, &ray, stats);
-                    }))
-                })
+            let case = case(name, method, move |index, random| {
+                let radius = RADII[index as usize % RADII.len()];
+                let (center, ray) = sample_ray(kind, radius, distance * radius, random);
+                (center, radius, ray)
             });
+            cases.push(Case { kinds: RADII.len() as u64, ..case });
         }
     }
     cases
 }
 
+/// Returns the case of the spheres (centre and radius) and rays that `sample` gives for an index and
+/// random numbers.
+pub fn case(
+    name: impl Into<String>,
+    method: Method,
+    sample: impl Fn(u64, &mut Random) -> (DVec3, f64, Ray) + Sync + 'static,
+) -> Case {
+    let case = Case::new(name, "certified", move |sampler| {
+        Ok(sampler.for_each_ray(|index, random, stats| {
+            let (center, radius, ray) = sample(index, random);
+            check(method, center, radius, &ray, stats);
+        }))
+    });
+    Case { max_ulp: 0.5, ..case }
+}
+
 /// Returns the centre of a random sphere, and a ray.
 fn sample_ray(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (DVec3, Ray) {
     let center = random.direction() * distance;
+    // Only the first kind has directions of length 1; the others come close to overflow and underflow.
     let length = match kind {
         Kind::Outside => 1.0,
         _ => random.power_of_ten(-150.0, 150.0),
     };
     let (origin, direction) = match kind {
         Kind::Outside | Kind::AnyLength | Kind::Away => {
+            // Aimed at a disc a little larger than the sphere, so that some rays miss.
             let toward = random.direction();
             let origin = center - toward * distance;
             let offset = random.perpendicular(toward) * (1.1 * radius * random.unit().sqrt());
@@ -90,13 +100,14 @@ fn sample_ray(kind: Kind, radius: f64, distance: f64, random: &mut Random) -> (D
 }
 
 /// Checks the method, the error bound of its estimate, and the baselines against the oracle.
-pub fn check(method: Method, center: DVec3, radius: f64, ray: &Ray, stats: &mut CaseStats) {
+fn check(method: Method, center: DVec3, radius: f64, ray: &Ray, stats: &mut CaseStats) {
     let exact = oracle::sphere(center, radius, ray, false);
     let error = |found: Option<f64>| match (&exact, found) {
         (Some(exact), Some(t)) => Some(exact.ulps_from(t)),
         (None, None) => Some(0.0),
         _ => None,
     };
+    // The method itself.
     match error(method(center, radius, ray)) {
         Some(error) => stats.count_ulp(error),
         None => stats.misclassified += 1,
@@ -110,11 +121,13 @@ pub fn check(method: Method, center: DVec3, radius: f64, ray: &Ray, stats: &mut 
             let hit = oracle::sphere(center, radius, &ray, false).is_some();
             stats.count_wrong(method(center, radius, &ray).is_some() != hit);
         }
+        // The estimate, with its bound, must allow for the exact distance.
         let inverse = sphere::inverse_length_squared(ray.direction);
         let estimate =
             sphere::certified::estimate(center, radius, ray.origin, ray.direction, inverse);
         stats.count_wrong(estimate.is_outside(t.next_up()));
     }
+    // The baselines, whose errors are reported and not tested.
     stats.count_fast(error(fast(center, radius, ray)));
     let textbook = error(textbook::sphere(center, radius, ray));
     stats.textbook.get_or_insert_default().count(textbook);

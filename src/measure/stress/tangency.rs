@@ -2,31 +2,16 @@
 
 use glam::DVec3;
 
-use super::case::Case;
-use super::random::Random;
-use super::sphere_distance::{Method, check};
+use super::{Method, case::Case, random::Random, sphere_distance::case};
 use crate::geometry::Ray;
 
 /// Returns the cases, for the certified method or one that should fail.
 pub fn cases(method: Method) -> Vec<Case> {
-    let near_tangents = (20..=52).map(|k| Case {
-        max_ulp: 0.5,
-        ..Case::new(format!("impact R (1 ± 4·2^-{k})"), "certified", move |sampler| {
-            Ok(sampler.for_each_ray(|_, random, stats| {
-                let (center, radius, ray) = near_tangent(k, random);
-                check(method, center, radius, &ray, stats);
-            }))
-        })
+    let near_tangents = (20..=52).map(|k| {
+        let name = format!("impact R (1 ± 4·2^-{k})");
+        case(name, method, move |_, random| near_tangent(k, random))
     });
-    let tangents = Case {
-        max_ulp: 0.5,
-        ..Case::new("impact R exactly", "certified", move |sampler| {
-            Ok(sampler.for_each_ray(|_, random, stats| {
-                let (center, radius, ray) = tangent(random);
-                check(method, center, radius, &ray, stats);
-            }))
-        })
-    };
+    let tangents = case("impact R exactly", method, |_, random| tangent(random));
     near_tangents.chain([tangents]).collect()
 }
 
@@ -37,6 +22,7 @@ fn near_tangent(k: i32, random: &mut Random) -> (DVec3, f64, Ray) {
     let sign = random.pick(&[1.0, -1.0]);
     let impact = radius * (1.0 + sign * 4.0 * f64::powi(2.0, -k));
     let distance = random.range(1.5, 16.0);
+    // The direction of the ray, and one across it to the sphere's centre.
     let (along, across) = if random.coin() {
         let axis = random.below(3);
         (DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3])
@@ -53,9 +39,11 @@ fn near_tangent(k: i32, random: &mut Random) -> (DVec3, f64, Ray) {
 fn tangent(random: &mut Random) -> (DVec3, f64, Ray) {
     let (p, q, length) =
         random.pick(&[(3.0, 4.0, 5.0), (5.0, 12.0, 13.0), (8.0, 15.0, 17.0), (20.0, 21.0, 29.0)]);
+    // Integers so small that all products below are exact in f64.
     let integer = |random: &mut Random, n: usize| 1.0 + random.below(n) as f64;
     let (distance, size) = (integer(random, 1 << 20), integer(random, 1 << 10));
     let scale = f64::powi(2.0, random.below(41) as i32 - 20);
+    // The triple lies in a plane of two axes, so that the third coordinate of ray and sphere is the same.
     let axis = random.below(3);
     let in_plane = |x: f64, y: f64| {
         let mut v = [0.0; 3];

@@ -2,9 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::case::Case;
 use super::meshes::{INTERSECTORS, icosphere, intersectors, torus};
-use super::random::Random;
+use super::{case::Case, random::Random};
 use crate::geometry::Ray;
 use crate::intersect::{BruteForce, Coherence::Incoherent, Precision};
 use crate::measure::trace::{closest, occluded, ulps_between};
@@ -28,10 +27,12 @@ pub fn cases() -> Vec<Case> {
             let name = format!("{what}, {rays} rays, offset {offset:.0e}");
             let method = format!("{}, {INTERSECTORS}", precision.name());
             cases.push(Case::new(name, method, move |sampler| {
-                let scene = scene(offset, meshes, &mut sampler.shared_random());
+                let center = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
+                let scene = scene(center, meshes, &mut sampler.shared_random());
                 let brute = BruteForce::new(&scene, precision);
                 let intersectors = intersectors(&scene, precision)?;
-                let ray = |random: &mut Random| sample_ray(&scene, offset, tangent, random);
+                // Closest hits and occlusion of each batch of rays, by brute force and by each tree.
+                let ray = |random: &mut Random| sample_ray(&scene, center, tangent, random);
                 Ok(sampler.for_each_batch(ray, |rays, stats| {
                     let expected = closest(&brute, rays, Incoherent);
                     let expected_occlusion = occluded(&brute, rays, Incoherent);
@@ -46,9 +47,7 @@ pub fn cases() -> Vec<Case> {
                             }
                         }
                         let found = occluded(&**intersector, rays, Incoherent);
-                        for (found, expected) in found.iter().zip(&expected_occlusion) {
-                            stats.count_wrong(found != expected);
-                        }
+                        stats.count_different(&found, &expected_occlusion);
                     }
                 }))
             }));
@@ -57,20 +56,16 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// Returns the centre of the scene.
-fn scene_center(offset: f64) -> DVec3 {
-    DVec3::new(offset, -0.7 * offset, 0.3 * offset)
-}
-
 /// Returns a scene of spheres and, if asked for, planes and meshes.
-fn scene(offset: f64, has_meshes: bool, random: &mut Random) -> Scene {
+fn scene(center: DVec3, has_meshes: bool, random: &mut Random) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let center = scene_center(offset);
+    // Spheres of very different sizes.
     for _ in 0..60 {
         let radius = random.power_of_ten(-3.0, 0.0);
         scene.spheres.push(Sphere::new(center + random.in_ball() * SIZE, radius, material));
     }
+    // Two planes, a mesh with one instance and one with several.
     if has_meshes {
         for _ in 0..2 {
             let point = center + random.in_ball() * SIZE;
@@ -90,10 +85,10 @@ fn scene(offset: f64, has_meshes: bool, random: &mut Random) -> Scene {
 }
 
 /// Returns a random ray through the scene, or one parallel to an axis that is a tangent of a sphere.
-fn sample_ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) -> Ray {
-    let center = scene_center(offset);
+fn sample_ray(scene: &Scene, center: DVec3, tangent: bool, random: &mut Random) -> Ray {
     let length = random.power_of_ten(-3.0, 3.0);
     let ray = if tangent {
+        // A ray beside a sphere at exactly its radius, starting at the point of contact or before it.
         let sphere = random.pick(&scene.spheres);
         let axis = random.below(3);
         let (along, across) = (DVec3::AXES[axis], DVec3::AXES[(axis + 1 + random.below(2)) % 3]);
@@ -102,6 +97,7 @@ fn sample_ray(scene: &Scene, offset: f64, tangent: bool, random: &mut Random) ->
         let origin = sphere.center + across * (side * sphere.radius) + back;
         Ray::new(origin, -back.normalize() * length)
     } else {
+        // A ray from within the scene or, one of four, from further away.
         let reach = if random.below(4) == 0 { 20.0 } else { 1.5 };
         let origin = center + random.in_ball() * (SIZE * reach);
         let target = center + random.in_ball() * SIZE;

@@ -2,10 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::case::Case;
 use super::meshes::{INTERSECTORS, cube, icosphere, intersectors, torus};
-use super::random::Random;
-use super::report::CaseStats;
+use super::{CaseStats, case::Case, random::Random};
 use crate::geometry::{Hit, PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
 use crate::measure::trace::closest;
@@ -42,30 +40,30 @@ pub fn cases() -> Vec<Case> {
         (Target::Grid, "pixel grid"),
     ];
     let mut cases = Vec::new();
-    for mesh in meshes {
-        for (target, target_name) in targets {
-            for offset in OFFSETS {
-                let name = format!("{}, {target_name}, offset {offset:.0e}", mesh().name);
-                let method = format!("certified, {INTERSECTORS}");
-                cases.push(Case::new(name, method, move |sampler| {
-                    let scene = scene(mesh(), target, offset, &mut sampler.shared_random());
-                    let brute = BruteForce::new(&scene, Precision::Certified);
-                    let fast = BruteForce::new(&scene, Precision::Fast);
-                    let intersectors = intersectors(&scene, Precision::Certified)?;
-                    let sample = |random: &mut Random| sample_ray(&scene, target, random);
-                    Ok(sampler.for_each_batch(sample, |samples, stats| {
-                        let expected = count_crossings(samples, &brute, &fast, stats);
-                        let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
-                        for intersector in &intersectors {
-                            let found = closest(&**intersector, &rays, Coherence::Incoherent);
-                            for (found, expected) in found.iter().zip(&expected) {
-                                let [a, b] = [found, expected].map(|hit| hit.map(|h| (h.id, h.t)));
-                                stats.count_wrong(a != b);
-                            }
+    let targeted = meshes.into_iter().flat_map(|mesh| targets.map(|target| (mesh, target)));
+    for (mesh, (target, target_name)) in targeted {
+        for offset in OFFSETS {
+            let name = format!("{}, {target_name}, offset {offset:.0e}", mesh().name);
+            let method = format!("certified, {INTERSECTORS}");
+            cases.push(Case::new(name, method, move |sampler| {
+                let scene = scene(mesh(), target, offset, &mut sampler.shared_random());
+                let brute = BruteForce::new(&scene, Precision::Certified);
+                let fast = BruteForce::new(&scene, Precision::Fast);
+                let intersectors = intersectors(&scene, Precision::Certified)?;
+                // Brute force tells what the mesh is like; the trees must agree with it.
+                let sample = |random: &mut Random| sample_ray(&scene, target, random);
+                Ok(sampler.for_each_batch(sample, |samples, stats| {
+                    let expected = count_crossings(samples, &brute, &fast, stats);
+                    let rays: Vec<Ray> = samples.iter().map(|sample| sample.ray).collect();
+                    for intersector in &intersectors {
+                        let found = closest(&**intersector, &rays, Coherence::Incoherent);
+                        for (found, expected) in found.iter().zip(&expected) {
+                            let [a, b] = [found, expected].map(|hit| hit.map(|h| (h.id, h.t)));
+                            stats.count_wrong(a != b);
                         }
-                    }))
-                }));
-            }
+                    }
+                }))
+            }));
         }
     }
     cases
@@ -83,6 +81,7 @@ fn count_crossings(
         .iter()
         .map(|Sample { ray, starts_inside }| {
             let is_closed = |crossings: usize| (crossings % 2 == 1) == *starts_inside;
+            // In exact arithmetic; what the formulas of `fast` find is reported only.
             stats.count_wrong(!is_closed(brute.all_hits(ray).count()));
             stats.count_fast(is_closed(fast.all_hits(ray).count()).then_some(0.0));
             brute.closest_hit(ray)
@@ -115,6 +114,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
     let corners = |random: &mut Random| {
         scene.triangle_vertices(PrimitiveId::triangle(0, random.below(triangles) as u32, 0))
     };
+    // On the grid: an axis-parallel ray through a multiple of 1/8, from outside.
     if matches!(target, Target::Grid) {
         let axis = random.below(3);
         let step = |random: &mut Random| random.below(21) as f64 / 8.0 - 1.25;
@@ -124,6 +124,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
         let ray = Ray::new(to_world(DVec3::from(start)), DVec3::AXES[axis] * -side);
         return Sample { ray, starts_inside: false };
     }
+    // At a vertex or an edge: from anywhere inside or outside.
     let [a, b, _] = corners(random);
     let starts_inside = random.coin();
     // The centre of the sphere and of the cube, or a point within the tube of the torus.
@@ -139,6 +140,7 @@ fn sample_ray(scene: &Scene, target: Target, random: &mut Random) -> Sample {
             Sample { ray: Ray::new(origin, a.lerp(b, random.unit()) - origin), starts_inside }
         }
         Target::Diagonals | Target::Grid => {
+            // Along the line from another vertex, starting far outside.
             let [c, ..] = corners(random);
             let other = if c == a { b } else { c };
             Sample { ray: Ray::new(a + (a - other) * 64.0, other - a), starts_inside: false }

@@ -110,22 +110,18 @@ pub struct Validation {
 
 impl fmt::Display for Validation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let verdict = if self.passed { "passed" } else { "FAILED" };
         let MismatchCounts { edge, tangency, tie, other } = self.causes;
+        let Self { precision, rays_compared, primitive_mismatches, max_t_error_ulp, .. } = self;
         write!(
             f,
-            "{}: {}: {} rays compared, {} mismatches ({edge} edge, {tangency} tangency, {tie} tie, \
-             {other} other), t within {} ulp\n        {} of {} pixels differ, by at most {} of 255; \
-             {} EXR values differ",
-            if self.passed { "passed" } else { "FAILED" },
-            self.precision,
-            self.rays_compared,
-            self.primitive_mismatches,
-            self.max_t_error_ulp,
-            self.pixels_differing,
-            self.pixels,
-            self.max_channel_difference,
-            self.values_differing
-        )
+            "{verdict}: {precision}: {rays_compared} rays compared, {primitive_mismatches} mismatches \
+             ({edge} edge, {tangency} tangency, {tie} tie, {other} other), t within \
+             {max_t_error_ulp} ulp\n        "
+        )?;
+        let Self { pixels, pixels_differing, max_channel_difference, values_differing, .. } = self;
+        write!(f, "{pixels_differing} of {pixels} pixels differ, by at most ")?;
+        write!(f, "{max_channel_difference} of 255; {values_differing} EXR values differ")
     }
 }
 

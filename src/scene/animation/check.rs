@@ -7,8 +7,7 @@ use super::{
     Rotation, prefixed,
 };
 use crate::error::Result;
-use crate::scene::Scene;
-use crate::scene::check::require;
+use crate::scene::{Scene, check::require};
 
 impl Animation {
     /// Checks that frames, curves and indices into `scene` are valid; `Scene::check` calls it.
@@ -39,6 +38,7 @@ fn require_that(holds: bool, message: &str) -> Result<()> {
 /// Checks node `index`.
 fn check_node(index: usize, node: &Node) -> Result<()> {
     let is_before = |id: &Option<NodeId>| id.is_none_or(|NodeId(id)| (id as usize) < index);
+    // What all nodes have, and then the keyframes or the orbit.
     require_that(is_before(&node.parent), "its parent does not come before it")?;
     require_that(node.base.is_finite(), "its base transform is not finite")?;
     match &node.motion {
@@ -85,6 +85,7 @@ fn check_deformation(
 
 /// Checks the indices and the curves of an animated object.
 fn check_object(object: &Animated, nodes: usize, scene: &Scene) -> Result<()> {
+    // The index of an object or a node must be that of one.
     let check_index = |kind: &str, index: usize, count: usize| {
         require(index < count, || format!("the animation moves {kind} {index}, of {count}"))
     };

@@ -134,6 +134,7 @@ impl<T: Interpolate> Curve<T> {
             let (times, values) = (times.len(), values.len());
             format!("{times} times and {values} values, where there must be one for each")
         })?;
+        // Times that are finite and increase, and values that are in range.
         for (i, time) in times.iter().enumerate() {
             require(time.is_finite(), || format!("time {i} is not finite"))?;
         }

@@ -78,17 +78,10 @@ pub(super) struct Pose {
 }
 
 impl Joint {
-    /// The transform to world space of a mesh that moves with this joint alone.
-    fn bound_to_world(&self, worlds: &[DAffine3]) -> DAffine3 {
-        self.world_transform(worlds) * self.inverse_bind
-    }
-
     /// The transform from the joint's space to world space.
     fn world_transform(&self, worlds: &[DAffine3]) -> DAffine3 {
-        match self.node {
-            Some(NodeId(node)) => worlds[node as usize] * self.transform,
-            None => self.transform,
-        }
+        let in_world = |NodeId(node)| worlds[node as usize] * self.transform;
+        self.node.map_or(self.transform, in_world)
     }
 }
 
@@ -108,7 +101,8 @@ impl Deformation {
         let joints = self.skin.as_ref().map_or(Vec::new(), |skin| {
             // Not finite where the space is flat, and its instances invisible.
             let space = skin.space.world_transform(worlds).inverse();
-            skin.joints.iter().map(|joint| space * joint.bound_to_world(worlds)).collect()
+            let bound_to_world = |joint: &Joint| joint.world_transform(worlds) * joint.inverse_bind;
+            skin.joints.iter().map(|joint| space * bound_to_world(joint)).collect()
         });
         Pose { weights, joints }
     }
@@ -153,9 +147,9 @@ impl Influences {
 
     /// Reduces the influences to those of some vertices, in the order given.
     pub(crate) fn retain_vertices(&mut self, vertices: &[usize]) {
-        self.joints = vertices.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
-        self.weights =
-            vertices.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
+        let kept: Vec<usize> = vertices.iter().flat_map(|&v| self.range(v)).collect();
+        self.joints = kept.iter().map(|&i| self.joints[i]).collect();
+        self.weights = kept.iter().map(|&i| self.weights[i]).collect();
     }
 
     /// The range of a vertex's influences.

@@ -31,6 +31,8 @@ mod deformation;
 mod node;
 mod posed_scene;
 
+use std::collections::HashSet;
+
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
@@ -162,17 +164,13 @@ impl Animation {
         !self.objects.iter().all(|o| matches!(o, Animated::Light { .. } | Animated::Camera { .. }))
     }
 
-    /// For each of `count` instances, true if it moves.
-    pub(in crate::scene) fn moved_instances(&self, count: usize) -> Vec<bool> {
-        let mut moved = vec![false; count];
-        for object in &self.objects {
-            if let Animated::Instance { instance, .. } = object
-                && let Some(moved) = moved.get_mut(*instance)
-            {
-                *moved = true;
-            }
-        }
-        moved
+    /// The indices of the instances that move.
+    pub(in crate::scene) fn moved_instances(&self) -> HashSet<usize> {
+        let instance = |object: &Animated| match object {
+            Animated::Instance { instance, .. } => Some(*instance),
+            _ => None,
+        };
+        self.objects.iter().filter_map(instance).collect()
     }
 
     /// Adds a node and returns its id.

@@ -114,10 +114,8 @@ impl Anchor {
 
     /// The position in world space, given the nodes' transforms to world space.
     pub(super) fn position(&self, worlds: &[DAffine3]) -> DVec3 {
-        match self.node {
-            Some(NodeId(node)) => worlds[node as usize].transform_point3(self.point),
-            None => self.point,
-        }
+        let in_world = |NodeId(node)| worlds[node as usize].transform_point3(self.point);
+        self.node.map_or(self.point, in_world)
     }
 }
 
@@ -143,11 +141,8 @@ pub(super) fn world_transforms(nodes: &[Node], time: f64) -> Vec<DAffine3> {
             Motion::Keyframes(keys) => node.base * keys.transform(time),
             Motion::Orbit(orbit) => orbit.transform(time, orbit.around.position(&worlds)),
         };
-        let world = match node.parent {
-            Some(NodeId(parent)) => worlds[parent as usize] * local,
-            None => local,
-        };
-        worlds.push(world);
+        // Parents come first, so that theirs is known.
+        worlds.push(node.parent.map_or(local, |NodeId(parent)| worlds[parent as usize] * local));
     }
     worlds
 }

@@ -4,12 +4,10 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::deformation::Pose;
-use super::{Aim, AimTarget, Animated, NodeId, node, prefixed};
+use super::{Aim, AimTarget, Animated, NodeId, deformation::Pose, node, prefixed};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
-use crate::scene::check::check_extent;
-use crate::scene::{Camera, LightKind, Scene};
+use crate::scene::{Camera, LightKind, Scene, check::check_extent};
 
 /// An animated scene at one time after another; objects that do not move are neither copied nor
 /// checked again.
@@ -152,6 +150,7 @@ fn pose_object(
         }
         Animated::Mesh { .. } => {}
         Animated::Light { light, node, rest, direction: curve, intensity } => {
+            // Its direction and intensity change in its own space, which then moves.
             let mut rest = rest.clone();
             if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } =
                 &mut rest.kind
@@ -174,10 +173,8 @@ fn pose_object(
                 };
                 prefixed(&format!("at {time:.3} s, camera {name}"), &e)
             })?;
-            let projection = match lens {
-                Some(lens) => rest.projection.with_value(lens.sample(time)),
-                None => rest.projection,
-            };
+            let zoomed = lens.as_ref().map(|lens| rest.projection.with_value(lens.sample(time)));
+            let projection = zoomed.unwrap_or(rest.projection);
             scene.cameras[*camera] = Camera { projection, ..posed };
         }
     }
@@ -197,6 +194,7 @@ fn pose_camera(
             Error::input("its transform is too uneven to leave it an upward direction")
         });
     };
+    // The position moves with the node; the direction is toward the aim.
     let position = world.transform_point3(rest.position);
     let forward = match target {
         AimTarget::Anchor(anchor) => anchor.position(worlds) - position,

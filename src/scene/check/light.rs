@@ -21,14 +21,13 @@ pub(super) fn check(i: usize, light: &Light) -> Result<()> {
             require_position(|| format!("{label}: position"), p)?;
             require_unit_length(|| format!("{label}: direction"), direction)?;
             require(range > 0.0, || format!("{label}: range must be above 0, found {range}"))?;
+            // A cone of at most half the space, to within the rounding of degrees.
             let right_angle = std::f64::consts::FRAC_PI_2 + 1e-12;
             let ordered = inner_angle >= 0.0 && inner_angle < outer_angle;
             require(ordered && outer_angle <= right_angle, || {
-                format!(
-                    "{label}: 0 <= inner_angle < outer_angle <= 90 degrees, found {} and {}",
-                    inner_angle.to_degrees(),
-                    outer_angle.to_degrees()
-                )
+                let [inner, outer] = [inner_angle, outer_angle].map(f64::to_degrees);
+                let range = "0 <= inner_angle < outer_angle <= 90 degrees";
+                format!("{label}: {range}, found {inner} and {outer}")
             })
         }
     }

@@ -22,18 +22,16 @@ impl Scene {
     /// Checks plane `i`.
     pub(super) fn check_plane(&self, i: usize) -> Result<()> {
         let plane = &self.planes[i];
-        let label = || format!("plane {i}");
         require_position(|| format!("plane {i}: point"), plane.point)?;
         require_unit_length(|| format!("plane {i}: normal"), plane.normal)?;
-        self.check_unmasked(label, plane.material)?;
+        self.check_unmasked(|| format!("plane {i}"), plane.material)?;
         require(plane.texture_size > 0.0 && plane.texture_size.is_finite(), || {
             format!("plane {i}: texture_size must be above 0, found {}", plane.texture_size)
         })?;
         let Some(checker) = plane.checker else { return Ok(()) };
-        checker
-            .colors
-            .iter()
-            .try_for_each(|&c| require_color(|| format!("plane {i}: checker"), c))?;
+        for color in checker.colors {
+            require_color(|| format!("plane {i}: checker"), color)?;
+        }
         require(checker.size > 0.0 && checker.size.is_finite(), || {
             format!("plane {i}: the checker's size must be above 0, found {}", checker.size)
         })
@@ -57,6 +55,7 @@ impl Scene {
         require(mesh.has_all_vertices(), || {
             format!("{label}: a triangle names a vertex that is not there ({count} vertices)")
         })?;
+        // The optional attributes are there for every vertex, or for none.
         for (name, length) in [
             ("normals", mesh.normals.len()),
             ("uvs", mesh.uvs.len()),

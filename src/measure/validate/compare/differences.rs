@@ -1,9 +1,8 @@
 //! The differences that a comparison of two intersectors finds, and the worst ray.
 
 use crate::geometry::Ray;
-use crate::measure::mismatch::MismatchCause;
-use crate::measure::replay::ray_to_text;
 use crate::measure::validate::{MismatchCounts, WorstRay};
+use crate::measure::{mismatch::MismatchCause, replay::ray_to_text};
 
 /// The colour of a pixel with an unexplained mismatch.
 pub const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -46,14 +45,6 @@ pub struct CameraRay<'m> {
     pub heatmap_color: &'m mut [f32; 3],
 }
 
-/// A mismatch on one ray.
-pub struct Mismatch {
-    /// The explanation, if there is one.
-    pub cause: Option<MismatchCause>,
-    pub is_shadow_ray: bool,
-    pub t_error_ulp: Option<u64>,
-}
-
 impl CameraRay<'_> {
     /// Returns the report of a difference on this ray or a shadow ray from its hit.
     pub fn worst_ray(
@@ -84,10 +75,16 @@ impl Differences {
         self
     }
 
-    /// Counts a mismatch; given its camera ray, also colours the pixel, and keeps the ray if it is
-    /// the worst.
-    pub fn add(&mut self, camera_ray: Option<CameraRay<'_>>, mismatch: Mismatch) {
-        let Mismatch { cause, is_shadow_ray, t_error_ulp } = mismatch;
+    /// Counts a mismatch with its explanation, if there is one; given its camera ray, also colours the
+    /// pixel, and keeps the ray if it is the worst.
+    pub fn add(
+        &mut self,
+        camera_ray: Option<CameraRay<'_>>,
+        cause: Option<MismatchCause>,
+        is_shadow_ray: bool,
+        t_error_ulp: Option<u64>,
+    ) {
+        // Every mismatch counts; only those of camera rays can be shown.
         *self.causes.count_mut(cause) += 1;
         let Some(camera_ray) = camera_ray else { return };
         let ulp = t_error_ulp.unwrap_or(0);
@@ -95,6 +92,7 @@ impl Differences {
             Some(cause) => (Severity::Explained(ulp), cause.name()),
             None => (Severity::Unexplained(ulp), "other"),
         };
+        // An unexplained mismatch shows whatever else the pixel has.
         if cause.is_none() {
             *camera_ray.heatmap_color = RED;
         } else if *camera_ray.heatmap_color != RED {

@@ -15,10 +15,10 @@ use crate::intersect::{Coherence, Intersector, Precision};
 use crate::measure::mismatch::MismatchClassifier;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render::Renderer;
-use crate::scene::{Light, RayGenerator, Scene};
+use crate::scene::{RayGenerator, Scene};
 use crate::surface::Surface;
 use crate::write::{Settings, png_bytes};
-use differences::{CameraRay, Differences, Mismatch, RED, Severity, YELLOW};
+use differences::{CameraRay, Differences, RED, Severity, YELLOW};
 use secondary_rays::SecondaryRayComparer;
 
 /// The two intersectors to compare, and what to trace with them.
@@ -43,19 +43,17 @@ const GREY: [f32; 3] = [0.15; 3];
 impl Comparer<'_> {
     /// Compares all camera, shadow and secondary rays, and the pictures.
     pub fn run(&self) -> Validation {
+        // The rows in any order, and their differences added up in the order of the picture.
         let size = self.scene.film.size;
         let rays = self.scene.cameras[self.camera].ray_generator(size);
         let mut heatmap = Film::new(size, View::Beauty);
         let width = size[0] as usize;
-        let rows: Vec<Differences> = heatmap
-            .pixels
-            .par_chunks_mut(width)
-            .enumerate()
-            .map(|(y, row)| self.compare_row(&rays, y, row))
-            .collect();
+        let rows = heatmap.pixels.par_chunks_mut(width).enumerate();
+        let rows: Vec<Differences> = rows.map(|(y, row)| self.compare_row(&rays, y, row)).collect();
         let (pictures, secondary) = self.compare_pictures(&mut heatmap);
         let sum = rows.into_iter().fold(secondary, Differences::merge);
 
+        // The verdict: unexplained mismatches fail, explained ones only where there are many.
         let (causes, explained) = (sum.causes, sum.causes.explained());
         let rays_compared = sum.primary + sum.shadow + sum.secondary;
         let pixels = heatmap.pixels.len() as u64;
@@ -91,10 +89,12 @@ impl Comparer<'_> {
     fn compare_row(&self, camera: &RayGenerator, y: usize, row: &mut [[f32; 3]]) -> Differences {
         let mut differences = Differences::default();
         for [dx, dy] in sample_positions(&self.scene.film) {
+            // One ray of each pixel of the row, traced with both intersectors.
             let rays: Vec<Ray> =
                 (0..row.len()).map(|x| camera.ray(x as f64 + dx, y as f64 + dy)).collect();
             let [tested, reference] = [self.tested, self.reference]
                 .map(|intersector| closest(intersector, &rays, Coherence::Coherent));
+            // The hits, pixel by pixel, and then the shadow rays from those of the reference.
             differences.primary += rays.len() as u64;
             for (x, ray) in rays.iter().enumerate() {
                 if reference[x].is_some() && row[x] == [0.0; 3] {
@@ -119,20 +119,21 @@ impl Comparer<'_> {
         reference: Option<&Hit>,
         differences: &mut Differences,
     ) {
+        // The difference of t, where both hit the same primitive.
         let same_primitive = tested.map(|h| h.id) == reference.map(|h| h.id);
         let pair = tested.zip(reference).filter(|_| same_primitive);
         let t_error_ulp = pair.map(|(a, b)| ulps_between(a.t, b.t));
         let ulp = t_error_ulp.unwrap_or(0);
         differences.max_ulp = differences.max_ulp.max(ulp);
 
+        // In `certified` every bit counts, in `fast` only which primitive is hit.
         let (is_mismatch, cause) = match self.precision {
             Precision::Certified => (tested.map(bits) != reference.map(bits), None),
             Precision::Fast if same_primitive => (false, None),
             Precision::Fast => (true, self.classifier().classify_hits(ray, tested, reference)),
         };
         if is_mismatch {
-            let mismatch = Mismatch { cause, is_shadow_ray: false, t_error_ulp };
-            differences.add(camera_ray, mismatch);
+            differences.add(camera_ray, cause, false, t_error_ulp);
         } else if let Some(camera_ray) = camera_ray.filter(|_| ulp > 0) {
             let worst = || camera_ray.worst_ray(None, false, t_error_ulp);
             differences.keep_worst(Severity::Distance(ulp), worst);
@@ -148,32 +149,28 @@ impl Comparer<'_> {
         row: &mut [[f32; 3]],
         differences: &mut Differences,
     ) {
+        // The surfaces that the reference sees, with their columns.
         let surfaces: Vec<(usize, Surface)> = (0..)
             .zip(rays.iter().zip(hits))
             .filter_map(|(x, (ray, hit))| Some((x, Surface::new(self.scene, ray, hit.as_ref()?))))
             .collect();
-        let lights: Vec<&Light> = self.scene.lights.iter().filter(|l| l.casts_shadow()).collect();
-        for light in lights {
-            let (columns, shadow): (Vec<usize>, Vec<Ray>) = surfaces
-                .iter()
-                .filter_map(|(x, s)| {
-                    Some((*x, s.shadow_ray(rays[*x].direction, &light.incident(s.position)?)))
-                })
-                .unzip();
+        for light in self.scene.lights.iter().filter(|light| light.casts_shadow()) {
+            // A shadow ray from each surface that the light may reach, traced with both.
+            let shadow_ray = |(x, s): &(usize, Surface)| {
+                Some((*x, s.shadow_ray(rays[*x].direction, &light.incident(s.position)?)))
+            };
+            let (columns, shadow): (Vec<usize>, Vec<Ray>) =
+                surfaces.iter().filter_map(shadow_ray).unzip();
             let [tested, reference] = [self.tested, self.reference]
                 .map(|intersector| occluded(intersector, &shadow, Coherence::Coherent));
             differences.shadow += shadow.len() as u64;
             for i in (0..shadow.len()).filter(|&i| tested[i] != reference[i]) {
-                let cause = match self.precision {
-                    Precision::Fast => {
-                        self.classifier().classify_occlusion(&shadow[i], reference[i])
-                    }
-                    Precision::Certified => None,
-                };
-                let (x, mismatch) =
-                    (columns[i], Mismatch { cause, is_shadow_ray: true, t_error_ulp: None });
+                let classify = || self.classifier().classify_occlusion(&shadow[i], reference[i]);
+                let cause = (self.precision == Precision::Fast).then(classify).flatten();
+                let x = columns[i];
                 let (pixel, heatmap_color) = ([x as u32, y as u32], &mut row[x]);
-                differences.add(Some(CameraRay { pixel, ray: &rays[x], heatmap_color }), mismatch);
+                let camera_ray = CameraRay { pixel, ray: &rays[x], heatmap_color };
+                differences.add(Some(camera_ray), cause, true, None);
             }
         }
     }
@@ -190,9 +187,11 @@ impl Comparer<'_> {
         let secondary_rays = SecondaryRayComparer::new(self);
         let (a, b) = (film(self.tested), film(&secondary_rays));
 
+        // The values of the EXR, bit by bit.
         let values = a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
         let values = values.filter(|(x, y)| x.to_bits() != y.to_bits()).count() as u64;
         let mut difference = PictureDifference { values, pixels: 0, max_channel: 0 };
+        // The bytes of the PNG; pixels that differ are marked unless a hit or shadow ray explains them.
         let (a, b) = (png_bytes(&a, &settings), png_bytes(&b, &settings));
         for ((p, q), mark) in a.chunks(3).zip(b.chunks(3)).zip(&mut heatmap.pixels) {
             let largest = p.iter().zip(q).map(|(x, y)| x.abs_diff(*y)).max().unwrap_or(0);

@@ -48,6 +48,7 @@ impl Intersector for SecondaryRayComparer<'_> {
             let (tested, reference) = (tested.as_ref(), reference.as_ref());
             self.comparer.compare_hits(ray, None, tested, reference, &mut differences);
         }
+        // Added under the lock, once for each call.
         let mut all = self.differences.lock().unwrap_or_else(|e| e.into_inner());
         *all = std::mem::take(&mut *all).merge(differences);
     }
