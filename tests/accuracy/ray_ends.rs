@@ -257,7 +257,7 @@ fn shadow_rays_of_touching_surfaces_are_those_of_exact_arithmetic() {
                 Some(surface.shadow_ray(ray.direction, &light.incident(surface.position)?))
             })
             .collect();
-        let answers: Vec<(&str, Vec<bool>, Vec<Option<Hit>>)> = all
+        let answers: Vec<_> = all
             .iter()
             .map(|(name, intersector)| {
                 let mut occluded = vec![false; shadow.len()];
