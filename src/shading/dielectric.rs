@@ -22,21 +22,28 @@ impl DielectricInterface {
     /// (n₁ cos θ₁ − n₂ cos θ₂) / (n₁ cos θ₁ + n₂ cos θ₂) and
     /// (n₂ cos θ₁ − n₁ cos θ₂) / (n₂ cos θ₁ + n₁ cos θ₂), with n₁ sin θ₁ = n₂ sin θ₂; all of it
     /// where no θ₂ fulfils that (total internal reflection). Born and Wolf, *Principles of Optics*,
-    /// 1.5.2.
+    /// 1.5.2. They are rearranged so that indices that are nearly equal lose no digits: with the
+    /// difference n₁² − n₂², of which everything else is computed, as (n₁ − n₂)(n₁ + n₂),
+    /// (n₂ cos θ₂)² = (n₁ cos θ₁)² − (n₁² − n₂²), the first quotient is (n₁² − n₂²) / (n₁ cos θ₁ +
+    /// n₂ cos θ₂)², and the second one is the first times cos(θ₁ + θ₂) / cos(θ₁ − θ₂).
     pub fn new(cosine: f64, from: f64, to: f64) -> Self {
         let cosine = cosine.clamp(0.0, 1.0);
         let ratio = from / to;
         if ratio == 1.0 {
             return Self { reflected: 0.0, ratio, cosines: [cosine; 2] };
         }
-        // 1 − η²(1 − cos²), without the cancellation of 1 − cos² near the normal.
-        let sine_squared = ratio * ratio * ((1.0 - cosine) * (1.0 + cosine));
-        if sine_squared >= 1.0 {
+        // (n₂ cos θ₂)², at most 0 under total reflection.
+        let difference = (from - to) * (from + to);
+        let square = (from * cosine) * (from * cosine) - difference;
+        if square <= 0.0 {
             return Self { reflected: 1.0, ratio, cosines: [cosine, 0.0] };
         }
-        let refracted = (1.0 - sine_squared).sqrt();
-        let perpendicular = (from * cosine - to * refracted) / (from * cosine + to * refracted);
-        let parallel = (to * cosine - from * refracted) / (to * cosine + from * refracted);
+        let refracted = (square.sqrt() / to).min(1.0);
+        let sum = from * cosine + to * refracted;
+        let perpendicular = difference / (sum * sum);
+        // cos θ₁ cos θ₂ and sin θ₁ sin θ₂, of which cos(θ₁ ± θ₂) are made.
+        let (along, across) = (cosine * refracted, ratio * ((1.0 - cosine) * (1.0 + cosine)));
+        let parallel = perpendicular * ((along - across) / (along + across));
         let reflected = (perpendicular * perpendicular + parallel * parallel) * 0.5;
         Self { reflected, ratio, cosines: [cosine, refracted] }
     }
@@ -111,6 +118,21 @@ mod tests {
         let across: f64 = (1.0 - GLASS * GLASS) / (1.0 + GLASS * GLASS);
         let expected = across * across / 2.0;
         assert!((at(brewster, 1.0, GLASS).reflected - expected).abs() < 1e-15);
+    }
+
+    #[test]
+    fn nearly_equal_indices_keep_their_digits_near_the_critical_angle() {
+        // n₂ = 1, and cos θ₂ is given: cos² θ₁ = (cos² θ₂ + n₁² − 1) / n₁².
+        for exponent in [-23, -30, -40] {
+            let small = 2f64.powi(exponent);
+            let (index, refracted) = (1.0 + small, 2f64.powi(exponent / 2 - 2));
+            let cosine = (refracted * refracted + small * (2.0 + small)).sqrt() / index;
+            let across = (index * cosine - refracted) / (index * cosine + refracted);
+            let along = (cosine - index * refracted) / (cosine + index * refracted);
+            let expected = (across * across + along * along) / 2.0;
+            let found = DielectricInterface::new(cosine, index, 1.0).reflected;
+            assert!((found / expected - 1.0).abs() < 1e-14, "{exponent}: {found} {expected}");
+        }
     }
 
     #[test]
