@@ -95,6 +95,10 @@ impl ErrorContext<'_> {
                 )
             }
             _ if expected == "a boolean" => Some(self.unexpected(found, "true or false")),
+            // Only tracks have lists of any length.
+            _ if expected == "a sequence" => {
+                Some(self.unexpected(found, "a list with a value for each time"))
+            }
             "type" | "value" => Some(self.unexpected(found, expected)),
             _ => None,
         }

@@ -92,14 +92,8 @@ fn named_models<'t>(tables: &'t SceneTable, objects: &NamedObjects) -> Vec<Optio
     objects.objects.iter().map(|object| object.kind).map(table).collect()
 }
 
-/// An orbit, with its centre resolved.
-struct ResolvedOrbit<'t> {
-    table: &'t OrbitTable,
-    /// The index of the object at the centre, if it is one.
-    center_object: Option<usize>,
-    /// The centre, as its own table gives it.
-    center: DVec3,
-}
+/// An orbit, and its centre as the centre's own table gives it.
+type ResolvedOrbit<'t> = (&'t OrbitTable, ResolvedPoint);
 
 /// Returns the orbit of each object, by its index among the names.
 fn orbits<'t>(
@@ -116,10 +110,8 @@ fn orbits<'t>(
             let message = format!("`{name}` is {noun}, which is nowhere and cannot go round");
             return Err(source.error(span, message));
         }
-        let ResolvedPoint { object: center_object, position: center } =
-            objects.resolve(source, &table.around)?;
-        let orbit = ResolvedOrbit { table, center_object, center };
-        if orbits[object].replace(orbit).is_some() {
+        let center = objects.resolve(source, &table.around)?;
+        if orbits[object].replace((table, center)).is_some() {
             let message = format!("`{name}` has an orbit already");
             return Err(source.error(span, message).help("an object goes round one centre"));
         }
@@ -170,14 +162,14 @@ impl MotionBuilder<'_, '_> {
 
     /// Returns the object that an object orbits.
     fn center_object(&self, object: usize) -> Option<usize> {
-        self.orbits[object].as_ref()?.center_object
+        self.orbits[object].as_ref()?.1.object
     }
 
     /// Returns the error that an object orbits itself, directly or by way of others.
     fn cycle_error(&self, object: usize) -> Error {
         let name = &self.objects.objects[object].name;
         let orbit = self.orbits[object].as_ref();
-        let span = orbit.map_or(0..0, |orbit| orbit.table.around.span.clone());
+        let span = orbit.map_or(0..0, |(table, _)| table.around.span.clone());
         let message = match self.center_object(object) {
             Some(center) if center != object => {
                 let is_direct = self.center_object(center) == Some(object);
@@ -193,16 +185,12 @@ impl MotionBuilder<'_, '_> {
 
     /// Adds the node of an object's orbit, and within it that of its keyframes.
     fn build_nodes(&mut self, object: usize) -> Result<()> {
-        let base = DAffine3::IDENTITY;
-        let mut node = None;
-        if let Some(orbit) = self.orbit(object)? {
-            let motion = Motion::Orbit(orbit);
-            node = Some(self.animation.add_node(Node { parent: None, base, motion }));
-        }
-        let keyframes = self.keyframes(object);
+        let orbit = self.orbit(object)?.map(Motion::Orbit);
+        let keyframes = self.keyframes(object).map(Motion::Keyframes);
         let is_keyed = keyframes.is_some();
-        if let Some(keyframes) = keyframes {
-            let motion = Motion::Keyframes(keyframes);
+        let mut node = None;
+        for motion in [orbit, keyframes].into_iter().flatten() {
+            let base = DAffine3::IDENTITY;
             node = Some(self.animation.add_node(Node { parent: node, base, motion }));
         }
         let motion = &mut self.motions.0[object];
@@ -212,23 +200,19 @@ impl MotionBuilder<'_, '_> {
 
     /// Returns the orbit of an object, if it has one.
     fn orbit(&self, object: usize) -> Result<Option<Orbit>> {
-        let Some(ResolvedOrbit { table, center_object, center }) = &self.orbits[object] else {
-            return Ok(None);
-        };
+        let Some((table, center)) = &self.orbits[object] else { return Ok(None) };
+        // A track may not move what an orbit moves.
         if let Some(Spanned { span, .. }) = &self.motions.0[object].curves.position {
             let name = &self.objects.objects[object].name;
             let message = format!("`{name}` is moved by its orbit already");
             return Err(self.source.error(span, message).help("leave out one of the two"));
         }
-        let anchor =
-            self.motions.anchor(ResolvedPoint { object: *center_object, position: *center });
-        let start = self.objects.objects[object].position.unwrap_or_default();
         // At time 0 no orbit has moved anything, and keys may have.
-        let center_curve = center_object.and_then(|i| self.motions.0[i].curves.position.as_ref());
+        let center_curve = center.object.and_then(|i| self.motions.0[i].curves.position.as_ref());
         Ok(Some(Orbit {
-            around: anchor,
-            center: center_curve.map_or(*center, |curve| curve.value.sample(0.0)),
-            start,
+            around: self.motions.anchor(*center),
+            center: center_curve.map_or(center.position, |curve| curve.value.sample(0.0)),
+            start: self.objects.objects[object].position.unwrap_or_default(),
             axis: table.axis.map_or(DVec3::Y, |axis| axis.0),
             period: table.period.map_or(f64::INFINITY, |period| period.0),
             turns_with_orbit: table.turn.unwrap_or(false),

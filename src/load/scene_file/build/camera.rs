@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::SceneBuilder;
 use super::animation::ObjectMotion;
+use super::tracks::{FOCAL_PX, FOV_X, FOV_Y, ONE_LENS, ORTHO_HEIGHT};
 use crate::error::Result;
 use crate::load::scene_file::schema::tables::CameraTable;
 use crate::load::scene_file::schema::values::normalize;
@@ -103,30 +104,18 @@ impl SceneBuilder<'_> {
 
 /// Returns the projection of a camera for a film of a width in pixels.
 fn projection(source: &Source<'_>, table: &CameraTable, width: u32) -> Result<Projection> {
-    let fov_y = table
-        .fov_y
-        .as_ref()
-        .map(|angle| ("fov_y", &angle.span, Projection::FovY(angle.value.0.to_radians())));
-    let fov_x = table
-        .fov_x
-        .as_ref()
-        .map(|angle| ("fov_x", &angle.span, Projection::FovX(angle.value.0.to_radians())));
-    let focal_px = table.focal_px.as_ref().map(|focal| {
-        ("focal_px", &focal.span, Projection::FocalPx { focal: focal.value.0, width })
-    });
-    let ortho_height = table
-        .ortho_height
-        .as_ref()
-        .map(|height| ("ortho_height", &height.span, Projection::OrthoHeight(height.value.0)));
-    let given = [fov_y, fov_x, focal_px, ortho_height];
+    let given = [
+        table.fov_y.as_ref().map(|a| (FOV_Y, &a.span, a.value.0.to_radians())),
+        table.fov_x.as_ref().map(|a| (FOV_X, &a.span, a.value.0.to_radians())),
+        table.focal_px.as_ref().map(|focal| (FOCAL_PX, &focal.span, focal.value.0)),
+        table.ortho_height.as_ref().map(|height| (ORTHO_HEIGHT, &height.span, height.value.0)),
+    ];
     match given.into_iter().flatten().collect::<Vec<_>>()[..] {
         [] => Ok(Projection::FovY(DEFAULT_FOV_Y.to_radians())),
-        [(_, _, projection)] => Ok(projection),
-        [(first, ..), (second, span, _), ..] => Err(source
-            .error(
-                &source.key_span(second, span),
-                format!("a camera cannot have both `{first}` and `{second}`"),
-            )
-            .help("keep one of `fov_y`, `fov_x`, `focal_px` and `ortho_height`")),
+        [((_, make_projection), _, value)] => Ok(make_projection(value, width)),
+        [((first, _), ..), ((second, _), span, _), ..] => {
+            let message = format!("a camera cannot have both `{first}` and `{second}`");
+            Err(source.error(&source.key_span(second, span), message).help(ONE_LENS))
+        }
     }
 }

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::SceneBuilder;
+use super::objects::ObjectKind;
 use crate::error::{Error, Result};
 use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::{Kind, LightTable};
@@ -32,6 +33,7 @@ impl SceneBuilder<'_> {
     /// Returns the animation of the next light of the scene, if it has one.
     fn animated_light(&self, table: &LightTable, light: &Light) -> Result<Option<Animated>> {
         let Some(motion) = self.motion(&table.name) else { return Ok(None) };
+        // The light at rest: where a keyed node moves it, at the origin of the node.
         let mut rest = light.clone();
         if motion.is_keyed
             && let LightKind::Point { position, .. } | LightKind::Spot { position, .. } =
@@ -39,6 +41,7 @@ impl SceneBuilder<'_> {
         {
             *position = DVec3::ZERO;
         }
+        // The curves of its keys; that of the intensity is a factor on the colour.
         let direction = motion.curves.direction.as_ref().map(|curve| curve.value.clone());
         let mut intensity = None;
         if let Some(Spanned { span, value: curve }) = &motion.curves.intensity {
@@ -56,16 +59,6 @@ impl SceneBuilder<'_> {
 }
 
 impl Kind {
-    /// Returns the kind's name in a scene file.
-    fn name(self) -> &'static str {
-        match self {
-            Kind::Point => "point",
-            Kind::Directional => "directional",
-            Kind::Spot => "spot",
-            Kind::Ambient => "ambient",
-        }
-    }
-
     /// Returns the keys that a light of this kind may have.
     fn keys(self) -> &'static [&'static str] {
         match self {
@@ -120,8 +113,8 @@ fn check_intensity(source: &Source<'_>, span: &Span, intensity: Vec3) -> Result<
 /// Returns the kind of a light, with the values that it needs.
 fn light_kind(source: &Source<'_>, table: &LightTable) -> Result<LightKind> {
     let missing = |key: &str| -> Error {
-        let kind = table.kind.value.name();
-        source.error(&table.kind.span, format!("a {kind} light needs the key `{key}`"))
+        let noun = ObjectKind::Light(table.kind.value).noun();
+        source.error(&table.kind.span, format!("{noun} needs the key `{key}`"))
     };
     let position = || table.position.as_ref().map(|p| p.value.0).ok_or_else(|| missing("position"));
     let direction =
@@ -145,14 +138,14 @@ fn cone_angles(source: &Source<'_>, table: &LightTable) -> Result<(f64, f64)> {
     let inner = table.inner_angle.as_ref().map_or(DEFAULT_INNER_ANGLE, |a| a.value.0);
     let outer = table.outer_angle.as_ref().map_or(DEFAULT_OUTER_ANGLE, |a| a.value.0);
     let (inner_angle, outer_angle) = (inner.to_radians(), outer.to_radians());
-    let given = table.inner_angle.as_ref().or(table.outer_angle.as_ref());
-    match given {
-        Some(Spanned { span, .. }) if inner_angle >= outer_angle => Err(source.error(
-            span,
-            format!("`inner_angle` ({inner}) must be less than `outer_angle` ({outer})"),
-        )),
-        _ => Ok((inner_angle, outer_angle)),
+    // The defaults fit each other, and so one of the two is given where they do not.
+    if let Some(Spanned { span, .. }) = table.inner_angle.as_ref().or(table.outer_angle.as_ref())
+        && inner_angle >= outer_angle
+    {
+        let message = format!("`inner_angle` ({inner}) must be less than `outer_angle` ({outer})");
+        return Err(source.error(span, message));
     }
+    Ok((inner_angle, outer_angle))
 }
 
 /// Checks that a light has only keys that mean something for its kind.
@@ -175,15 +168,9 @@ fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
         if let Some(span) = span
             && !kind.keys().contains(&key)
         {
-            let article = if kind == Kind::Ambient { "an" } else { "a" };
-            let name = kind.name();
+            let message = format!("{} has no `{key}`", ObjectKind::Light(kind).noun());
             let help = format!("its keys are {}", spelling::list(kind.keys()));
-            return Err(source
-                .error(
-                    &source.key_span(key, span),
-                    format!("{article} {name} light has no `{key}`"),
-                )
-                .help(help));
+            return Err(source.error(&source.key_span(key, span), message).help(help));
         }
     }
     Ok(())

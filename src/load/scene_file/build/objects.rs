@@ -61,6 +61,7 @@ pub struct NamedObjects {
 }
 
 /// A point that a key gives by its coordinates or by the name of an object.
+#[derive(Clone, Copy)]
 pub struct ResolvedPoint {
     /// The index of the object, if it is named.
     pub object: Option<usize>,
@@ -86,6 +87,7 @@ impl NamedObjects {
             let position = t.position.as_ref().map(|p| p.value.0);
             (&t.name, ObjectKind::Light(t.kind.value), position)
         });
+        // An object without a name is none of these.
         let mut objects = Self::default();
         for (name, kind, position) in cameras.chain(spheres).chain(models).chain(lights) {
             let Some(Spanned { span, value: name }) = name else { continue };
@@ -129,9 +131,7 @@ impl NamedObjects {
     ) -> Result<ResolvedPoint> {
         let Spanned { span, value } = point;
         let name = match value {
-            PointOrName::Point(point) => {
-                return Ok(ResolvedPoint { object: None, position: *point });
-            }
+            &PointOrName::Point(position) => return Ok(ResolvedPoint { object: None, position }),
             PointOrName::Name(name) => name,
         };
         let index = self.index(source, &Spanned { span: span.clone(), value: name.clone() })?;

@@ -36,6 +36,22 @@ pub struct ObjectCurves {
 /// A function from a value, and the film's width in pixels, to a projection.
 pub type MakeProjection = fn(f64, u32) -> Projection;
 
+/// A key of a camera's projection, with the projection of its value: in radians, pixels or units.
+pub type ProjectionKey = (&'static str, MakeProjection);
+
+/// The vertical field of view.
+pub const FOV_Y: ProjectionKey = ("fov_y", |angle, _| Projection::FovY(angle));
+/// The horizontal field of view.
+pub const FOV_X: ProjectionKey = ("fov_x", |angle, _| Projection::FovX(angle));
+/// The focal length in pixels.
+pub const FOCAL_PX: ProjectionKey =
+    ("focal_px", |focal, width| Projection::FocalPx { focal, width });
+/// The height of an orthographic view.
+pub const ORTHO_HEIGHT: ProjectionKey =
+    ("ortho_height", |height, _| Projection::OrthoHeight(height));
+/// The advice where a camera has several of these keys.
+pub const ONE_LENS: &str = "keep one of `fov_y`, `fov_x`, `focal_px` and `ortho_height`";
+
 impl ObjectKind {
     /// Returns the keys of an object of this kind that can be animated.
     fn animated_keys(self) -> &'static [&'static str] {
@@ -80,16 +96,12 @@ pub fn add_track(
     track.read("radius", &table.radius, |r| r.0, smooth, &mut curves.radius)?;
     track.read("intensity", &table.intensity, |i| i.0, smooth, &mut curves.intensity)?;
     // Projections, of which a camera has one.
-    let projection = &mut curves.projection;
-    let fov_y: MakeProjection = |angle, _| Projection::FovY(angle);
-    track.read_projection("fov_y", &table.fov_y, |a| a.0.to_radians(), fov_y, projection)?;
-    let fov_x: MakeProjection = |angle, _| Projection::FovX(angle);
-    track.read_projection("fov_x", &table.fov_x, |a| a.0.to_radians(), fov_x, projection)?;
-    let focal_px: MakeProjection = |focal, width| Projection::FocalPx { focal, width };
-    track.read_projection("focal_px", &table.focal_px, |d| d.0, focal_px, projection)?;
-    let ortho: MakeProjection = |height, _| Projection::OrthoHeight(height);
-    track.read_projection("ortho_height", &table.ortho_height, |h| h.0, ortho, projection)?;
-
+    let lens = &mut curves.projection;
+    track.read_projection(FOV_Y, &table.fov_y, |a| a.0.to_radians(), lens)?;
+    track.read_projection(FOV_X, &table.fov_x, |a| a.0.to_radians(), lens)?;
+    track.read_projection(FOCAL_PX, &table.focal_px, |d| d.0, lens)?;
+    track.read_projection(ORTHO_HEIGHT, &table.ortho_height, |h| h.0, lens)?;
+    // A camera has one aim, and a track changes something.
     let both = curves.look_at.is_some() && curves.direction.is_some();
     if both && object.kind == ObjectKind::Camera {
         let message = "a camera has `look_at` or `direction`, not both";
@@ -152,10 +164,9 @@ impl TrackReader<'_> {
     /// Reads the curve of a camera's projection, as [`TrackReader::read`].
     fn read_projection<T>(
         &mut self,
-        key: &str,
+        (key, make): ProjectionKey,
         list: &Option<Spanned<List<T>>>,
         value: impl Fn(&T) -> f64,
-        make: MakeProjection,
         slot: &mut Option<(MakeProjection, Spanned<Curve<f64>>)>,
     ) -> Result<()> {
         let Some(curve) = self.curve(key, list, value, Curve::<f64>::smooth)? else {
@@ -166,8 +177,7 @@ impl TrackReader<'_> {
             return Ok(());
         }
         let message = "a camera has one lens, and a track says already how it changes";
-        let help = "keep one of `fov_y`, `fov_x`, `focal_px` and `ortho_height`";
-        Err(self.source.error(&key_span, message).help(help))
+        Err(self.source.error(&key_span, message).help(ONE_LENS))
     }
 
     /// Returns the curve of a key, where it is given: checks that the object has the key, and that

@@ -1,11 +1,9 @@
 //! The tables of a scene file that describe motion: `[animation]` and those in it.
 
-use std::borrow::Cow;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::{Deserialize, Deserializer};
-
-use super::spanned::{ListVisitor, Spanned, Tables};
+use super::spanned::{Spanned, Tables};
 use super::values::{
     Amount, Coordinate, Direction, FieldOfView, FrameCount, Length, Point, PointOrName, Rate,
     Rotation, Scale, Seconds,
@@ -100,27 +98,8 @@ pub enum Interpolation {
     Smooth,
 }
 
-/// A list of any length.
-#[derive(Clone, Debug)]
+/// A list with a value for each time of a track.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(transparent)]
+#[schemars(extend("minItems" = 1), description = "")]
 pub struct List<T>(pub Vec<T>);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let visitor = ListVisitor::new("a list with a value for each time");
-        deserializer.deserialize_seq(visitor).map(Self)
-    }
-}
-
-impl<T: JsonSchema> JsonSchema for List<T> {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        format!("{}_list", T::schema_name()).into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "type": "array", "minItems": 1, "items": generator.subschema_for::<T>(),
-        })
-    }
-}

@@ -1,14 +1,12 @@
 //! The colours of a scene file.
 
 use std::borrow::Cow;
-use std::fmt;
 
 use glam::Vec3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::values::{Amount, elements, list, value_schema};
+use super::values::{Amount, Forms, value_schema};
 use crate::scene::Transfer;
 
 /// A colour as it is written, before the film's transfer curve is known.
@@ -40,71 +38,29 @@ impl Color {
 
 impl<'de> Deserialize<'de> for Color {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ColorVisitor)
+        deserializer.deserialize_any(Forms {
+            expected: "a colour: \"#rrggbb\", three numbers, or one for a grey",
+            list: |rgb: [Amount; 3]| Self::Linear(Vec3::from_array(rgb.map(|x| x.0 as f32))),
+            takes_one: true,
+            text: |text| parse_hex(text).map(Self::Pixel),
+        })
     }
 }
 
-struct ColorVisitor;
-
-impl<'de> Visitor<'de> for ColorVisitor {
-    type Value = Color;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a colour: \"#rrggbb\", three numbers, or one for a grey")
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<Color, E> {
-        parse_hex(text)
-            .map(Color::Pixel)
-            .ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
-    }
-
-    fn visit_f64<E: Error>(self, grey: f64) -> Result<Color, E> {
-        Amount::deserialize(serde::de::value::F64Deserializer::new(grey))
-            .map(|grey| Color::Linear(Vec3::splat(grey.0 as f32)))
-    }
-
-    fn visit_i64<E: Error>(self, grey: i64) -> Result<Color, E> {
-        self.visit_f64(grey as f64)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<Color, A::Error> {
-        let rgb: [Amount; 3] = elements(seq, &self)?;
-        Ok(Color::Linear(Vec3::from_array(rgb.map(|x| x.0 as f32))))
-    }
-}
-
-value_schema!(Color, {
-    "anyOf": [
-        { "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$" },
-        {
-            "type": "array", "minItems": 3, "maxItems": 3,
-            "items": { "type": "number", "minimum": 0 },
-        },
-        { "type": "number", "minimum": 0 },
-    ],
-});
+value_schema!(Color, { "anyOf": [
+    { "type": "string", "pattern": "^#([0-9a-fA-F]{3}|[0-9a-fA-F]{6})$" },
+    { "type": "array", "minItems": 3, "maxItems": 3, "items": { "type": "number", "minimum": 0 } },
+    { "type": "number", "minimum": 0 },
+] });
 
 /// A pair of colours.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "[Color; 2]", description = "")]
 pub struct Pair(pub [Color; 2]);
 
 impl<'de> Deserialize<'de> for Pair {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        list(deserializer, "two colours").map(Self)
-    }
-}
-
-impl JsonSchema for Pair {
-    fn inline_schema() -> bool {
-        true
-    }
-    fn schema_name() -> Cow<'static, str> {
-        "Pair".into()
-    }
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let color = generator.subschema_for::<Color>();
-        json_schema!({ "type": "array", "minItems": 2, "maxItems": 2, "items": color })
+        deserializer.deserialize_any(Forms::list("two colours")).map(Self)
     }
 }
 

@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::{list, value_schema};
+use super::{Forms, value_schema};
 use crate::scene::Shadow;
 use crate::scene::animation::MAX_FRAMES;
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
@@ -75,7 +75,8 @@ pub struct Size(pub [u32; 2]);
 
 impl<'de> Deserialize<'de> for Size {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let sides: [Whole; 2] = list(deserializer, "two whole numbers, width and height")?;
+        let sides: [Whole; 2] =
+            deserializer.deserialize_any(Forms::list("two whole numbers, width and height"))?;
         Ok(Self(sides.map(|side| side.0)))
     }
 }
@@ -85,20 +86,17 @@ value_schema!(Size, {
 });
 
 /// A range of samples per pixel: the fewest and the most.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "[Samples; 2]", description = "")]
 pub struct SampleRange(pub [u32; 2]);
 
 impl<'de> Deserialize<'de> for SampleRange {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let ends: [Samples; 2] = list(deserializer, "the fewest and the most samples per pixel")?;
+        let expected = "the fewest and the most samples per pixel";
+        let ends: [Samples; 2] = deserializer.deserialize_any(Forms::list(expected))?;
         Ok(Self(ends.map(|end| end.0)))
     }
 }
-
-value_schema!(SampleRange, {
-    "type": "array", "minItems": 2, "maxItems": 2,
-    "items": { "type": "integer", "minimum": 1, "maximum": 65536 },
-});
 
 /// A kind of shadow that a light casts.
 #[derive(Clone, Copy, Debug)]

@@ -5,10 +5,10 @@ mod vectors;
 
 use std::borrow::Cow;
 use std::fmt;
-use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, Expected, IgnoredAny, SeqAccess, Unexpected, Visitor};
+use serde::de::value::F64Deserializer;
+use serde::de::{Error, IgnoredAny, SeqAccess, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::scene::animation::MAX_FPS;
@@ -20,9 +20,6 @@ pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, normal
 macro_rules! value_schema {
     ($name:ident, $schema:tt) => {
         impl JsonSchema for $name {
-            fn inline_schema() -> bool {
-                true
-            }
             fn schema_name() -> Cow<'static, str> {
                 stringify!($name).into()
             }
@@ -132,46 +129,65 @@ impl Visitor<'_> for NumberVisitor {
     }
 }
 
-/// Reads a list that must hold exactly `N` values.
-pub(super) fn list<'de, T, D, const N: usize>(d: D, expected: &str) -> Result<[T; N], D::Error>
-where
-    T: Deserialize<'de> + Copy + Default,
-    D: Deserializer<'de>,
-{
-    struct ListVisitor<'a, T, const N: usize>(&'a str, PhantomData<T>);
-
-    impl<'de, T, const N: usize> Visitor<'de> for ListVisitor<'_, T, N>
-    where
-        T: Deserialize<'de> + Copy + Default,
-    {
-        type Value = [T; N];
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str(self.0)
-        }
-        fn visit_seq<A: SeqAccess<'de>>(self, seq: A) -> Result<[T; N], A::Error> {
-            elements(seq, &self)
-        }
-    }
-
-    d.deserialize_seq(ListVisitor(expected, PhantomData))
+/// The forms in which a value may be written: a list of `N` elements, and for some values also one
+/// element that stands for all, or a text.
+pub(super) struct Forms<T, V, const N: usize> {
+    /// The forms, as messages name them.
+    pub expected: &'static str,
+    /// Returns the value of a list.
+    pub list: fn([T; N]) -> V,
+    /// True if one number stands for all elements.
+    pub takes_one: bool,
+    /// Returns the value of a text, if it has any.
+    pub text: fn(&str) -> Option<V>,
 }
 
-/// Reads the elements of a list that must be `N` long.
-pub(super) fn elements<'de, T, A, const N: usize>(
-    mut seq: A,
-    expected: &dyn Expected,
-) -> Result<[T; N], A::Error>
+impl<T, const N: usize> Forms<T, [T; N], N> {
+    /// Returns the form of a list alone.
+    pub fn list(expected: &'static str) -> Self {
+        Self { expected, list: |elements| elements, takes_one: false, text: |_| None }
+    }
+}
+
+impl<'de, T, V, const N: usize> Visitor<'de> for Forms<T, V, N>
 where
     T: Deserialize<'de> + Copy + Default,
-    A: SeqAccess<'de>,
 {
-    let mut values = [T::default(); N];
-    for (i, value) in values.iter_mut().enumerate() {
-        *value = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(i, expected))?;
+    type Value = V;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.expected)
     }
-    let mut length = N;
-    while seq.next_element::<IgnoredAny>()?.is_some() {
-        length += 1;
+
+    fn visit_f64<E: Error>(self, x: f64) -> Result<V, E> {
+        if !self.takes_one {
+            return Err(E::invalid_type(Unexpected::Float(x), &self));
+        }
+        T::deserialize(F64Deserializer::new(x)).map(|x| (self.list)([x; N]))
     }
-    if length == N { Ok(values) } else { Err(A::Error::invalid_length(length, expected)) }
+
+    fn visit_i64<E: Error>(self, x: i64) -> Result<V, E> {
+        self.visit_f64(x as f64)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<V, E> {
+        (self.text)(text).ok_or_else(|| E::invalid_value(Unexpected::Str(text), &self))
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<V, A::Error> {
+        let mut values = [T::default(); N];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = seq.next_element()?.ok_or_else(|| A::Error::invalid_length(i, &self))?;
+        }
+        // A message about a longer list says how long it is.
+        let mut length = N;
+        while seq.next_element::<IgnoredAny>()?.is_some() {
+            length += 1;
+        }
+        if length == N {
+            Ok((self.list)(values))
+        } else {
+            Err(A::Error::invalid_length(length, &self))
+        }
+    }
 }
