@@ -183,6 +183,24 @@ fn a_closed_mesh_separates_a_lamp_within_from_points_on_its_corners_without() {
     }
 }
 
+#[test]
+fn shadow_rays_and_others_may_be_asked_for_together() {
+    let mut scene = Scene::default();
+    scene.add_material(Material::default());
+    scene.spheres.push(Sphere::new(DVec3::Z * 5.0, 1.0, MaterialId(0)));
+    let plain = Ray::segment(DVec3::ZERO, DVec3::Z * 9.0);
+    let shadow = Ray { shadow: Some(ShadowEnds { viewer: DVec3::X }), ..plain };
+    let away = Ray { direction: -plain.direction, ..plain };
+    let rays = [plain, shadow, shadow, away, shadow];
+    for (name, intersector) in certified(&scene) {
+        let (mut occluded, mut hits) = ([false; 5], [None; 5]);
+        intersector.occluded(&rays, Coherence::Coherent, &mut occluded);
+        intersector.closest(&rays, Coherence::Coherent, &mut hits);
+        assert_eq!(occluded, [true, true, true, false, true], "{name}");
+        assert_eq!(hits.map(|hit| hit.is_some()), occluded, "{name}");
+    }
+}
+
 /// Every intersector of precision `certified`, and the oracle.
 fn certified(scene: &Scene) -> Vec<(&'static str, Box<dyn Intersector + '_>)> {
     let mut all = crate::order::intersectors(scene);

@@ -134,6 +134,11 @@ impl<'s> Embree<'s> {
     }
 }
 
+/// True if two rays may be in one batch, which holds either shadow rays or others.
+fn is_same_kind(a: &Ray, b: &Ray) -> bool {
+    a.shadow.is_some() == b.shadow.is_some()
+}
+
 /// The version of the Embree library, such as `4.4.0`.
 ///
 /// # Errors
@@ -162,17 +167,25 @@ impl Intersector for Embree<'_> {
     fn closest(&self, rays: &[Ray], coherence: Coherence, hits: &mut [Option<Hit>]) {
         assert_eq!(rays.len(), hits.len(), "one hit for each ray");
         let (mut batch, mut batch_hits) = (RayBatch::default(), HitBatch::default());
-        batch.extend(rays);
-        self.closest_batch(&batch, coherence, &mut batch_hits);
-        batch_hits.iter().zip(hits).for_each(|(from, to)| *to = from);
+        let mut hits = hits.iter_mut();
+        for rays in rays.chunk_by(is_same_kind) {
+            batch.clear();
+            batch.extend(rays);
+            self.closest_batch(&batch, coherence, &mut batch_hits);
+            batch_hits.iter().zip(&mut hits).for_each(|(from, to)| *to = from);
+        }
     }
 
     fn occluded(&self, rays: &[Ray], coherence: Coherence, occluded: &mut [bool]) {
         assert_eq!(rays.len(), occluded.len(), "one answer for each ray");
         let (mut batch, mut batch_occluded) = (RayBatch::default(), Vec::new());
-        batch.extend(rays);
-        self.occluded_batch(&batch, coherence, &mut batch_occluded);
-        occluded.copy_from_slice(&batch_occluded);
+        let mut occluded = occluded.iter_mut();
+        for rays in rays.chunk_by(is_same_kind) {
+            batch.clear();
+            batch.extend(rays);
+            self.occluded_batch(&batch, coherence, &mut batch_occluded);
+            batch_occluded.iter().zip(&mut occluded).for_each(|(from, to)| *to = *from);
+        }
     }
 
     fn closest_batch(&self, rays: &RayBatch, coherence: Coherence, hits: &mut HitBatch) {
