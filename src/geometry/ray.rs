@@ -50,10 +50,10 @@ pub struct Continuation {
     pub crossed: Departure,
 }
 
-/// What a shadow ray knows of its ends, a shading point and a light, beyond the line between them.
+/// The ends of a shadow ray: a shading point, which a viewer sees, and a light.
 ///
-/// It does not hit, at the light, a surface on which the light lies. At the shading point a surface
-/// through the point blocks it that separates the light from the viewer; in precision `certified`.
+/// The ray does not hit, at the light, a surface on which the light lies. In precision `certified` a surface
+/// through the shading point blocks it that separates the light from the viewer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShadowEnds {
     /// The direction from the shading point toward the viewer, of any length.
@@ -75,7 +75,7 @@ pub struct Ray {
     pub departure: Option<Departure>,
     /// Its progress, if it went straight through a surface: it hits only what lies ahead.
     pub continuation: Option<Continuation>,
-    /// What it knows of its ends, if it is a shadow ray.
+    /// The ends, if it is a shadow ray.
     pub shadow: Option<ShadowEnds>,
 }
 

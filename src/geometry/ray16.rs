@@ -212,6 +212,12 @@ impl RayBatch {
         }
     }
 
+    /// The directions toward the viewers of shadow rays, in blocks of sixteen; empty for other rays.
+    #[inline(always)]
+    pub fn viewers(&self) -> &[[Lanes<f64>; 3]] {
+        &self.viewers
+    }
+
     /// True if the rays are shadow rays.
     #[inline(always)]
     pub fn are_shadow_rays(&self) -> bool {

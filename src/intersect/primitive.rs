@@ -3,6 +3,9 @@
 //!
 //! A ray does not hit, at its ends, surfaces on which these lie; see [`RayEnds`].
 
+use glam::DVec3;
+
+use crate::geometry::triangle::TriangleHit;
 use crate::geometry::{
     Continuation, Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle,
 };
@@ -28,7 +31,8 @@ impl<'s> Primitives<'s> {
         's: 'a,
     {
         let Primitives { scene, precision } = *self;
-        RayTests { scene, precision, ray, ends: RayEnds::new(scene, ray) }
+        let inverse_length_squared = sphere::inverse_length_squared(ray.direction);
+        RayTests { scene, precision, ray, ends: RayEnds::new(scene, ray), inverse_length_squared }
     }
 }
 
@@ -42,25 +46,64 @@ pub struct RayTests<'a> {
     pub(super) precision: Precision,
     pub(super) ray: &'a Ray,
     pub(super) ends: RayEnds<'a>,
+    /// The reciprocal 1 / |direction|².
+    inverse_length_squared: f64,
 }
 
 impl RayTests<'_> {
     /// The hit on sphere `index`. A hit beyond `limit` may be left out.
     #[inline]
     pub fn sphere(&self, index: u32, limit: f64) -> Option<Hit> {
-        self.between_ends(PrimitiveId::sphere(index), || self.sphere_crossing(index, limit))
+        let hit = self.sphere_crossing(index, limit);
+        if self.ray.shadow.is_none() {
+            return hit;
+        }
+        let is_blocked = self.is_certified() && self.ends.is_blocked_by_sphere(index);
+        self.between_ends(PrimitiveId::sphere(index), is_blocked, hit)
     }
 
     /// The hit on plane `index`.
     #[inline]
     pub fn plane(&self, index: u32) -> Option<Hit> {
-        self.between_ends(PrimitiveId::plane(index), || self.plane_crossing(index))
+        let hit = self.plane_crossing(index);
+        if self.ray.shadow.is_none() {
+            return hit;
+        }
+        let is_blocked = self.is_certified() && self.ends.is_blocked_by_plane(index);
+        self.between_ends(PrimitiveId::plane(index), is_blocked, hit)
     }
 
     /// The hit on the triangle `id`. A hit beyond `limit` may be left out.
     #[inline]
     pub fn triangle(&self, id: PrimitiveId, limit: f64) -> Option<Hit> {
-        self.between_ends(id, || self.triangle_crossing(id, limit))
+        let Ray { origin, direction, tmax, departure, shadow, .. } = *self.ray;
+        if departure.is_some_and(|departure| departure.id == id) {
+            return None;
+        }
+        let vertices = self.scene.triangle_vertices(id);
+        let (mut is_blocked, crossing) = match self.precision {
+            Precision::Fast => {
+                let crossing = triangle::intersect(vertices, origin, direction);
+                (false, crossing.filter(|hit| hit.t > 0.0 && hit.t < tmax))
+            }
+            Precision::Certified => {
+                use triangle::certified::{EdgeBounds, crossing};
+                let edges = EdgeBounds::new(vertices, origin, direction);
+                let may_block =
+                    shadow.is_some() && edges.may_start_in_plane(self.ends.departure_size());
+                let is_outside = edges.estimate().is_outside(limit);
+                (
+                    may_block,
+                    if is_outside { None } else { crossing(vertices, origin, direction, tmax) },
+                )
+            }
+        };
+        let hit = crossing.and_then(|crossing| self.triangle_hit(id, vertices, crossing));
+        if shadow.is_none() {
+            return hit;
+        }
+        is_blocked = is_blocked && self.ends.is_blocked_by_triangle(id, vertices);
+        self.between_ends(id, is_blocked, hit)
     }
 
     /// The hit on any primitive.
@@ -73,16 +116,16 @@ impl RayTests<'_> {
         }
     }
 
-    /// The hit on a primitive, which `crossing` gives. A shadow ray may instead be blocked at its origin,
-    /// and does not hit, at its light, what the light lies on.
-    #[inline(always)]
-    fn between_ends(&self, id: PrimitiveId, crossing: impl FnOnce() -> Option<Hit>) -> Option<Hit> {
-        if self.ray.shadow.is_none() {
-            return crossing();
-        }
-        let is_blocked = self.precision == Precision::Certified && self.ends.is_blocked_by(id);
+    /// The hit of a shadow ray on a primitive: at the origin if the primitive blocks it there, and none at
+    /// the light if the light lies on the primitive.
+    #[inline]
+    fn between_ends(&self, id: PrimitiveId, is_blocked: bool, hit: Option<Hit>) -> Option<Hit> {
         let blocked = if is_blocked { self.hit_at_origin(id) } else { None };
-        blocked.or_else(|| crossing().filter(|hit| !self.ends.ends_at(hit)))
+        blocked.or_else(|| hit.filter(|hit| !self.ends.ends_at(hit)))
+    }
+
+    fn is_certified(&self) -> bool {
+        self.precision == Precision::Certified
     }
 
     /// The hit on a surface that blocks a shadow ray at its origin, at the least t; none if the ray has
@@ -126,7 +169,7 @@ impl RayTests<'_> {
     pub(super) fn sphere_root(&self, index: u32, limit: f64, far: bool) -> Option<Hit> {
         let s = &self.scene.spheres[index as usize];
         let Ray { origin, direction, tmax, .. } = *self.ray;
-        let inverse = sphere::inverse_length_squared(direction);
+        let inverse = self.inverse_length_squared;
         let t = match self.precision {
             Precision::Fast => {
                 let roots = sphere::roots(s.center, s.radius, origin, direction, inverse)?;
@@ -180,29 +223,19 @@ impl RayTests<'_> {
         Some(Hit { t, u: 0.0, v: 0.0, id })
     }
 
-    /// The crossing with the triangle `id` that a ray hits, whatever surface its end lies on.
+    /// The hit at a crossing with the triangle `id`, unless the ray starts on it or has passed it, or a
+    /// mask cuts a hole.
     #[inline(always)]
-    fn triangle_crossing(&self, id: PrimitiveId, limit: f64) -> Option<Hit> {
-        let Ray { origin, direction, tmax, departure, .. } = *self.ray;
-        if departure.is_some_and(|departure| departure.id == id) {
-            return None;
-        }
-        let vertices = self.scene.triangle_vertices(id);
-        let crossing = match self.precision {
-            Precision::Fast => triangle::intersect(vertices, origin, direction)
-                .filter(|hit| hit.t > 0.0 && hit.t < tmax)?,
-            Precision::Certified => {
-                use triangle::certified::{crossing, estimate};
-                if estimate(vertices, origin, direction).is_outside(limit) {
-                    return None;
-                }
-                crossing(vertices, origin, direction, tmax)?
-            }
-        };
-        let hit = Hit { t: crossing.t, u: crossing.u, v: crossing.v, id };
-        let excluded =
-            self.ends.starts_on_triangle(id, vertices) || self.has_passed_flat(hit.t, id);
-        (!excluded && !self.scene.is_cut_out(id, hit.u, hit.v)).then_some(hit)
+    fn triangle_hit(
+        &self,
+        id: PrimitiveId,
+        vertices: [DVec3; 3],
+        TriangleHit { t, u, v }: TriangleHit,
+    ) -> Option<Hit> {
+        let excluded = self.ends.starts_on_triangle(id, vertices)
+            || self.has_passed_flat(t, id)
+            || self.scene.is_cut_out(id, u, v);
+        (!excluded).then_some(Hit { t, u, v, id })
     }
 
     /// Merges the infinite planes into a hit on finite primitives: they are in no tree, since nothing

@@ -26,8 +26,8 @@
 //!   lies: the height over a plane with a far point is computed in double-double numbers.
 //!
 //! Two faces that coincide may have been baked by different transforms, each of which rounds a
-//! vertex by at most 6 √3 ε S as long as no greater numbers cancel in it. All in all 3 √3 + 2 · 6 √3
-//! = 26 at most, and 32 ε S is what is allowed. Whether an end lies within that of a surface is decided exactly,
+//! vertex by at most 6 √3 ε S as long as no greater numbers cancel in it. All in all that is at most
+//! 3 √3 + 2 · 6 √3 = 26 from a triangle and 16 + 6 √3 = 27 from a plane, and 32 ε S is what is allowed. Whether an end lies within that of a surface is decided exactly,
 //! also over flat triangles, whose normals lose their digits.
 //!
 //! Surfaces that are farther apart than that are two, such as a vertex stored in f32 and a plane at
@@ -121,33 +121,43 @@ impl<'a> RayEnds<'a> {
         })
     }
 
-    /// True if the surface of a primitive blocks a shadow ray at its origin: the ray starts on it, has
-    /// left another, and the surface separates the light from the viewer there.
+    /// True if sphere `index` blocks a shadow ray at its origin: the ray starts on it, has left another
+    /// surface, and the sphere separates the light from the viewer there.
     #[inline]
-    pub fn is_blocked_by(&self, id: PrimitiveId) -> bool {
+    pub fn is_blocked_by_sphere(&self, index: u32) -> bool {
+        let Sphere { center, radius, .. } = self.scene.spheres[index as usize];
+        self.corner(PrimitiveId::sphere(index)).is_some_and(|corner| {
+            near_sphere(center, radius, corner.point, corner.distance)
+                && corner.sphere_separates(center)
+        })
+    }
+
+    /// True if plane `index` blocks a shadow ray at its origin.
+    #[inline]
+    pub fn is_blocked_by_plane(&self, index: u32) -> bool {
+        let plane = &self.scene.planes[index as usize];
+        self.corner(PrimitiveId::plane(index)).is_some_and(|corner| {
+            near_plane(plane.point, plane.normal, corner.point, corner.distance)
+                && corner.plane_separates(plane.normal)
+        })
+    }
+
+    /// True if the triangle `id` with these vertices blocks a shadow ray at its origin.
+    #[cold]
+    pub fn is_blocked_by_triangle(&self, id: PrimitiveId, vertices: [DVec3; 3]) -> bool {
+        self.corner(id).is_some_and(|corner| {
+            near_triangle_plane(vertices, corner.point, corner.distance)
+                && corner.triangle_separates(vertices)
+        })
+    }
+
+    /// The corner at the origin of a shadow ray, for a primitive other than the one that it left.
+    #[inline(always)]
+    fn corner(&self, id: PrimitiveId) -> Option<Corner> {
         let Ray { origin: point, direction, departure, shadow, .. } = *self.ray;
-        let (Some(ends), Some(departure)) = (shadow, departure) else { return false };
-        if departure.id == id {
-            return false;
-        }
-        let distance = self.distance(id);
-        let corner = Corner { point, viewer: ends.viewer, direction, distance };
-        match id.geometry {
-            Geometry::Spheres => {
-                let Sphere { center, radius, .. } = self.scene.spheres[id.primitive as usize];
-                near_sphere(center, radius, point, distance) && corner.sphere_separates(center)
-            }
-            Geometry::Planes => {
-                let plane = &self.scene.planes[id.primitive as usize];
-                near_plane(plane.point, plane.normal, point, distance)
-                    && corner.plane_separates(plane.normal)
-            }
-            Geometry::Mesh(_) => {
-                let vertices = self.scene.triangle_vertices(id);
-                near_triangle_plane(vertices, point, distance)
-                    && corner.triangle_separates(vertices)
-            }
-        }
+        let viewer = shadow?.viewer;
+        let is_other = departure.is_some_and(|departure| departure.id != id);
+        is_other.then(|| Corner { point, viewer, direction, distance: self.distance(id) })
     }
 
     /// True if the surface that was hit is one on which a shadow ray ends, since the light lies on it:
@@ -184,11 +194,16 @@ impl<'a> RayEnds<'a> {
     /// The distance up to which the origin lies on a surface.
     #[inline(always)]
     fn distance(&self, id: PrimitiveId) -> f64 {
-        let departure_size = *self.departure_size.get_or_init(|| {
+        tolerance(self.departure_size().max(extent(self.scene, id)))
+    }
+
+    /// The largest absolute coordinate of the origin and of the surface that was left.
+    #[inline(always)]
+    pub fn departure_size(&self) -> f64 {
+        *self.departure_size.get_or_init(|| {
             let left = self.ray.departure.map_or(0.0, |from| extent(self.scene, from.id));
             self.ray.origin.abs().max_element().max(left)
-        });
-        tolerance(departure_size.max(extent(self.scene, id)))
+        })
     }
 }
 

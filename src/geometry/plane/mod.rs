@@ -30,8 +30,8 @@ pub fn quotient(point: DVec3, normal: DVec3, origin: DVec3, direction: DVec3) ->
     normal.dot(point - origin) / normal.dot(direction)
 }
 
-/// The height of `position` over the plane, in units of the length of `normal`, right to 8 ε of the
-/// coordinates of `position`: the plane's point may lie far away.
+/// The height of `position` over the plane, in units of the length of `normal`, right to 14 ε of the
+/// largest coordinate of `position`, for a normal of length 1: the plane's point may lie far away.
 #[inline(always)]
 pub fn height(point: DVec3, normal: DVec3, position: DVec3) -> f64 {
     if is_far(point, position) {

@@ -15,7 +15,7 @@ use crate::scene::{Instance, LightKind, Material, MaterialId, Plane, Scene, Sphe
 /// instances without being stored again.
 #[derive(Debug)]
 pub struct MergedModel {
-    /// What each instance gets: all but meshes, materials and textures.
+    /// The objects that each instance gets: all but meshes, materials and textures.
     model: Scene,
     /// The index in the scene of its first mesh.
     first_mesh: usize,

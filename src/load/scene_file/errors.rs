@@ -147,12 +147,16 @@ impl ErrorContext<'_> {
     fn table(&self) -> String {
         match self.path {
             path if path.contains('.') => format!("`{path}`"),
-            "film" => "[film]".to_owned(),
             path if self.source.excerpt(&self.span).starts_with("[[") => format!("[[{path}]]"),
-            "camera" => "[camera]".to_owned(),
-            path => format!("[[{path}]]"),
+            path => header(path),
         }
     }
+}
+
+/// Returns the usual header of a table.
+fn header(name: &str) -> String {
+    let is_repeated = REPEATED.contains(&name) && name != "camera";
+    if is_repeated { format!("[[{name}]]") } else { format!("[{name}]") }
 }
 
 /// Returns the tables that have a key, for a key that is in the wrong one.
@@ -168,10 +172,7 @@ fn tables_with_key(key: &str) -> Option<String> {
             let one = table.get("items").or_else(|| table.pointer("/anyOf/0")).unwrap_or(table);
             one.get("properties").is_some_and(|keys| keys.get(key).is_some())
         })
-        .map(|(name, _)| {
-            let is_repeated = REPEATED.contains(&name.as_str()) && name != "camera";
-            if is_repeated { format!("[[{name}]]") } else { format!("[{name}]") }
-        })
+        .map(|(name, _)| header(name))
         .collect();
     (!found.is_empty()).then(|| format!("in {}", found.join(" or ")))
 }

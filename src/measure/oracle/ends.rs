@@ -4,6 +4,7 @@
 use dashu_int::{IBig, Sign};
 use glam::DVec3;
 
+use super::ExactNumber;
 use super::integers::{IntegerVector, common_scale, cross, dot, sub};
 use crate::geometry::{Geometry, PrimitiveId, Ray, Side};
 use crate::scene::Scene;
@@ -11,11 +12,11 @@ use crate::scene::Scene;
 /// The way in which a ray leaves a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// Not at all: it starts somewhere else.
+    /// A ray that starts somewhere else.
     Elsewhere,
-    /// It starts on the surface, and has no other crossing with it ahead.
+    /// A ray that starts on the surface, and has no other crossing with it ahead.
     Leaves,
-    /// It starts on a sphere and goes into it.
+    /// A ray that starts on a sphere and goes into it.
     Enters,
 }
 
@@ -57,7 +58,24 @@ pub fn ends_on(scene: &Scene, id: PrimitiveId, ray: &Ray, is_far_root: bool) -> 
             || !enters(scene, id, end, -ray.direction, slack))
 }
 
-/// 2⁻⁴⁷ times the largest of the sizes.
+/// Returns the weights of the second and third corner at a point of a triangle, correctly rounded, in
+/// \[0, 1\].
+pub fn weights(corners: [DVec3; 3], point: DVec3) -> (f64, f64) {
+    let [a, b, c] = corners;
+    let ([a, b, c, point], _) = common_scale([a, b, c, point]);
+    let (first, second, offset) = (sub(&b, &a), sub(&c, &a), sub(&point, &a));
+    let normal = cross(&first, &second);
+    let weight = |x: &IntegerVector, y: &IntegerVector| {
+        let area = dot(&cross(x, y), &normal);
+        if area <= IBig::ZERO {
+            return 0.0;
+        }
+        ExactNumber::quotient(area, dot(&normal, &normal), 0).to_f64().min(1.0)
+    };
+    (weight(&offset, &second), weight(&first, &offset))
+}
+
+/// Returns 2⁻⁴⁷ times the largest of the sizes.
 fn slack(sizes: &[f64]) -> f64 {
     sizes.iter().copied().fold(0.0, f64::max) / (1u64 << 47) as f64
 }
@@ -71,7 +89,7 @@ fn coordinate(p: DVec3) -> f64 {
     p.x.abs().max(p.y.abs()).max(p.z.abs())
 }
 
-/// The largest coordinate of a sphere's box corner or of a triangle; 0 for a plane.
+/// Returns the largest coordinate of a sphere's box or of a triangle; 0 for a plane.
 fn extent(scene: &Scene, id: PrimitiveId) -> f64 {
     match id.geometry {
         Geometry::Planes => 0.0,

@@ -1,6 +1,6 @@
 //! The intersector that tests every primitive in exact arithmetic.
 
-use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side, triangle};
+use crate::geometry::{Bounds, Geometry, Hit, PrimitiveId, Ray, Side};
 use crate::intersect::{Coherence, Intersector};
 use crate::measure::oracle::ends::{self, Start};
 use crate::measure::oracle::{self, Crossing, ExactNumber};
@@ -68,7 +68,7 @@ impl<'s> Oracle<'s> {
             least.compare(past.t) == std::cmp::Ordering::Less || past.crossed.id >= id
         });
         let (u, v) = match id.geometry {
-            Geometry::Mesh(_) => triangle::weights(self.scene.triangle_vertices(id), ray.origin),
+            Geometry::Mesh(_) => ends::weights(self.scene.triangle_vertices(id), ray.origin),
             _ => (0.0, 0.0),
         };
         let is_cut_out =

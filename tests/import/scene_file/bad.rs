@@ -147,6 +147,8 @@ fn a_missing_key_is_at_its_tables_header() {
     assert_eq!(error.message(), "[[sphere]] needs the key `radius`");
     let error = refused("¦[camera]\nlook_at = [0, 0, 0]\n");
     assert_eq!(error.message(), "[camera] needs the key `position`");
+    let error = refused_seen("¦[animation]\nfps = 10\n");
+    assert_eq!(error.message(), "[animation] needs the key `frames`");
 }
 
 #[test]

@@ -39,6 +39,9 @@ pub struct EdgeBounds {
     numerator_error: f64,
     denominator: f64,
     denominator_error: f64,
+    /// The s and the w of the bounds.
+    size: f64,
+    area: f64,
 }
 
 impl EdgeBounds {
@@ -61,6 +64,8 @@ impl EdgeBounds {
             numerator_error: 64.0 * U * area * size,
             denominator: normal.dot(direction),
             denominator_error: 64.0 * U * area * direction_size,
+            size,
+            area,
         }
     }
 
@@ -81,6 +86,18 @@ impl EdgeBounds {
         let above = (a > error) | (b > error) | (c > error);
         let below = (a < -error) | (b < -error) | (c < -error);
         !(above & below)
+    }
+
+    /// True if the line's origin may lie in the triangle's plane to within 2⁻⁴⁷ of the largest coordinate of
+    /// the triangle and of `others`, which is at least that of the origin; false only where it certainly
+    /// does not.
+    #[inline(always)]
+    pub fn may_start_in_plane(&self, others: f64) -> bool {
+        // The vertices are at most s farther out than the origin, and the normal 2 √3 w long.
+        let distance = 256.0 * U * (others + self.size);
+        // Negated for what is not a number.
+        let apart = self.numerator.abs() > self.numerator_error + 4.0 * self.area * distance;
+        !apart
     }
 
     /// The signs of the edge functions where they are certain, `Equal` where they are not.

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use crate::geometry::incidence::are_on_one_side;
 use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::fast::{SphereEntry, SphereTable};
@@ -44,6 +45,9 @@ pub trait Shape {
 
     /// The estimate of the first t > 0, for a ray that left no surface.
     fn estimate(&self, origin: DVec3, direction: DVec3, inverse_length_squared: f64) -> Estimate;
+
+    /// False if two directions certainly go to one side of it at a point on it.
+    fn may_separate(&self, point: DVec3, a: DVec3, b: DVec3) -> bool;
 
     /// True if a ray that left a surface, and that by its estimate hits it,
     /// starts on it and so may not hit it.
@@ -120,6 +124,12 @@ impl Shape for CertifiedSphere {
         // Negated for what is not a number.
         let apart = power.abs() > distance * (2.0 * self.radius + distance);
         !apart
+    }
+
+    #[inline(always)]
+    fn may_separate(&self, point: DVec3, a: DVec3, b: DVec3) -> bool {
+        let normal = point - self.center;
+        !are_on_one_side(normal, normal.abs(), a, b)
     }
 
     #[inline(always)]
@@ -224,6 +234,14 @@ impl Shape for CertifiedTriangle {
         // Negated for what is not a number.
         let apart = height > 5.0 * area * distance;
         !apart
+    }
+
+    #[inline(always)]
+    fn may_separate(&self, _: DVec3, a: DVec3, b: DVec3) -> bool {
+        let (first, second) =
+            (self.vertices[1] - self.vertices[0], self.vertices[2] - self.vertices[0]);
+        let area = first.abs().max_element() * second.abs().max_element();
+        !are_on_one_side(first.cross(second), DVec3::splat(2.0 * area), a, b)
     }
 
     #[inline(always)]

@@ -10,6 +10,8 @@ struct Estimates<const W: usize> {
     hits: [Estimate; W],
     /// True for each ray that left a surface and may start on the primitive.
     may_start: [bool; W],
+    /// True for each shadow ray that the primitive may block at its origin.
+    may_block: [bool; W],
     /// True for each shadow ray that may end on the primitive, which then does not block its light.
     may_end: [bool; W],
 }
@@ -31,8 +33,7 @@ impl<const W: usize> QueryContext<'_, W> {
             let e = estimates.hits[i];
             // The next hit of a continuation ray is not always the first root, and a shadow ray may be
             // blocked at its origin.
-            let is_blocked = self.are_shadow_rays && estimates.may_start[i];
-            if self.departures.any_continuation || is_blocked {
+            if self.departures.any_continuation || estimates.may_block[i] {
                 self.resolve_exactly(i, primitive.id);
                 tfar[i] = self.closest_tfar(i).min(tfar[i]);
                 continue;
@@ -71,8 +72,7 @@ impl<const W: usize> QueryContext<'_, W> {
         for i in 0..W {
             let e = estimates.hits[i];
             let may_start = estimates.may_start[i];
-            let is_blocked = self.are_shadow_rays && may_start;
-            if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !is_blocked) {
+            if active[i] == 0 || (e.is_outside(self.rays.tmax[i]) && !estimates.may_block[i]) {
                 continue;
             }
             if self.departures.any && self.is_departure(i, primitive.id) {
@@ -117,8 +117,12 @@ impl<const W: usize> QueryContext<'_, W> {
         if !any {
             return None;
         }
-        let mut estimates =
-            Estimates { hits: [Estimate::MISS; W], may_start: [false; W], may_end: [false; W] };
+        let mut estimates = Estimates {
+            hits: [Estimate::MISS; W],
+            may_start: [false; W],
+            may_block: [false; W],
+            may_end: [false; W],
+        };
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
@@ -136,7 +140,11 @@ impl<const W: usize> QueryContext<'_, W> {
             for i in 0..W {
                 let (origin, direction) = self.rays.origin_and_direction(i);
                 let end = origin + direction * self.rays.tmax[i];
-                estimates.may_end[i] = primitive.shape.may_contain(end, tolerance);
+                // A directional light is nowhere.
+                let is_bounded = self.rays.tmax[i] < f64::INFINITY;
+                estimates.may_end[i] = is_bounded & primitive.shape.may_contain(end, tolerance);
+                let may_separate = primitive.shape.may_separate(origin, self.viewer(i), direction);
+                estimates.may_block[i] = estimates.may_start[i] & may_separate;
             }
         }
         Some(estimates)

@@ -1,5 +1,7 @@
 //! The query context: the state of a packet that Embree's callbacks read and write.
 
+use glam::DVec3;
+
 use crate::geometry::{Estimate, Geometry, Hit16, PrimitiveId, PrimitiveId16, RayBatch};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{CommittedScene, INVALID, RayHitRecord};
@@ -166,6 +168,8 @@ pub struct QueryContext<'a, const W: usize> {
     pub departures: PacketDepartures<W>,
     /// True if the rays are shadow rays, which both their ends may exempt from hits.
     pub are_shadow_rays: bool,
+    /// The directions toward the viewers of shadow rays.
+    viewer: [[f64; W]; 3],
     /// The hits that the callbacks found: in precision `fast` spheres, in `certified` everything.
     pub hits: PacketHits<W>,
     /// The ends of the f32 rays, before anything was hit.
@@ -199,6 +203,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
                 tolerance: 0.0,
             },
             are_shadow_rays: batch.are_shadow_rays(),
+            viewer: [[0.0; W]; 3],
             hits: PacketHits::new([0.0; W]),
             f32_tmax: [0.0; W],
             t_uncertainty: query.space.t_uncertainty(),
@@ -218,12 +223,23 @@ impl<'a, const W: usize> QueryContext<'a, W> {
         let lanes = self.rays.set_up_f32_rays(self.query.space, record);
         self.f32_tmax = record.tfar;
         self.hits.reset(&self.rays.tmax);
+        if self.query.precision == Precision::Certified
+            && let Some(viewers) = packet.viewers()
+        {
+            self.viewer = viewers;
+        }
         if self.departures.any {
             let max_coordinate = self.rays.max_origin_coordinate().max(self.query.max_coordinate);
             self.departures.tolerance = max_tolerance(max_coordinate);
             (self.departures.outward, self.departures.inward) = packet.departed_spheres();
         }
         lanes
+    }
+
+    /// The direction toward the viewer of the shadow ray in a lane.
+    #[inline(always)]
+    pub fn viewer(&self, lane: usize) -> DVec3 {
+        DVec3::new(self.viewer[0][lane], self.viewer[1][lane], self.viewer[2][lane])
     }
 
     /// The end of the f32 ray in a lane, as the closest hit so far bounds it.

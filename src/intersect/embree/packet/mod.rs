@@ -61,6 +61,17 @@ impl<'a> Packet<'a> {
         self.rays.ray(self.first + lane)
     }
 
+    /// The directions toward the viewers of shadow rays.
+    #[inline(always)]
+    pub fn viewers<const W: usize>(&self) -> Option<[[f64; W]; 3]> {
+        let viewers = self.rays.viewers().get(self.block())?;
+        let mut lanes = [[0.0; W]; 3];
+        for axis in 0..3 {
+            lanes[axis].copy_from_slice(&viewers[axis][self.first_lane()..][..W]);
+        }
+        Some(lanes)
+    }
+
     /// The departure of the ray in a lane.
     #[inline(always)]
     pub fn departure(&self, lane: usize) -> Option<Departure> {
