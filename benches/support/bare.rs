@@ -115,7 +115,7 @@ impl Shapes {
         let center = scene.bounds().center();
         let mesh = |instance: &Instance| {
             let mesh = &scene.meshes[instance.mesh.0 as usize];
-            let place = |p: &[f32; 3]| (instance.to_world(*p) - center).as_vec3().to_array();
+            let place = |p: DVec3| (instance.to_world(p) - center).as_vec3().to_array();
             (mesh.positions.iter().map(place).collect(), mesh.triangles.clone())
         };
         let sphere = |s: &Sphere| (s.center - center).as_vec3().extend(s.radius as f32).to_array();

@@ -15,7 +15,8 @@ pub fn knot(resolution: [u32; 2]) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
     let knot::Mesh { positions, triangles } = knot::mesh(resolution);
-    let mesh = Mesh { name: "knot".into(), positions, triangles, ..Mesh::default() };
+    let mesh =
+        Mesh { name: "knot".into(), positions: positions.into(), triangles, ..Mesh::default() };
     let mesh = scene.add_mesh(mesh);
     scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
     with_camera_and_light(scene, DVec3::new(0.25, 0.15, 2.1))

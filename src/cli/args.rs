@@ -126,6 +126,9 @@ is close to an edge, to a tangent, or to a tie of two surfaces), at most 1e-4 of
 and at most 1e-5 of the pixels differ by more than 1 of 255. In precision certified it passes if no \
 bit differs.
 
+With --ray, one ray is traced with every intersector, and the exact one's distance is compared with that of \
+the file's decimals before any of them was rounded.
+
 Colours of the heat map: red for an unexplained mismatch, yellow for an explained one, blue for a \
 pixel that differs, grey where both hit something, black where both hit nothing.
 

@@ -110,7 +110,7 @@ mod tests {
     fn warnings_of_fast_precision_name_the_flag_that_avoids_them() {
         let mut scene = Scene::default();
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0.0; 3], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-4]],
+            positions: vec![[0.0; 3], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-4]].into(),
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
         });

@@ -28,7 +28,7 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
     let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
-        let replay = measure::replay(&scene, ray)?;
+        let replay = measure::replay(&scene, ray, Some(&input.scene))?;
         output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
         return Ok(ExitCode::SUCCESS);
     }

@@ -112,7 +112,7 @@ mod tests {
     fn another_mesh_has_not_moved() {
         let (mut previous, mut scene) = (PreviousFrame::default(), scene());
         previous.advance(&scene);
-        Arc::make_mut(&mut scene.meshes[0]).positions = vec![[0.0; 3]];
+        Arc::make_mut(&mut scene.meshes[0]).positions = vec![[0.0; 3]].into();
         assert_eq!(previous.advance(&scene), None);
     }
 

@@ -279,7 +279,7 @@ mod tests {
         // Two triangles that share the edge x = 0 and rise away from it: a valley.
         let mut scene = Scene::default();
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0., 0., -1.], [0., 0., 1.], [1., 1., 0.], [-1., 1., 0.]],
+            positions: vec![[0., 0., -1.], [0., 0., 1.], [1., 1., 0.], [-1., 1., 0.]].into(),
             triangles: vec![[0, 1, 2], [1, 0, 3]],
             ..Mesh::default()
         });

@@ -257,7 +257,7 @@ mod tests {
     fn scene() -> Scene {
         let mut scene = Scene::default();
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[-9., 0., -9.], [-9., 0., 9.], [9., 0., 9.], [9., 0., -9.]],
+            positions: vec![[-9., 0., -9.], [-9., 0., 9.], [9., 0., 9.], [9., 0., -9.]].into(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         });

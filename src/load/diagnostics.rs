@@ -234,7 +234,7 @@ mod tests {
         diagnostics.read(1);
         let mut scene = Scene::default();
         scene.add_mesh(Mesh {
-            positions: vec![[0.0; 3]],
+            positions: vec![[0.0; 3]].into(),
             triangles: vec![[0; 3]],
             ..Mesh::default()
         });

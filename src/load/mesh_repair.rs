@@ -22,15 +22,13 @@ pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, path: &str) {
         let dropped = retain(&mut mesh.triangles, is_there);
         diagnostics.drop(DropReason::IndexOutOfRange, dropped, place);
     }
-    if !mesh.is_finite() {
-        let is_finite: Vec<bool> =
-            mesh.positions.iter().map(|p| p.iter().all(|x| x.is_finite())).collect();
+    if !mesh.positions.are_finite() {
+        let is_finite: Vec<bool> = mesh.positions.iter().map(DVec3::is_finite).collect();
         let all_finite = |t: &[u32; 3]| t.iter().all(|&i| is_finite[i as usize]);
         let dropped = retain(&mut mesh.triangles, all_finite);
         diagnostics.drop(DropReason::NotFinite, dropped, place);
-        for (position, _) in mesh.positions.iter_mut().zip(&is_finite).filter(|(_, is)| !**is) {
-            *position = [0.0; 3];
-        }
+        mesh.positions =
+            mesh.positions.map(|i, position| if is_finite[i] { position } else { DVec3::ZERO });
     }
 
     // Triangles with two corners at one position.
@@ -75,16 +73,18 @@ fn retain(triangles: &mut Vec<[u32; 3]>, is_retained: impl Fn(&[u32; 3]) -> bool
 /// Drops triangles with two corners at one position, and returns their number. Those whose corners
 /// are only collinear remain: they close the seams between large faces and several small ones.
 fn drop_degenerate(mesh: &mut Mesh) -> u64 {
-    let Mesh { positions, triangles, .. } = mesh;
+    let mut triangles = std::mem::take(&mut mesh.triangles);
     let is_degenerate = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| positions[i as usize]);
+        let [a, b, c] = mesh.corners(t);
         (a == b) | (b == c) | (c == a)
     };
     // Nearly always there are none, which is found in parallel.
-    if !triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
-        return 0;
+    let mut dropped = 0;
+    if triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
+        dropped = retain(&mut triangles, |t| !is_degenerate(t));
     }
-    retain(triangles, |t| !is_degenerate(t))
+    mesh.triangles = triangles;
+    dropped
 }
 
 /// Replaces texture coordinates that are not finite with 0, and returns their number.
@@ -126,8 +126,7 @@ fn repair_normals(mesh: &mut Mesh) -> u64 {
         // Sums of the triangles' normals, weighted by area.
         let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
         for triangle in &mesh.triangles {
-            let [a, b, c] =
-                triangle.map(|i| DVec3::from(mesh.positions[i as usize].map(f64::from)));
+            let [a, b, c] = mesh.corners(triangle);
             let normal = (b - a).cross(c - a);
             triangle.iter().for_each(|&i| sums[i as usize] += normal);
         }
@@ -144,7 +143,7 @@ mod tests {
 
     fn square() -> Mesh {
         Mesh {
-            positions: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+            positions: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]].into(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         }
@@ -172,17 +171,18 @@ mod tests {
     #[test]
     fn triangle_with_a_corner_that_is_no_number_is_dropped_and_counted() {
         let mut mesh = square();
-        mesh.positions[3][1] = f32::NAN;
+        mesh.positions = mesh.positions.map(|i, p| if i == 3 { DVec3::NAN } else { p });
         let (mesh, said) = repaired(mesh);
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
-        assert!(mesh.positions.as_flattened().iter().all(|x| x.is_finite()));
+        assert!(mesh.positions.are_finite());
         assert_eq!(said.len(), 1);
     }
 
     #[test]
     fn triangle_with_two_corners_at_one_place_is_dropped_and_counted() {
         let mut mesh = square();
-        mesh.positions.push([-0.0, 1.0, 0.0]);
+        let positions = mesh.positions.to_vec();
+        mesh.positions = [&*positions, &[[-0.0, 1.0, 0.0]]].concat().into();
         mesh.triangles = vec![[0, 1, 2], [2, 3, 4], [1, 1, 2]];
         let (mesh, said) = repaired(mesh);
         assert_eq!(mesh.triangles, [[0, 1, 2]]);
@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn triangle_whose_corners_stand_in_line_is_kept() {
         let mut mesh = square();
-        mesh.positions[2] = [2.0, 0.0, 0.0];
+        mesh.positions = mesh.positions.map(|i, p| if i == 2 { DVec3::X * 2.0 } else { p });
         assert_eq!(repaired(mesh.clone()), (mesh, vec![]));
     }
 

@@ -4,6 +4,7 @@
 //! and a benchmark of run time against error ([`bench`]).
 
 pub mod bench;
+mod decimals;
 pub mod flip;
 mod mismatch;
 pub mod oracle;
@@ -13,6 +14,7 @@ pub mod stress;
 mod trace;
 mod validate;
 
+pub use decimals::{DecimalAnswer, Decimals};
 pub use mismatch::{MismatchCause, MismatchClassifier};
 pub use picture::{Comparison, Picture, compare_pictures};
 pub use replay::{Answer, LightOcclusion, Replay, ReplayedHit, ray_from_text, ray_to_text, replay};

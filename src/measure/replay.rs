@@ -1,6 +1,7 @@
 //! The replay of one ray with every intersector.
 
 use std::fmt;
+use std::path::Path;
 
 use glam::DVec3;
 use serde::Serialize;
@@ -10,6 +11,7 @@ use crate::geometry::{Geometry, Hit, Ray};
 #[cfg(feature = "embree")]
 use crate::intersect::Backend;
 use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
+use crate::measure::decimals::{DecimalAnswer, Decimals};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
@@ -23,6 +25,9 @@ pub struct Replay {
     pub ray: String,
     /// The answers; the first one is the reference.
     pub answers: Vec<Answer>,
+    /// The answer by the decimals of the file, for the reference's hit; null if there is no hit, or no
+    /// file.
+    pub decimals: Option<DecimalAnswer>,
 }
 
 /// The answer of one intersector for a ray, and for the shadow rays from the reference's hit.
@@ -70,11 +75,12 @@ pub struct LightOcclusion {
 }
 
 /// Traces `ray` with the exact oracle, brute force, the BVH and, if it is built in, Embree, in both
-/// precisions. The oracle and brute force test every primitive.
+/// precisions. The oracle and brute force test every primitive. If the scene was loaded from a `file`,
+/// the distance by its decimals is computed, too.
 ///
 /// # Errors
 /// When the scene is not valid, or Embree cannot be started.
-pub fn replay(scene: &Scene, ray: &Ray) -> Result<Replay> {
+pub fn replay(scene: &Scene, ray: &Ray, file: Option<&Path>) -> Result<Replay> {
     use Precision::{Certified, Fast};
     scene.check()?;
     render::in_pool(0, || {
@@ -89,7 +95,7 @@ pub fn replay(scene: &Scene, ray: &Ray) -> Result<Replay> {
             #[cfg(feature = "embree")]
             ("embree fast", Backend::Embree.build(scene, Fast, 0)?),
         ];
-        Ok(replay_with(scene, ray, &intersectors))
+        Ok(replay_with(scene, ray, file, &intersectors))
     })
 }
 
@@ -97,7 +103,12 @@ pub fn replay(scene: &Scene, ray: &Ray) -> Result<Replay> {
 type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
 
 /// Traces a ray with the intersectors, the first of which is the reference.
-fn replay_with(scene: &Scene, ray: &Ray, intersectors: &[Named<'_>]) -> Replay {
+fn replay_with(
+    scene: &Scene,
+    ray: &Ray,
+    file: Option<&Path>,
+    intersectors: &[Named<'_>],
+) -> Replay {
     let hit = |(_, of): &Named<'_>| closest(&**of, &[*ray], Coherence::Coherent)[0];
     let hits: Vec<Option<Hit>> = intersectors.iter().map(hit).collect();
 
@@ -125,7 +136,9 @@ fn replay_with(scene: &Scene, ray: &Ray, intersectors: &[Named<'_>]) -> Replay {
             lights: lights.collect(),
         }
     });
-    Replay { ray: ray_to_text(ray), answers: answers.collect() }
+    let decimals = reference.zip(file);
+    let decimals = decimals.map(|(hit, file)| Decimals::read(file).answer(scene, ray, &hit));
+    Replay { ray: ray_to_text(ray), answers: answers.collect(), decimals }
 }
 
 impl From<Hit> for ReplayedHit {
@@ -156,7 +169,10 @@ impl fmt::Display for Replay {
             }
             writeln!(f)?;
         }
-        Ok(())
+        match &self.decimals {
+            Some(answer) => writeln!(f, "{:<16}  {answer}", "decimals"),
+            None => Ok(()),
+        }
     }
 }
 
@@ -235,7 +251,7 @@ mod tests {
     #[test]
     fn all_intersectors_agree_on_an_easy_ray() {
         let ray = Ray::new(DVec3::new(2.0, 2.0, 0.0), DVec3::new(-1.0, -1.0, 0.0));
-        let found = replay(&scene(), &ray).unwrap();
+        let found = replay(&scene(), &ray, None).unwrap();
         assert_eq!(found.answers.len(), if cfg!(feature = "embree") { 7 } else { 5 });
         for answer in &found.answers {
             let hit = answer.hit.as_ref().unwrap();
@@ -253,7 +269,7 @@ mod tests {
             ("with", Box::new(BruteForce::new(&with, Precision::Fast))),
             ("without", Box::new(BruteForce::new(&without, Precision::Fast))),
         ];
-        let found = replay_with(&with, &ray, &intersectors);
+        let found = replay_with(&with, &ray, None, &intersectors);
         let errors: Vec<_> = found.answers.iter().map(|a| a.t_error_ulp).collect();
         assert_eq!(errors, [Some(0), None]);
     }

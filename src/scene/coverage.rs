@@ -89,7 +89,7 @@ mod tests {
         let material = Material { coverage: Some(coverage), ..Material::default() };
         let material = scene.add_material(material);
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]],
+            positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].into(),
             uvs: vec![[0., 0.], [1., 0.], [0., 1.]],
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()

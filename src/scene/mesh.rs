@@ -1,15 +1,13 @@
 //! The triangle mesh.
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
+use super::Positions;
 use crate::geometry::Bounds;
 
 /// The grain size of parallel loops over vertices or triangles: the least number for one thread.
 pub(crate) const GRAIN: usize = 1 << 14;
-
-/// The bounding box of nothing.
-const EMPTY_BOX: [Vec3A; 2] = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
 
 /// The index of a mesh in `Scene::meshes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -23,7 +21,7 @@ pub struct Mesh {
     /// The name, which may be empty.
     pub name: String,
     /// The positions of the vertices; all finite.
-    pub positions: Vec<[f32; 3]>,
+    pub positions: Positions,
     /// The three vertices of each triangle, as indices into `positions`.
     pub triangles: Vec<[u32; 3]>,
     /// The normal of each vertex, of any length but zero, for smooth shading; flat shading if empty.
@@ -49,8 +47,17 @@ impl Mesh {
     /// # Panics
     /// When there is no such triangle.
     #[inline(always)]
-    pub fn triangle_vertices(&self, triangle: u32) -> [[f32; 3]; 3] {
-        self.triangles[triangle as usize].map(|i| self.positions[i as usize])
+    pub fn triangle_vertices(&self, triangle: u32) -> [DVec3; 3] {
+        self.corners(&self.triangles[triangle as usize])
+    }
+
+    /// The positions of the corners of a triangle with these vertices.
+    ///
+    /// # Panics
+    /// When there is no such vertex.
+    #[inline(always)]
+    pub(crate) fn corners(&self, vertices: &[u32; 3]) -> [DVec3; 3] {
+        vertices.map(|i| self.positions.at(i as usize))
     }
 
     /// Interpolates a vertex attribute at a point of a triangle, by the weights of its vertices.
@@ -87,14 +94,6 @@ impl Mesh {
         vertices.map(|(&i, w)| self.alphas[i as usize] * w as f32).sum()
     }
 
-    /// True if all positions are finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        // A fold without early exit, which vectorises.
-        let finite =
-            |p: &[[f32; 3]]| p.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
-        self.positions.par_chunks(GRAIN).all(finite)
-    }
-
     /// True if all indices of the triangles are those of vertices.
     pub(crate) fn has_all_vertices(&self) -> bool {
         let greatest = |t: &[[u32; 3]]| t.as_flattened().iter().copied().max();
@@ -104,18 +103,42 @@ impl Mesh {
 
     /// The bounding box of the vertices that triangles use.
     pub fn bounds(&self) -> Bounds {
-        // In f32, which rounds nothing: the extremes are coordinates of vertices.
-        let around = |triangles: &[[u32; 3]]| {
-            triangles.as_flattened().iter().fold(EMPTY_BOX, |[lower, upper], &i| {
-                let p = Vec3A::from(self.positions[i as usize]);
-                [lower.min(p), upper.max(p)]
-            })
+        // In the kind of number that the positions have, which rounds nothing: the extremes are
+        // coordinates of vertices.
+        let (nothing, wide_nothing) =
+            ([Vec3A::INFINITY, Vec3A::NEG_INFINITY], [DVec3::INFINITY, DVec3::NEG_INFINITY]);
+        let [lower, upper] = match &self.positions {
+            Positions::F32(positions) => {
+                let around = |[lower, upper]: [Vec3A; 2], i: u32| {
+                    let p = Vec3A::from(positions[i as usize]);
+                    [lower.min(p), upper.max(p)]
+                };
+                let union = |a: [Vec3A; 2], b: [Vec3A; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+                self.fold_vertices(nothing, around, union).map(Vec3A::as_dvec3)
+            }
+            Positions::F64(positions) => {
+                let around = |[lower, upper]: [DVec3; 2], i: u32| {
+                    let p = DVec3::from(positions[i as usize]);
+                    [lower.min(p), upper.max(p)]
+                };
+                let union = |a: [DVec3; 2], b: [DVec3; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+                self.fold_vertices(wide_nothing, around, union)
+            }
         };
-        let union = |a: [Vec3A; 2], b: [Vec3A; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let [lower, upper] =
-            self.triangles.par_chunks(GRAIN).map(around).reduce(|| EMPTY_BOX, union);
         // −0 becomes 0, so that the box does not depend on the order of vertices.
-        let [lower, upper] = [lower, upper].map(|p| (p + Vec3A::ZERO).as_dvec3());
-        Bounds { lower, upper }
+        Bounds { lower: lower + DVec3::ZERO, upper: upper + DVec3::ZERO }
+    }
+
+    /// Folds the vertices of all triangles, part by part in parallel.
+    fn fold_vertices<T: Copy + Send + Sync>(
+        &self,
+        start: T,
+        fold: impl Fn(T, u32) -> T + Sync,
+        union: impl Fn(T, T) -> T + Sync + Send,
+    ) -> T {
+        let part = |triangles: &[[u32; 3]]| {
+            triangles.as_flattened().iter().fold(start, |sum, &i| fold(sum, i))
+        };
+        self.triangles.par_chunks(GRAIN).map(part).reduce(|| start, union)
     }
 }

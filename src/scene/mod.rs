@@ -28,6 +28,7 @@ mod material;
 mod mesh;
 mod metallic_roughness;
 mod mipmap;
+mod positions;
 mod precision_warnings;
 mod shading_params;
 mod shapes;
@@ -51,6 +52,7 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
 pub(crate) use metallic_roughness::{mirror_share, shininess};
+pub use positions::Positions;
 pub use precision_warnings::{PrecisionWarning, precision_warnings};
 #[doc(hidden)]
 pub use shading_params::ShadingParams;

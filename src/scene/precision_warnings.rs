@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 
-use crate::scene::{GRAIN, Instance, Mesh, Scene};
+use crate::scene::{GRAIN, Instance, Mesh, Positions, Scene};
 
 /// The greatest ratio of the longest side of the scene's box to the detail of a mesh that precision
 /// `fast` supports on Embree.
@@ -25,7 +25,7 @@ use crate::scene::{GRAIN, Instance, Mesh, Scene};
 /// that do is 1.2e-5 at a ratio of 1e3, 7.6e-5 at 1e4, 1.5e-3 at 1e5 and 1.5e-2 at
 /// 1e6; `fast` promises 1e-4.
 pub const FAST_RATIO: f64 = 1e4;
-/// The relative spacing of f32 numbers, in which meshes are stored.
+/// The relative spacing of f32 numbers, in which glTF files store meshes.
 const F32_SPACING: f64 = f32::EPSILON as f64;
 
 /// A warning about an object whose detail is lost.
@@ -43,8 +43,8 @@ pub struct PrecisionWarning {
 /// radius. It is lost where it is finer than
 /// - with `f32_rays`, as on Embree in precision `fast`: the longest side of the scene's box over
 ///   `FAST_RATIO` (meshes only);
-/// - the spacing of f32 at the mesh's own coordinates, since files and scenes store meshes in f32;
-/// - the spacing of f64 at the object's coordinates in the world.
+/// - the spacing of f32 at the mesh's own coordinates, if its positions are in f32 ([`Positions`]);
+/// - the spacing of f64 at the object's coordinates, in the world or in the mesh.
 pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning> {
     let mesh_bounds = scene.mesh_bounds();
     let bounds = scene.bounds_with(&mesh_bounds);
@@ -58,17 +58,22 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning
         warnings.extend(message.map(|message| PrecisionWarning { message, is_of_fast_only }));
     };
 
-    // Meshes that f32 cannot store, in their own space.
-    let stored = meshes().zip(&details).map(|((mesh, bounds), &detail)| Loss {
-        object: format!("mesh `{}`", mesh.name),
-        detail,
-        extent: bounds.max_abs(),
-    });
-    let message = worst(stored, F32_SPACING).map(|Loss { object, detail, extent }| {
+    // Meshes that the numbers they are stored in cannot hold, in their own space.
+    let stored = |is_f32: bool| {
+        let stored = meshes().zip(&details);
+        let stored =
+            stored.filter(move |((m, _), _)| matches!(m.positions, Positions::F32(_)) == is_f32);
+        stored.map(|((mesh, bounds), &detail)| Loss {
+            object: format!("mesh `{}`", mesh.name),
+            detail,
+            extent: bounds.max_abs(),
+        })
+    };
+    let message = worst(stored(true), F32_SPACING).map(|Loss { object, detail, extent }| {
         let (ratio, supported) = (extent / detail, 1.0 / F32_SPACING);
         format!(
             "{object} stands too far from its file's origin: its triangles are about {detail:.1e} \
-             large at coordinates of {extent:.1e}, where f32, in which meshes are stored, has \
+             large at coordinates of {extent:.1e}, where f32, in which the file stores them, has \
              lost them (ratio {ratio:.1e}, supported up to {supported:.1e}); model it about the \
              origin and translate it"
         )
@@ -104,14 +109,14 @@ pub fn precision_warnings(scene: &Scene, f32_rays: bool) -> Vec<PrecisionWarning
         warn(message, true);
     }
 
-    // Spheres and instances that f64 cannot resolve, in world space.
+    // What f64 cannot resolve, in a mesh's own space or in world space.
     let spheres = scene.spheres.iter().enumerate().map(|(i, s)| Loss {
         object: format!("sphere {i}"),
         detail: s.radius,
         extent: s.center.abs().max_element(),
     });
     let instances = instances(&|i| i.transform.translation.abs().max_element());
-    let lost = worst(spheres.chain(instances), f64::EPSILON);
+    let lost = worst(spheres.chain(instances).chain(stored(false)), f64::EPSILON);
     let message = lost.map(|Loss { object, detail, extent }| {
         format!(
             "{object} stands too far from the origin: it has detail of about {detail:.1e} at \
@@ -138,10 +143,8 @@ fn worst(losses: impl IntoIterator<Item = Loss>, limit: f64) -> Option<Loss> {
 /// The detail of a mesh in its own space: the square root of the mean area of its triangles; 0 when
 /// all are degenerate.
 fn mesh_detail(mesh: &Mesh) -> f64 {
-    let area = |t: &[u32; 3]| {
-        let corners = t.map(|i| glam::DVec3::from(mesh.positions[i as usize].map(f64::from)));
-        0.5 * crate::geometry::triangle::area_normal(corners).length()
-    };
+    let area =
+        |t: &[u32; 3]| 0.5 * crate::geometry::triangle::area_normal(mesh.corners(t)).length();
     // Partial sums in a fixed order: the same sum on any number of threads.
     let parts: Vec<f64> =
         mesh.triangles.par_chunks(GRAIN).map(|part| part.iter().map(area).sum()).collect();
@@ -159,7 +162,7 @@ mod tests {
         let mut scene = Scene::default();
         let mesh = scene.add_mesh(Mesh {
             name: "speck".into(),
-            positions: vec![[away, 0., 0.], [away, size, 0.], [away, 0., size]],
+            positions: vec![[away, 0., 0.], [away, size, 0.], [away, 0., size]].into(),
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
         });
@@ -195,8 +198,23 @@ mod tests {
     #[test]
     fn a_mesh_far_from_its_own_origin_is_lost_in_its_file() {
         let found = precision_warnings(&scene(0.1, 1e6, DAffine3::IDENTITY), false);
-        assert!(found.len() == 1 && found[0].message.contains("f32, in which meshes"), "{found:?}");
+        assert!(
+            found.len() == 1 && found[0].message.contains("f32, in which the file"),
+            "{found:?}"
+        );
         assert_eq!(precision_warnings(&scene(0.1, 1e5, DAffine3::IDENTITY), false), []);
+    }
+
+    #[test]
+    fn a_mesh_in_f64_is_lost_only_where_f64_has_lost_it() {
+        let placed = |away: f64| {
+            let mut scene = scene(0.1, 0.0, DAffine3::IDENTITY);
+            let mesh = std::sync::Arc::make_mut(&mut scene.meshes[0]);
+            mesh.positions = mesh.positions.map(|_, p| p + DVec3::X * away);
+            precision_warnings(&scene, false)
+        };
+        assert_eq!(placed(5412345.7), []);
+        assert!(placed(1e15 + 0.125)[0].message.contains("f64 has lost it"));
     }
 
     #[test]

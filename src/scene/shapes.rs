@@ -105,8 +105,8 @@ impl Instance {
 
     /// Transforms a vertex of the mesh to world space, in f64 and a fixed order of operations.
     #[inline(always)]
-    pub fn to_world(&self, p: [f32; 3]) -> DVec3 {
-        self.transform.transform_point3(DVec3::new(p[0] as f64, p[1] as f64, p[2] as f64))
+    pub fn to_world(&self, p: impl Into<DVec3>) -> DVec3 {
+        self.transform.transform_point3(p.into())
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::PrimitiveId16;
-use crate::scene::Scene;
+use crate::scene::{Positions, Scene};
 
 /// The vertices of `W` triangles in world space, by vertex, axis and lane. In a lane without triangle
 /// all three are at one point.
@@ -23,31 +23,56 @@ impl<const W: usize> Triangles<W> {
         primitive: &[u32; W],
         instance: &[u32; W],
     ) -> Option<Self> {
-        // The vertices in the spaces of their meshes.
-        let mut local = [[[0.0f32; W]; 3]; 3];
-        let mut first = None;
-        let mut alike = true;
+        // The mesh in each lane, and what they have in common.
+        let mesh = |i: usize| {
+            (geometry[i] >= PrimitiveId16::MESHES)
+                .then(|| &*scene.meshes[(geometry[i] - PrimitiveId16::MESHES) as usize])
+        };
+        let (mut first, mut alike, mut all_f32) = (None, true, true);
         for i in 0..W {
-            if geometry[i] < PrimitiveId16::MESHES {
-                continue;
-            }
-            let mesh = &scene.meshes[(geometry[i] - PrimitiveId16::MESHES) as usize];
-            let vertices = mesh.triangle_vertices(primitive[i]);
-            for (to, p) in local.iter_mut().zip(vertices) {
-                for axis in 0..3 {
-                    to[axis][i] = p[axis];
-                }
-            }
+            let Some(mesh) = mesh(i) else { continue };
             alike &= *first.get_or_insert(instance[i]) == instance[i];
+            all_f32 &= matches!(mesh.positions, Positions::F32(_));
         }
         let first = first?;
+
+        // The vertices in the spaces of their meshes: f32 is converted in a loop that vectorises.
+        let mut local = [[[0.0; W]; 3]; 3];
+        if all_f32 {
+            let mut narrow = [[[0.0f32; W]; 3]; 3];
+            for i in 0..W {
+                let Some(mesh) = mesh(i) else { continue };
+                let Positions::F32(positions) = &mesh.positions else { continue };
+                for (to, vertex) in narrow.iter_mut().zip(mesh.triangles[primitive[i] as usize]) {
+                    for axis in 0..3 {
+                        to[axis][i] = positions[vertex as usize][axis];
+                    }
+                }
+            }
+            for (to, from) in local.iter_mut().zip(&narrow) {
+                for axis in 0..3 {
+                    for i in 0..W {
+                        to[axis][i] = f64::from(from[axis][i]);
+                    }
+                }
+            }
+        } else {
+            for i in 0..W {
+                let Some(mesh) = mesh(i) else { continue };
+                for (to, p) in local.iter_mut().zip(mesh.triangle_vertices(primitive[i])) {
+                    for axis in 0..3 {
+                        to[axis][i] = p[axis];
+                    }
+                }
+            }
+        }
 
         // Nearly always all are of one instance: one transform, in a loop that vectorises.
         let mut world = [[[0.0; W]; 3]; 3];
         let shared = &scene.instances[first as usize];
         for (to, from) in world.iter_mut().zip(&local) {
             for i in 0..W {
-                let p = shared.to_world([from[0][i], from[1][i], from[2][i]]);
+                let p = shared.to_world(DVec3::new(from[0][i], from[1][i], from[2][i]));
                 for axis in 0..3 {
                     to[axis][i] = p[axis];
                 }
@@ -62,7 +87,7 @@ impl<const W: usize> Triangles<W> {
                 }
                 let own = &scene.instances[instance[i] as usize];
                 for (to, from) in world.iter_mut().zip(&local) {
-                    let p = own.to_world([from[0][i], from[1][i], from[2][i]]);
+                    let p = own.to_world(DVec3::new(from[0][i], from[1][i], from[2][i]));
                     for axis in 0..3 {
                         to[axis][i] = p[axis];
                     }

@@ -10,7 +10,7 @@ fn scene() -> Scene {
     plane.checker = Some(Checker { colors: [Vec3::ZERO, Vec3::ONE], size: 0.5 });
     scene.planes.push(plane);
     let mesh = scene.add_mesh(Mesh {
-        positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]],
+        positions: vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].into(),
         triangles: vec![[0, 1, 2]],
         normals: vec![[0., 0., 1.], [1., 0., 1.], [0., 1., 1.]],
         uvs: vec![[0., 0.], [1., 0.], [0., 1.]],

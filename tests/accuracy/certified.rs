@@ -276,7 +276,7 @@ fn outsized() -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
     let mut mesh = ball(1);
-    mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| x * 1e20));
+    mesh.positions = mesh.positions.map(|_, p| p * 1e20);
     let mesh = scene.add_mesh(mesh);
     for place in [DVec3::ZERO, DVec3::X * 3.0] {
         let transform =
@@ -309,9 +309,8 @@ fn pixel_aligned_grid_is_crossed_once_by_every_ray() {
     // numbers: every ray goes through a vertex, an edge or a diagonal.
     let side = 40u32;
     let mut mesh = Mesh::default();
-    for z in 0..=side {
-        mesh.positions.extend((0..=side).map(|x| [x as f32, 0.0, z as f32]));
-    }
+    let row = |z: u32| (0..=side).map(move |x| [x as f32, 0.0, z as f32]);
+    mesh.positions = (0..=side).flat_map(row).collect();
     let at = |x: u32, z: u32| z * (side + 1) + x;
     for z in 0..side {
         for x in 0..side {

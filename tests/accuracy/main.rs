@@ -6,6 +6,7 @@ mod continuation;
 mod cross_check;
 #[cfg(feature = "measure")]
 mod dominated_modes;
+mod far_coordinates;
 #[cfg(feature = "measure")]
 mod oracle;
 mod order;

@@ -24,7 +24,8 @@ fn layers(random: &mut Random) -> Scene {
         let point = DVec3::X * (-1.0 - gap(random));
         scene.planes.push(Plane::new(point, DVec3::NEG_X, material));
         let wall = scene.add_mesh(Mesh {
-            positions: vec![[0.0, -2.0, -2.0], [0.0, 2.0, -2.0], [0.0, 2.0, 2.0], [0.0, -2.0, 2.0]],
+            positions: vec![[0.0, -2.0, -2.0], [0.0, 2.0, -2.0], [0.0, 2.0, 2.0], [0.0, -2.0, 2.0]]
+                .into(),
             triangles: vec![[0, 1, 2], [0, 2, 3]],
             ..Mesh::default()
         });

@@ -45,7 +45,7 @@ pub fn ball(level: u32) -> Mesh {
 
 /// Triangles strewn about the cube [-1, 1]³.
 pub fn soup(random: &mut Random, count: u32) -> Mesh {
-    let mut positions = Vec::new();
+    let mut positions: Vec<[f32; 3]> = Vec::new();
     for _ in 0..count {
         let center = random.cube(1.0);
         for _ in 0..3 {
@@ -53,7 +53,7 @@ pub fn soup(random: &mut Random, count: u32) -> Mesh {
         }
     }
     let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Mesh { name: "soup".into(), positions, triangles, ..Mesh::default() }
+    Mesh { name: "soup".into(), positions: positions.into(), triangles, ..Mesh::default() }
 }
 
 /// A scene of spheres, planes, meshes that stand once and meshes that stand several times, about
@@ -73,7 +73,7 @@ pub fn random_scene(seed: u64, offset: DVec3, size: f64) -> Scene {
     // Modelled away from its own origin, as files often are.
     let away = [300.0, -200.0, 100.0];
     let mut many = ball(1);
-    many.positions.iter_mut().for_each(|p| *p = std::array::from_fn(|i| p[i] + away[i]));
+    many.positions = many.positions.map(|_, p| p + DVec3::from(away));
     let many = scene.add_mesh(many);
     for mesh in [single, many, many, many] {
         let turn =
@@ -81,7 +81,7 @@ pub fn random_scene(seed: u64, offset: DVec3, size: f64) -> Scene {
         let stretch = DVec3::new(r.range(0.1, 0.6), r.range(0.1, 0.6), r.range(-0.6, -0.1)) * size;
         let transform =
             DAffine3::from_scale_rotation_translation(stretch, turn, offset + r.cube(size));
-        let back = if mesh == many { -DVec3::from(away.map(f64::from)) } else { DVec3::ZERO };
+        let back = if mesh == many { -DVec3::from(away) } else { DVec3::ZERO };
         let transform = transform * DAffine3::from_translation(back);
         scene.instances.push(Instance::new(mesh, transform, material));
     }

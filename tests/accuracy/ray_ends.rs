@@ -215,7 +215,7 @@ fn rays_that_leave_a_floor_hit_flat_caps_from_any_distance_beyond_rounding() {
         let mut scene = Scene::default();
         scene.add_material(Material::default());
         let cap = scene.add_mesh(Mesh {
-            positions: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, height as f32, 0.0]],
+            positions: vec![[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, height as f32, 0.0]].into(),
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
         });

@@ -197,10 +197,59 @@ fn validate_says_what_everyone_makes_of_a_ray() {
     if cfg!(feature = "embree") {
         expected.extend(["embree certified", "embree fast"]);
     }
+    expected.push("decimals");
     assert_eq!(names, expected);
-    for line in stdout.lines() {
+    for line in stdout.lines().filter(|line| !line.starts_with("decimals")) {
         assert!(line.contains("  sphere 0  t 4.5  0 ulp"), "{stdout}");
     }
+    let decimals = "t 4.5 by the decimals of the file; the oracle's t is +0.00e0 off";
+    assert!(stdout.contains(decimals), "{stdout}");
+}
+
+#[test]
+fn validate_says_how_far_a_hit_lies_from_that_of_the_decimals() {
+    let folder = Folder::with(SPHERE);
+    let answer = |file: &str, text: &str, ray: &str| {
+        folder.write(file, text);
+        let run = format!("validate {file} --ray {ray} --json -");
+        folder.run(&run).good().json()["decimals"].clone()
+    };
+    let error =
+        |answer: &Value| answer["hit"]["error"].as_f64().unwrap_or_else(|| panic!("{answer}"));
+
+    // A roof whose decimals no float holds: 12.1 − 100 = −87.9.
+    let corner = |x: &str, y: &str| format!("v {x} {y} 12.1\n");
+    let roof =
+        [("388096.123", "5412335.1"), ("388100.123", "5412335.1"), ("388098.1", "5412345.7")];
+    let roof: String = roof.iter().map(|(x, y)| corner(x, y)).collect();
+    let roof = roof + "f 1 2 3\n";
+    let found = answer("roof.obj", &roof, "388098,5412340,100,0,0,-1");
+    assert_eq!(found["hit"]["t"], 87.9);
+    assert!(error(&found).abs() < 1e-14, "{found}");
+
+    // The same within transforms that are rounded at every step.
+    let scene = r#"
+        [[model]]
+        file = "roof.obj"
+        translate = [0.1, -0.3, 0.7]
+        rotate = [10, 20, 30]
+        scale = [1.1, 0.9, 1.3]
+    "#;
+    folder.write("roof.obj", "v -1.1 -1.3 0.1\nv 1.7 -1.2 0.1\nv 0.3 1.9 0.1\nf 1 2 3\n");
+    let found = answer("turned.toml", scene, "0.5,-0.3,9,0,0,-1");
+    let error_of_turned = error(&found).abs();
+    assert!(error_of_turned > 0.0 && error_of_turned < 1e-14, "{found}");
+
+    // Nodes within nodes, one with a rotation and one with a matrix.
+    let mut model = envers_testing::Model::triangle();
+    model.json["nodes"] = serde_json::json!([
+        {"children": [1], "translation": [0.1, 0.2, 0.3], "rotation": [0.1, 0.2, 0.3, 0.9],
+            "scale": [1.1, 1.2, 1.3]},
+        {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0.1, 0, 1, 0, 0.7, 0.1, -0.1, 1]},
+    ]);
+    std::fs::write(folder.path("nodes.glb"), model.glb()).unwrap();
+    let found = folder.run("validate nodes.glb --ray 0.59,1.26,9,0,0,-1 --json -").good().json();
+    assert!(error(&found["decimals"]).abs() < 1e-14, "{found}");
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn s_spreads_over_the_ranges() {
 /// The knot of M.
 fn knot_mesh() -> Mesh {
     let knot::Mesh { positions, triangles } = knot::mesh(knot::resolution(knot::TRIANGLES));
-    Mesh { name: "knot".into(), positions, triangles, ..Mesh::default() }
+    Mesh { name: "knot".into(), positions: positions.into(), triangles, ..Mesh::default() }
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn the_knot_is_closed_and_winds_outward() {
 fn no_triangle_of_the_knot_is_degenerate() {
     let mesh = knot_mesh();
     for i in 0..mesh.triangles.len() as u32 {
-        let [a, b, c] = mesh.triangle_vertices(i).map(|p| DVec3::from(p.map(f64::from)));
+        let [a, b, c] = mesh.triangle_vertices(i);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let height = (b - a).cross(c - a).length() / longest;
         assert!(height > 1e-4, "triangle {i} is {longest} long and {height} high");
@@ -98,8 +98,8 @@ fn no_triangle_of_the_knot_is_degenerate() {
 fn the_knot_stands_above_the_ground_and_beside_the_spheres() {
     let scene = m(30_000).scene;
     let instance = &scene.instances[0];
-    for p in &scene.meshes[0].positions {
-        let p = instance.to_world(*p);
+    for p in scene.meshes[0].positions.iter() {
+        let p = instance.to_world(p);
         assert!(p.y > 0.0, "{p}");
         for sphere in &scene.spheres {
             assert!(p.distance(sphere.center) > sphere.radius, "{p} is in {sphere:?}");

@@ -1,6 +1,6 @@
 //! The scenes that OBJ and MTL files become: each test one feature or one fault.
 
-use envers::scene::{ShininessMap, Texels, Transfer, Wrap};
+use envers::scene::{Positions, ShininessMap, Texels, Transfer, Wrap};
 use envers::{AlphaMode, Error, Loaded, Location, Material};
 use envers_testing::{Folder, png};
 use glam::{Vec2, Vec3};
@@ -53,7 +53,7 @@ fn lines_of_an_old_mac() {
 #[test]
 fn a_vertex_with_a_weight_is_divided_by_it() {
     let scene = load("v 0 0 0\nv 2 0 0 2\nv 0 1 0 1\nf 1 2 3").scene;
-    assert_eq!(scene.meshes[0].positions[1], [1., 0., 0.]);
+    assert_eq!(scene.meshes[0].positions.at(1).to_array(), [1., 0., 0.]);
 }
 
 #[test]
@@ -78,10 +78,10 @@ fn concave_polygon_stays_within_its_outline() {
     // An L: a fan from its first corner would cover what lies outside.
     let scene = load("v 0 0 0\nv 0 2 0\nv 1 2 0\nv 1 1 0\nv 2 1 0\nv 2 0 0\nf 2 3 4 5 6 1").scene;
     let mesh = &scene.meshes[0];
-    let area: f32 = mesh
+    let area: f64 = mesh
         .triangles
         .iter()
-        .map(|t| t.map(|i| Vec3::from(mesh.positions[i as usize])))
+        .map(|t| t.map(|i| mesh.positions.at(i as usize)))
         .map(|[a, b, c]| (b - a).cross(c - a).z / 2.0)
         .inspect(|area| assert!(*area <= 0.0, "wound the other way"))
         .sum();
@@ -107,7 +107,7 @@ fn smoothing_group_makes_normals() {
     let roof = "v 0 0 0\nv 0 0 2\nv 1 1 0\nv 1 1 2\nv 2 0 0\nv 2 0 2\n";
     let faces = "s 1\nf 1 2 4 3\nf 3 4 6 5";
     let mesh = &load(format!("{roof}{faces}")).scene.meshes[0];
-    let ridge = mesh.positions.iter().position(|p| *p == [1., 1., 0.]).unwrap();
+    let ridge = mesh.positions.iter().position(|p| p.to_array() == [1., 1., 0.]).unwrap();
     assert!((Vec3::from(mesh.normals[ridge]) - Vec3::Y).length() < 1e-6, "{:?}", mesh.normals);
     assert!(load(format!("{roof}s off\n{faces}")).scene.meshes[0].normals.len() == 6);
     assert!(
@@ -176,7 +176,7 @@ fn byte_order_mark_latin_1_and_utf_16() {
     for bytes in [format!("\u{feff}{text}").into_bytes(), latin, wide] {
         let scene = load(bytes).scene;
         assert_eq!(scene.meshes[0].name, "caf\u{e9}");
-        assert_eq!(scene.meshes[0].positions[1], [1., 0., 0.]);
+        assert_eq!(scene.meshes[0].positions.at(1).to_array(), [1., 0., 0.]);
     }
 }
 
@@ -253,7 +253,7 @@ fn vertex_that_is_not_finite_drops_its_faces() {
         let loaded = load(format!("{VERTICES}v {bad} 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 3 4"));
         let scene = &loaded.scene;
         assert!(scene.triangle_count() >= 1, "{bad}");
-        assert!(scene.meshes[0].positions.as_flattened().iter().all(|x| x.is_finite()));
+        assert!(scene.meshes[0].positions.iter().all(|p| p.is_finite()));
         assert_warns(&loaded, "not finite, at line 4");
         assert_warns(&loaded, "a corner is not a finite number");
     }
@@ -651,4 +651,29 @@ fn texture_of_two_materials_is_stored_once() {
     folder.write("m.mtl", "newmtl x\nmap_Kd a.png\nnewmtl y\nmap_Kd a.png");
     let text = format!("mtllib m.mtl\n{VERTICES}usemtl x\nf 1 2 3\nusemtl y\nf 1 2 3");
     assert_eq!(folder.load("model.obj", text).unwrap().scene.textures.len(), 1);
+}
+
+#[test]
+fn coordinates_are_the_f64_nearest_to_their_decimals() {
+    let positions = |text: &str| load(format!("{text}f 1 2 3")).scene.meshes[0].positions.clone();
+    let surveyed =
+        "v 388096.123 5412345.75 12.5\nv 388097 5412345.75 12.5\nv 388097 5412346.001 12.5\n";
+    let points =
+        [[388096.123, 5412345.75, 12.5], [388097., 5412345.75, 12.5], [388097., 5412346.001, 12.5]];
+    assert_eq!(positions(surveyed), points);
+    // With colours and with weights lines are read in other ways.
+    let colored = surveyed.replace("12.5\n", "12.5 1 0.5 0\n");
+    assert_eq!(positions(&colored), points);
+    let weighted = surveyed.replace("12.5\n", "12.5 1\n");
+    assert_eq!(positions(&weighted), points);
+}
+
+#[test]
+fn coordinates_that_f32_holds_take_its_memory() {
+    let is_f32 = |text: &str| {
+        let scene = load(format!("{text}f 1 2 3")).scene;
+        matches!(scene.meshes[0].positions, Positions::F32(_))
+    };
+    assert!(is_f32("v 0 0.5 1e9\nv -1.25 0 0\nv 0 3 16777216\n"));
+    assert!(!is_f32("v 0 0.5 1e9\nv -1.25 0 0\nv 0 3 16777217\n"));
 }

@@ -441,7 +441,7 @@ fn a_mesh_in_the_place_of_another_is_not_taken_for_it() {
         let before = hit(&scene);
         let old = scene.meshes[0].clone();
         let mesh = std::sync::Arc::make_mut(&mut scene.meshes[0]);
-        mesh.positions.iter_mut().for_each(|p| p[1] -= 1.0);
+        mesh.positions = mesh.positions.map(|_, p| p - DVec3::Y);
         let after = hit(&scene);
         assert!((after - before - 1.0).abs() < 1e-3, "{backend:?} {precision:?}");
         scene.meshes[0] = old;

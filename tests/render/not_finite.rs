@@ -15,7 +15,7 @@ fn wall(material: Material) -> Scene {
     let camera = Camera::look_at(DVec3::Z * 5.0, DVec3::ZERO, DVec3::Y, Projection::FovY(0.01));
     scene.cameras.push(camera.unwrap());
     let mesh = scene.add_mesh(Mesh {
-        positions: vec![[-9., -9., 0.], [9., -9., 0.], [0., 9., 0.]],
+        positions: vec![[-9., -9., 0.], [9., -9., 0.], [0., 9., 0.]].into(),
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     });

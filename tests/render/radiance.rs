@@ -34,7 +34,7 @@ fn matt(diffuse: f32) -> Material {
 
 fn wall(scene: &mut Scene) {
     let mesh = scene.add_mesh(Mesh {
-        positions: vec![[-9., -9., 0.], [9., -9., 0.], [9., 9., 0.], [-9., 9., 0.]],
+        positions: vec![[-9., -9., 0.], [9., -9., 0.], [9., 9., 0.], [-9., 9., 0.]].into(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
     });

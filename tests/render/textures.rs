@@ -39,7 +39,7 @@ fn picture(scene: &mut Scene, size: [u32; 2], texels: Vec<[u8; 4]>) -> TextureId
 /// A square of side 2 about the origin, across z, whose picture stands upright.
 fn square() -> Mesh {
     Mesh {
-        positions: vec![[-1., -1., 0.], [1., -1., 0.], [1., 1., 0.], [-1., 1., 0.]],
+        positions: vec![[-1., -1., 0.], [1., -1., 0.], [1., 1., 0.], [-1., 1., 0.]].into(),
         uvs: vec![[0., 1.], [1., 1.], [1., 0.], [0., 0.]],
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()

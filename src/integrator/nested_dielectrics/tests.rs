@@ -84,7 +84,7 @@ fn corner(transform: DAffine3) -> Scene {
     let mut scene = Scene::default();
     let material = scene.add_material(glass(1.5, 0));
     let mesh = scene.add_mesh(Mesh {
-        positions: vec![[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [0., 0., 4.]],
+        positions: vec![[0., 0., 0.], [4., 0., 0.], [0., 4., 0.], [0., 0., 4.]].into(),
         triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
         ..Mesh::default()
     });

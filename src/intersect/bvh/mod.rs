@@ -10,7 +10,6 @@ mod tree;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
@@ -153,9 +152,8 @@ impl Instances {
 
 impl MeshTree {
     fn new(mesh: &Mesh) -> Self {
-        let vertex = |i: u32| DVec3::from(mesh.positions[i as usize].map(f64::from));
         let bounds: Vec<Bounds> =
-            mesh.triangles.par_iter().map(|t| Bounds::from_points(t.map(vertex))).collect();
+            mesh.triangles.par_iter().map(|t| Bounds::from_points(mesh.corners(t))).collect();
         Self(build(&bounds))
     }
 }
@@ -210,6 +208,7 @@ mod tests {
     use super::*;
     use crate::geometry::Geometry;
     use crate::scene::MaterialId;
+    use glam::DVec3;
 
     #[test]
     fn an_empty_scene_has_no_hits() {

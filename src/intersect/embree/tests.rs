@@ -19,7 +19,7 @@ fn scene(state: &mut u64) -> Scene {
         scene.spheres.push(Sphere::new(point() * 2.0, 0.15, MaterialId(0)));
     }
     for uses in [1, 2] {
-        let positions: Vec<[f32; 3]> = (0..60).map(|_| point().as_vec3().to_array()).collect();
+        let positions = (0..60).map(|_| point().as_vec3().to_array()).collect();
         let triangles = (0..20).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
         for _ in 0..uses {

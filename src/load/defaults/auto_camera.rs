@@ -118,9 +118,9 @@ mod tests {
         [x / aspect, y]
     }
 
-    fn mesh(positions: &[[f32; 3]]) -> Scene {
+    fn mesh(positions: &[[f64; 3]]) -> Scene {
         let triangles = (0..positions.len() as u32).map(|i| [i; 3]).collect();
-        let mesh = Mesh { positions: positions.to_vec(), triangles, ..Mesh::default() };
+        let mesh = Mesh { positions: positions.into(), triangles, ..Mesh::default() };
         let mut scene = Scene::default();
         let mesh = scene.add_mesh(mesh);
         let material = scene.add_material(Default::default());
@@ -128,13 +128,13 @@ mod tests {
         scene
     }
 
-    const BOX: [[f32; 3]; 4] = [[0., 0., 0.], [3., 0., 0.], [0., 1., 0.], [0., 0., 2.]];
+    const BOX: [[f64; 3]; 4] = [[0., 0., 0.], [3., 0., 0.], [0., 1., 0.], [0., 0., 2.]];
 
     /// Returns the greatest distance, to the side and up, of a model's corners from the middle.
     fn filled(scene: &mut Scene) -> [f64; 2] {
         add_camera(scene);
         let camera = &scene.cameras[0];
-        let placed = |p: &[f32; 3]| scene.instances[0].to_world(*p);
+        let placed = |p| scene.instances[0].to_world(p);
         let points = scene.meshes[0].positions.iter().map(placed);
         points
             .map(|p| project(camera, scene.film.size, p))
@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn flat_models_are_seen_from_their_broad_side() {
         for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
-            let corner = |p: &[f32; 3]| (DVec3::from(p.map(f64::from)) * (1.0 - flat)).as_vec3();
+            let corner = |p: &[f64; 3]| DVec3::from(*p) * (1.0 - flat);
             let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
             add_camera(&mut scene);
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");

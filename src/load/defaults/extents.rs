@@ -58,15 +58,10 @@ fn mesh_extents<const N: usize>(
     });
 
     // The greatest coordinates of the vertices in use, chunk by chunk in parallel.
-    let chunk_extents = |(positions, is_used): (&[[f32; 3]], &[AtomicBool])| {
-        let used = positions.iter().zip(is_used).filter(|(_, used)| used.load(Ordering::Relaxed));
-        used.fold(none, |extents, (position, _)| {
-            let position = DVec3::from(position.map(f64::from));
-            max(extents, local.map(|local| position.dot(local)))
-        })
-    };
-    let chunks = mesh.positions.par_chunks(GRAIN).zip(is_used.par_chunks(GRAIN));
-    let extents = chunks.map(chunk_extents).reduce(|| none, max);
+    let vertices = (0..is_used.len()).into_par_iter().with_min_len(GRAIN);
+    let used = vertices.filter(|&i| is_used[i].load(Ordering::Relaxed));
+    let extents_of = |i: usize| local.map(|local| mesh.positions.at(i).dot(local));
+    let extents = used.map(extents_of).reduce(|| none, max);
     std::array::from_fn(|i| instance.transform.translation.dot(directions[i]) + extents[i])
 }
 

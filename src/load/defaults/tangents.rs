@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
-use glam::{Affine2, Vec2};
+use glam::{Affine2, DVec3, Vec2};
 use rayon::prelude::*;
 
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Mesh, Positions, Scene};
 
 /// Adds tangents to the meshes whose material has a normal map and which have normals and texture
 /// coordinates, but no tangents. Without normals a mesh is flat, and needs none.
@@ -39,7 +39,12 @@ pub fn add_tangents(scene: &mut Scene) {
 /// Adds tangents to a mesh. Vertices at which they differ from triangle to triangle are split.
 fn add_to_mesh(mesh: &mut Mesh, set: u8, transform: Affine2) {
     let tangents = vec![None; mesh.triangles.len() * 3];
-    let mut corners = Corners { mesh, set, transform, tangents };
+    // Far from its origin a mesh loses its detail in f32, in which tangents are computed.
+    let center = match mesh.positions {
+        Positions::F32(_) => DVec3::ZERO,
+        Positions::F64(_) => mesh.bounds().center(),
+    };
+    let mut corners = Corners { mesh, center, set, transform, tangents };
     // It cannot fail: the error has no values.
     let _ = generate_tangents(&mut corners);
     let tangents = corners.tangents;
@@ -67,7 +72,7 @@ fn add_to_mesh(mesh: &mut Mesh, set: u8, transform: Affine2) {
 
     // The copies of the vertices, with all their attributes.
     let from: Vec<usize> = copied.into_iter().map(|(at, _)| at).collect();
-    append_copies(&mut mesh.positions, &from);
+    mesh.positions.append_copies(&from);
     append_copies(&mut mesh.normals, &from);
     append_copies(&mut mesh.uvs, &from);
     append_copies(&mut mesh.second_uvs, &from);
@@ -85,6 +90,8 @@ fn append_copies<T: Copy>(values: &mut Vec<T>, from: &[usize]) {
 /// The corners of a mesh's triangles, and their tangents.
 struct Corners<'m> {
     mesh: &'m Mesh,
+    /// The point that positions are relative to.
+    center: DVec3,
     set: u8,
     transform: Affine2,
     tangents: Vec<Option<[f32; 4]>>,
@@ -106,7 +113,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn position(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.positions[self.vertex(face, corner)]
+        (self.mesh.positions.at(self.vertex(face, corner)) - self.center).as_vec3().to_array()
     }
 
     fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
@@ -133,7 +140,7 @@ mod tests {
     /// A square in the plane z = 0, seen from +z, whose image is upright.
     fn square() -> Mesh {
         Mesh {
-            positions: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]],
+            positions: vec![[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]].into(),
             normals: vec![[0., 0., 1.]; 4],
             uvs: vec![[0., 1.], [1., 1.], [1., 0.], [0., 0.]],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
@@ -171,8 +178,8 @@ mod tests {
     fn a_vertex_between_two_ways_to_lie_is_split() {
         let mut mesh = square();
         // The second triangle has the image mirrored about its diagonal.
-        mesh.positions.push([0., 1., 0.]);
-        mesh.positions[4] = [-1., 1., 0.];
+        mesh.positions =
+            mesh.positions.iter().chain([DVec3::new(-1., 1., 0.)]).map(|p| p.to_array()).collect();
         mesh.normals.push([0., 0., 1.]);
         mesh.uvs.push([1., 1.]);
         mesh.triangles = vec![[0, 1, 2], [0, 2, 4]];

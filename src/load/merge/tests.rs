@@ -15,7 +15,7 @@ fn model() -> Scene {
     let material = Material { diffuse_map: Some(texture), ..Material::default() };
     let material = model.add_material(material);
     let mesh = model.add_mesh(Mesh {
-        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].into(),
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     });
@@ -88,7 +88,7 @@ fn the_instances_transform_comes_after_the_models_own() {
         &mut Vec::new(),
     );
     // (1, 0, 0) by the model, then turned to y, doubled and moved.
-    assert_eq!(scene.instances[0].to_world([0.0; 3]), DVec3::new(10.0, 2.0, 0.0));
+    assert_eq!(scene.instances[0].to_world(DVec3::ZERO), DVec3::new(10.0, 2.0, 0.0));
 }
 
 #[test]

@@ -18,6 +18,11 @@ const SHININESS: std::ops::RangeInclusive<f32> = 1.0..=10_000.0;
 /// The default index of refraction of materials that are no glass.
 const DEFAULT_IOR: f32 = 1.5;
 
+/// Returns a colour of tobj's in f32.
+fn color(color: [f64; 3]) -> Vec3 {
+    Vec3::from_array(color.map(|x| x as f32))
+}
+
 /// A material that is being built.
 pub struct MaterialBuilder<'a, 'g> {
     /// The material of the MTL file, as tobj has it.
@@ -39,7 +44,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         let mut material = Material { name: source.name.clone(), ..Material::default() };
         material.diffuse_map = self.color_map(source.diffuse_texture.as_deref());
         if let Some(diffuse) = source.diffuse {
-            material.diffuse = Vec3::from(diffuse);
+            material.diffuse = color(diffuse);
         } else if material.diffuse_map.is_some() {
             material.diffuse = Vec3::ONE;
         }
@@ -49,7 +54,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         }
         material.emission_map = self.color_map(self.statement("map_Ke"));
         let default = if material.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
-        material.emission = source.emissive.map_or(default, Vec3::from);
+        material.emission = source.emissive.map_or(default, color);
         self.set_transport(&mut material);
         // Programs write 0 that mean no highlight: one of that exponent would be everywhere.
         if source.shininess == Some(0.0) && material.shininess_map.is_none() {
@@ -64,9 +69,9 @@ impl<'a> MaterialBuilder<'a, '_> {
         let source = self.source;
         material.specular_map = self.color_map(source.specular_texture.as_deref());
         let default = if material.specular_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
-        material.specular = source.specular.map_or(default, Vec3::from);
+        material.specular = source.specular.map_or(default, color);
         if let Some(shininess) = source.shininess {
-            material.shininess = shininess.clamp(*SHININESS.start(), *SHININESS.end());
+            material.shininess = (shininess as f32).clamp(*SHININESS.start(), *SHININESS.end());
         }
         let map = self.channel(source.shininess_texture.as_deref());
         material.shininess_map = map.map(ShininessMap::Factor);
@@ -138,6 +143,7 @@ impl<'a> MaterialBuilder<'a, '_> {
             ior: self
                 .source
                 .optical_density
+                .map(|ior| ior as f32)
                 .filter(|n| (1.0..=100.0).contains(n))
                 .unwrap_or(DEFAULT_IOR),
         };
@@ -221,9 +227,9 @@ impl<'a> MaterialBuilder<'a, '_> {
         });
         let mut illumination = Illumination {
             model: self.source.illumination_model.unwrap_or(2),
-            opacity: self.source.dissolve.unwrap_or(1.0 - transparency).clamp(0.0, 1.0),
+            opacity: self.source.dissolve.map_or(1.0 - transparency, |d| d as f32).clamp(0.0, 1.0),
             filter,
-            ior: self.source.optical_density,
+            ior: self.source.optical_density.map(|ior| ior as f32),
         };
         // MeshLab and others write the opacity there, and seldom another one than 1.
         if self.source.dissolve.is_none() && transparency == 1.0 && !illumination.is_glass() {

@@ -99,7 +99,7 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> R
 }
 
 /// Returns the greatest value that vertex colours can have: 1, or 255 where one is above 1.
-fn max_color_value(models: &[tobj::Model]) -> f32 {
+fn max_color_value(models: &[tobj::Model]) -> f64 {
     let mut values = models.iter().flat_map(|model| &model.mesh.vertex_color);
     if values.any(|&x| x > 1.0) { 255.0 } else { 1.0 }
 }
@@ -109,33 +109,37 @@ fn max_color_value(models: &[tobj::Model]) -> f32 {
 fn build_mesh(
     source: &tobj::Mesh,
     group: &FaceGroup,
-    max_color_value: f32,
+    max_color_value: f64,
     diagnostics: &mut Diagnostics,
 ) -> Option<Mesh> {
     let name = group.settings.name.as_deref();
     let place = name.unwrap_or("the object without a name");
-    let positions: Vec<[f32; 3]> = source.positions.as_chunks().0.to_vec();
+    let positions = source.positions.as_chunks().0;
     let count = positions.len();
     // OBJ's v runs up the image, ours runs down.
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
+    let narrow = |n: &[f64; 3]| n.map(|x| x as f32);
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f32; 3]| c.map(|x| Transfer::Srgb.decode(x / max_color_value));
+    let linear = |c: &[f64; 3]| c.map(|x| Transfer::Srgb.decode((x / max_color_value) as f32));
     // Attributes and triangles, side by side.
     let attributes = || {
-        let uvs = source.texcoords.as_chunks().0.iter().copied().map(flip).collect();
+        let uvs = source.texcoords.as_chunks().0.iter();
+        let uvs = uvs.map(|uv| flip(uv.map(|x| x as f32))).collect();
+        let normals = source.normals.as_chunks().0.iter().map(narrow).collect();
         let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
         Mesh {
-            normals: per_vertex(source.normals.as_chunks().0.to_vec(), count),
+            positions: positions.into(),
+            normals: per_vertex(normals, count),
             uvs: per_vertex(uvs, count),
             colors: per_vertex(colors, count),
             ..Mesh::default()
         }
     };
     let (attributes, triangles) =
-        rayon::join(attributes, || triangles(source, &positions, diagnostics, place));
+        rayon::join(attributes, || triangles(source, positions, diagnostics, place));
     // Normals of the smoothing group, and all that makes the mesh valid.
     let name = name.unwrap_or_default().to_owned();
-    let mut mesh = Mesh { name, positions, triangles, ..attributes };
+    let mut mesh = Mesh { name, triangles, ..attributes };
     if mesh.normals.is_empty() && group.settings.smoothing.is_some() {
         mesh.normals = smooth_normals::smooth_normals(&mesh);
     }
@@ -151,7 +155,7 @@ fn per_vertex<T>(values: Vec<T>, count: usize) -> Vec<T> {
 /// Returns the triangles of a mesh of polygons.
 fn triangles(
     source: &tobj::Mesh,
-    positions: &[[f32; 3]],
+    positions: &[[f64; 3]],
     diagnostics: &mut Diagnostics,
     place: &str,
 ) -> Vec<[u32; 3]> {
@@ -166,7 +170,8 @@ fn triangles(
     for &arity in &source.face_arities {
         let Some((face, after)) = rest.split_at_checked(arity as usize) else { break };
         rest = after;
-        let corners: Vec<DVec3> = face.iter().map(|&i| position(positions, i)).collect();
+        let position = |&i: &u32| positions.get(i as usize).copied().unwrap_or_default().into();
+        let corners: Vec<DVec3> = face.iter().map(position).collect();
         let made = triangulate::triangulate(&corners);
         let vertex = |i: usize| face.get(i).copied().unwrap_or(u32::MAX);
         triangles.extend(made.into_iter().map(|t| t.map(vertex)));
@@ -175,9 +180,4 @@ fn triangles(
     let lost = expected.saturating_sub(triangles.len() as u64);
     diagnostics.drop(DropReason::Degenerate, lost, || place.to_owned());
     triangles
-}
-
-/// Returns the position of a vertex; 0 where there is no such vertex.
-fn position(positions: &[[f32; 3]], index: u32) -> DVec3 {
-    DVec3::from(positions.get(index as usize).copied().unwrap_or_default().map(f64::from))
 }

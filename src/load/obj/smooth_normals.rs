@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::scene::Mesh;
+use crate::scene::{Mesh, Positions};
 
 /// The number of shares of triangles, each with sums of its own: a fixed number, so that sums are the
 /// same on any number of threads.
@@ -23,13 +23,18 @@ const MIX: u64 = 0x9E37_79B9_7F4A_7C15;
 /// vertices are at one position for the sake of textures.
 pub fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let welded = weld(&mesh.positions);
+    // A face may name a vertex that is not there; it is dropped later.
+    let position = |i: u32| match (i as usize) < welded.len() {
+        true => mesh.positions.at(i as usize),
+        false => DVec3::ZERO,
+    };
     let count = welded.len();
     let share = mesh.triangles.len().div_ceil(SHARES).max(MIN_SHARE);
     // The weighted sums of a share of the triangles.
     let sum = |triangles: &[[u32; 3]]| {
         let mut sums = vec![DVec3::ZERO; count];
         for block in triangles.chunks(BLOCK) {
-            let corners = block.iter().map(|t| t.map(|i| super::position(&mesh.positions, i)));
+            let corners = block.iter().map(|t| t.map(position));
             let (normals, angles) = normals_and_angles(corners);
             for (k, triangle) in block.iter().enumerate() {
                 for (i, angles) in triangle.iter().zip(&angles) {
@@ -53,9 +58,10 @@ pub fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
 
 /// Returns for each vertex the first one at the same position: vertices that are neighbours in a mesh
 /// then have sums that are neighbours in memory.
-fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
+fn weld(positions: &Positions) -> Vec<u32> {
     // Zero has two signs.
-    let bits = |vertex: u32| positions[vertex as usize].map(|x| (x + 0.0).to_bits());
+    let bits =
+        |vertex: u32| (positions.at(vertex as usize) + DVec3::ZERO).to_array().map(f64::to_bits);
     let key = |vertex: u32| u64::from(hash(bits(vertex))) << 32 | u64::from(vertex);
     // Vertices sorted by the hashes of their positions.
     let vertices = 0..positions.len() as u32;
@@ -77,8 +83,8 @@ fn weld(positions: &[[f32; 3]]) -> Vec<u32> {
 
 /// Returns the hash of a position: the product with an odd constant carries each bit of a sum up into
 /// the upper half.
-fn hash(position: [u32; 3]) -> u32 {
-    let mix = |sum: u64, x: u32| (sum ^ u64::from(x)).wrapping_mul(MIX).rotate_left(32);
+fn hash(position: [u64; 3]) -> u32 {
+    let mix = |sum: u64, x: u64| (sum ^ x).wrapping_mul(MIX).rotate_left(32);
     position.into_iter().fold(0, mix) as u32
 }
 
@@ -165,14 +171,22 @@ mod tests {
 
     #[test]
     fn vertices_at_one_position_are_welded() {
-        let welded = weld(&[[0.0; 3], [1.0; 3], [-0.0, 0.0, -0.0], [1.0; 3], [2.0; 3]]);
-        assert_eq!(welded, [0, 1, 0, 1, 4]);
+        for scale in [1.0, 0.1] {
+            let x = [0.0, 1.0, -0.0, 1.0, 2.0].map(|x| [x * scale; 3]);
+            assert_eq!(weld(&x.to_vec().into()), [0, 1, 0, 1, 4]);
+        }
     }
 
     #[test]
     fn different_positions_with_the_same_hash_are_not_welded() {
-        let [a, b] = [[14.0, 108.0, 390.0], [350.0, 388.0, 502.0]];
-        assert_eq!(hash(a.map(f32::to_bits)), hash(b.map(f32::to_bits)));
-        assert_eq!(weld(&[a, b, a, b, [0.0; 3]]), [0, 1, 0, 1, 4]);
+        // Among 2¹⁹ positions some of 2³² hashes come twice, almost surely.
+        let mut seen = std::collections::HashMap::new();
+        let positions = (1..1 << 19).map(|i| [3.0, 7.0, 11.0].map(|by| f64::from(i).sqrt() / by));
+        let pair = { positions }.find_map(|p| {
+            let other = seen.insert(hash(p.map(f64::to_bits)), p)?;
+            Some([other, p])
+        });
+        let [a, b] = pair.expect("two positions with the same hash");
+        assert_eq!(weld(&vec![a, b, a, b, [0.0; 3]].into()), [0, 1, 0, 1, 4]);
     }
 }

@@ -19,7 +19,7 @@ pub fn rewrite(kind: usize, text: &str, has_colors: bool, out: &mut String) -> R
     // The numbers that tobj wants, and those that there must be.
     let (wanted, least) = [(3, 3), (2, 1), (3, 3)][kind];
     let words: SmallVec<[&str; 8]> = words(text).collect();
-    let numbers: SmallVec<[f32; 8]> =
+    let numbers: SmallVec<[f64; 8]> =
         words.iter().map(|w| parse_number(w)).collect::<Result<_>>()?;
     if numbers.len() < least {
         let message = format!("`{}` has {} numbers, and needs {least}", KINDS[kind], numbers.len());
@@ -60,17 +60,18 @@ fn push_word(out: &mut String, word: &str) {
 
 /// Parses a number; NaN in any spelling is one, and so is what lies beyond f32. What begins as a number
 /// and goes on as none (`3.1+e2`) counts as one that is not finite: nobody can tell which it is.
-fn parse_number(word: &str) -> Result<f32> {
+fn parse_number(word: &str) -> Result<f64> {
     // Microsoft's old C library wrote 1.#QNAN, 1.#INF and -1.#IND.
     if word.contains(".#") {
-        return Ok(f32::NAN);
+        return Ok(f64::NAN);
     }
     let begins_as_number =
         word.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
     let has_comma = word.contains(',');
     match word.parse() {
-        Ok(number) => Ok(number),
-        Err(_) if begins_as_number && !has_comma => Ok(f32::NAN),
+        Ok(number) if f64::abs(number) <= f64::from(f32::MAX) => Ok(number),
+        Ok(_) => Ok(f64::NAN),
+        Err(_) if begins_as_number && !has_comma => Ok(f64::NAN),
         Err(_) => {
             let error = Error::input(format!("`{word}` is no number"));
             Err(if has_comma { error.help("decimals have a point, not a comma") } else { error })

@@ -4,7 +4,7 @@ use glam::DAffine3;
 
 fn scene() -> Scene {
     let mut scene = Scene::default();
-    let positions = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
+    let positions = vec![[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]].into();
     let mesh = Mesh { positions, triangles: vec![[0, 1, 2]], ..Mesh::default() };
     let mesh = scene.add_mesh(mesh);
     for z in [0.0, 1e-7, 1.0] {

@@ -5,6 +5,8 @@ use std::cmp::Ordering;
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, Sign, UBig};
 
+use dashu_ratio::RBig;
+
 use super::integers::{decode, significand};
 
 /// The least number of bits of an approximation.
@@ -27,12 +29,26 @@ pub struct ExactNumber {
 
 impl ExactNumber {
     /// Returns numerator / denominator · 2^exponent.
-    pub(super) fn quotient(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
+    pub(in crate::measure) fn quotient(numerator: IBig, denominator: IBig, exponent: i64) -> Self {
         let (rational, denominator) = match denominator.sign() {
             Sign::Negative => (-numerator, -denominator),
             Sign::Positive => (numerator, denominator),
         };
         Self { rational, root: Sign::Positive, radicand: UBig::ZERO, denominator, exponent }
+    }
+
+    /// Returns p + √q, or p − √q unless `is_far`, for fractions p and q of which q is not negative.
+    pub(in crate::measure) fn root_of(p: &RBig, q: &RBig, is_far: bool) -> Self {
+        // With p = k/l and q = m/n it is (k n ± √(l² m n)) / (l n).
+        let (l, n) = (p.denominator(), q.denominator());
+        let m = q.numerator().clone().unsigned_abs();
+        Self {
+            rational: p.numerator() * IBig::from(n.clone()),
+            root: if is_far { Sign::Positive } else { Sign::Negative },
+            radicand: l * l * m * n,
+            denominator: IBig::from(l * n),
+            exponent: 0,
+        }
     }
 
     /// Returns the least positive float.
@@ -161,14 +177,26 @@ impl ExactNumber {
         rounded.clamp(f64::from_bits(1), f64::MAX)
     }
 
+    /// Returns the exponent of the unit in the last place of a number that is about
+    /// mantissa · 2^exponent: of the spacing of floats around it.
+    fn ulp_exponent((mantissa, exponent): &(UBig, i64)) -> i64 {
+        (exponent + mantissa.bit_len() as i64 - 53).max(-1074)
+    }
+
+    /// Returns the unit in the last place of this number.
+    pub(in crate::measure) fn ulp(&self) -> f64 {
+        truncate(&UBig::ONE, Self::ulp_exponent(&self.approximate()))
+    }
+
     /// Returns the distance from `x`, in units in the last place of this number (the spacing of
     /// floats around it), to about 15 digits.
     ///
     /// # Panics
     /// When `x` is not finite.
     pub fn ulps_from(&self, x: f64) -> f64 {
-        let (mantissa, exponent) = self.approximate();
-        let ulp = (exponent + mantissa.bit_len() as i64 - 53).max(-1074);
+        let approximation = self.approximate();
+        let ulp = Self::ulp_exponent(&approximation);
+        let (mantissa, exponent) = approximation;
         // Both numbers in units of the smaller power of two.
         let (x, x_exponent) = decode(x);
         let low = exponent.min(if x == 0 { exponent } else { x_exponent });

@@ -112,8 +112,19 @@ impl Deformation {
         let mut mesh = Mesh::clone(&self.base);
         let targets = self.morph_targets.iter().zip(pose.weights.iter().copied());
         let targets: Vec<(&MorphTarget, f64)> = targets.filter(|(_, w)| *w != 0.0).collect();
-        add_displacements(&mut mesh.positions, targets.iter().map(|(m, w)| (&*m.positions, *w)));
-        add_displacements(&mut mesh.normals, targets.iter().map(|(m, w)| (&*m.normals, *w)));
+        // Positions, in f64, and normals.
+        let displacements = fitting(mesh.positions.len(), &targets, |target| &target.positions);
+        if !displacements.is_empty() {
+            mesh.positions = mesh.positions.map(|i, p| displaced(p, i, &displacements));
+        }
+        let changes = fitting(mesh.normals.len(), &targets, |target| &target.normals);
+        if !changes.is_empty() {
+            let normals = mesh.normals.par_iter_mut().with_min_len(GRAIN).enumerate();
+            normals.for_each(|(i, normal)| {
+                let sum = displaced(DVec3::from(normal.map(f64::from)), i, &changes);
+                *normal = sum.as_vec3().to_array();
+            });
+        }
         if let Some(skin) = &self.skin {
             skin.influences.skin(&mut mesh, &pose.joints);
         }
@@ -121,21 +132,21 @@ impl Deformation {
     }
 }
 
-/// Adds weighted displacements to vectors, in f64.
-fn add_displacements<'m>(
-    values: &mut [[f32; 3]],
-    morphs: impl Iterator<Item = (&'m [[f32; 3]], f64)>,
-) {
-    let morphs: Vec<_> = morphs.filter(|(by, _)| by.len() == values.len()).collect();
-    if morphs.is_empty() {
-        return;
-    }
-    values.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(i, value)| {
-        let sum = morphs.iter().fold(DVec3::from(value.map(f64::from)), |sum, (by, weight)| {
-            sum + DVec3::from(by[i].map(f64::from)) * *weight
-        });
-        *value = sum.as_vec3().to_array();
-    });
+/// Returns an attribute of the morph targets that have it for all vertices, with their weights.
+fn fitting<'m>(
+    count: usize,
+    targets: &[(&'m MorphTarget, f64)],
+    attribute: impl Fn(&'m MorphTarget) -> &'m Vec<[f32; 3]>,
+) -> Vec<(&'m [[f32; 3]], f64)> {
+    let values = targets.iter().map(|(target, weight)| (&**attribute(target), *weight));
+    values.filter(|(values, _)| values.len() == count).collect()
+}
+
+/// Adds the weighted displacements of a vertex to a vector.
+fn displaced(vector: DVec3, vertex: usize, displacements: &[(&[[f32; 3]], f64)]) -> DVec3 {
+    displacements
+        .iter()
+        .fold(vector, |sum, (by, weight)| sum + DVec3::from(by[vertex].map(f64::from)) * *weight)
 }
 
 impl Influences {
@@ -161,20 +172,16 @@ impl Influences {
     /// weighted mean of its joints' transforms, and its normal by the cofactors of that mean, which
     /// keeps it perpendicular under any scale.
     fn skin(&self, mesh: &mut Mesh, joints: &[DAffine3]) {
-        // Positions; the linear parts of the transforms are kept for tangents and normals.
-        let positions = mesh.positions.par_iter_mut().with_min_len(GRAIN).enumerate();
-        let transforms: Vec<DMat3> = positions
-            .map(|(i, position)| {
-                let transform = self.blended_transform(i, joints);
-                let moved = transform.transform_point3(DVec3::from(position.map(f64::from)));
-                *position = moved.as_vec3().to_array();
-                transform.matrix3
-            })
-            .collect();
+        // Positions.
+        let vertices = (0..mesh.positions.len()).into_par_iter().with_min_len(GRAIN);
+        let transforms: Vec<DAffine3> =
+            vertices.map(|i| self.blended_transform(i, joints)).collect();
+        mesh.positions = mesh.positions.map(|i, p| transforms[i].transform_point3(p));
 
         // Tangents, whose sign changes where the transform mirrors.
         let tangents = mesh.tangents.par_iter_mut().with_min_len(GRAIN).zip(&transforms);
         tangents.for_each(|([x, y, z, hand], m)| {
+            let m = &m.matrix3;
             let turned = *m * DVec3::new(f64::from(*x), f64::from(*y), f64::from(*z));
             if let Some(turned) = turned.try_normalize() {
                 [*x, *y, *z] = turned.as_vec3().to_array();
@@ -185,6 +192,7 @@ impl Influences {
         // Normals, where the transform leaves them a direction.
         let normals = mesh.normals.par_iter_mut().with_min_len(GRAIN).zip(transforms);
         normals.for_each(|(normal, m)| {
+            let m = m.matrix3;
             let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis];
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
             let turned = cofactors * DVec3::from(normal.map(f64::from)) * m.determinant().signum();
@@ -220,7 +228,7 @@ mod tests {
     /// Three vertices along x, with normals along y.
     fn base() -> Arc<Mesh> {
         Arc::new(Mesh {
-            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]],
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]].into(),
             normals: vec![[0.0, 1.0, 0.0]; 3],
             triangles: vec![[0, 1, 2]],
             ..Mesh::default()
@@ -276,7 +284,7 @@ mod tests {
     #[test]
     fn morphs_add_their_share_to_positions_and_normals() {
         let mesh = morphed(0.5);
-        assert_eq!(mesh.positions[1], [1.0, 0.0, 2.0]);
+        assert_eq!(mesh.positions.at(1), DVec3::new(1.0, 0.0, 2.0));
         assert_eq!(mesh.normals[1], [1.0, 1.0, 0.0]);
     }
 
@@ -300,7 +308,7 @@ mod tests {
         let joints = vec![joint(DAffine3::IDENTITY), joint(up)];
         let weights = [1.0, 3.0, 3.0, 1.0, 0.0, 0.0];
         let mesh = bent(joints, DAffine3::IDENTITY, [0, 1, 0, 1, 1, 0], weights);
-        let heights: Vec<f32> = mesh.positions.iter().map(|p| p[1]).collect();
+        let heights: Vec<f64> = mesh.positions.iter().map(|p| p.y).collect();
         assert_eq!(heights, [3.0, 1.0, 4.0]);
     }
 

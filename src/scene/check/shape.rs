@@ -51,7 +51,7 @@ impl Scene {
         let mesh = &self.meshes[i];
         let label = format!("mesh {i} (`{}`)", mesh.name);
         let count = mesh.positions.len();
-        require(mesh.is_finite(), || format!("{label}: a vertex is not finite"))?;
+        require(mesh.positions.are_finite(), || format!("{label}: a vertex is not finite"))?;
         require(mesh.has_all_vertices(), || {
             format!("{label}: a triangle names a vertex that is not there ({count} vertices)")
         })?;

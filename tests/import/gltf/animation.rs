@@ -38,7 +38,7 @@ fn channel(
 }
 
 /// Returns the place, at a time, of a point of the first instance's mesh.
-fn at(scene: &Scene, time: f64, point: [f32; 3]) -> DVec3 {
+fn at(scene: &Scene, time: f64, point: [f64; 3]) -> DVec3 {
     scene.at_time(time).unwrap().instances[0].to_world(point)
 }
 

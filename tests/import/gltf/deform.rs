@@ -3,6 +3,7 @@
 use super::*;
 use envers::Loaded;
 use envers::scene::animation::Animated;
+use glam::DVec3;
 use serde_json::Value;
 
 /// A triangle that can be morphed: by 1 along z, and by 2 along x.
@@ -15,8 +16,8 @@ fn morphing() -> Model {
 }
 
 /// The first corner of the only mesh, at a time.
-fn corner(scene: &Scene, time: f64) -> [f32; 3] {
-    scene.at_time(time).unwrap().meshes[0].positions[0]
+fn corner(scene: &Scene, time: f64) -> [f64; 3] {
+    scene.at_time(time).unwrap().meshes[0].positions.at(0).to_array()
 }
 
 #[test]
@@ -24,7 +25,7 @@ fn a_mesh_is_morphed_by_its_own_weights() {
     let mut model = morphing();
     model.json["meshes"][0]["weights"] = json!([0.5, 1]);
     let Loaded { scene, report, .. } = model.load().unwrap();
-    assert_eq!(scene.meshes[0].positions[0], [2.0, 0.0, 0.5]);
+    assert_eq!(scene.meshes[0].positions.at(0), DVec3::new(2.0, 0.0, 0.5));
     assert!(report.warnings.is_empty() && report.balances(), "{:?}", report.warnings);
 }
 
@@ -35,7 +36,7 @@ fn weights_of_a_node_come_before_those_of_its_mesh() {
     model.json["nodes"] = json!([{"mesh": 0, "weights": [0, 0]}, {"mesh": 0}]);
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
     let Loaded { scene, report, .. } = model.load().unwrap();
-    let first = |mesh: usize| scene.meshes[mesh].positions[0];
+    let first = |mesh: usize| scene.meshes[mesh].positions.at(0).to_array();
     assert_eq!((first(0), first(1)), ([0.0; 3], [2.0, 0.0, 1.0]));
     assert!(report.balances(), "{}", report);
 }
@@ -154,7 +155,7 @@ fn skinned(places: [[f32; 3]; 3]) -> Model {
 fn deformed_positions(scene: &Scene) -> [[f64; 3]; 3] {
     let instance = &scene.instances[0];
     let mesh = &scene.meshes[instance.mesh.0 as usize];
-    std::array::from_fn(|i| instance.to_world(mesh.positions[i]).to_array())
+    std::array::from_fn(|i| instance.to_world(mesh.positions.at(i)).to_array())
 }
 
 #[test]
@@ -225,7 +226,7 @@ fn a_skin_moves_where_a_scene_places_it() {
     let posed = scene.at_time(0.5).unwrap();
     assert_eq!(deformed_positions(&posed)[1], [12., 0., 8.]);
     let second = &posed.instances[1];
-    let corner = posed.meshes[second.mesh.0 as usize].positions[1];
+    let corner = posed.meshes[second.mesh.0 as usize].positions.at(1);
     assert_eq!(second.to_world(corner).to_array(), [1., 0., 7.]);
 }
 

@@ -16,7 +16,7 @@ fn square() -> Model {
 /// The corners of a scene's triangles, in the order of their coordinates.
 fn corners(scene: &Scene) -> Vec<[[i32; 3]; 3]> {
     let mesh = &scene.meshes[0];
-    let corner = |i: u32| mesh.positions[i as usize].map(|x| (x * 1000.0) as i32);
+    let corner = |i: u32| mesh.positions.at(i as usize).to_array().map(|x| (x * 1000.0) as i32);
     let mut all: Vec<_> = mesh
         .triangles
         .iter()
@@ -59,8 +59,8 @@ fn attributes_stay_with_their_vertices() {
     );
     let scene = model.load().unwrap().scene;
     let mesh = &scene.meshes[0];
-    for (i, [x, y, _]) in mesh.positions.iter().enumerate() {
-        let was = SQUARE.chunks(3).position(|p| p[0] == *x && p[1] == *y).unwrap();
+    for (i, at) in mesh.positions.iter().map(|p| p.as_vec3()).enumerate() {
+        let was = SQUARE.chunks(3).position(|p| p[0] == at.x && p[1] == at.y).unwrap();
         assert_eq!(mesh.normals[i], normals[3 * was..][..3], "normal of vertex {was}");
         assert_eq!(mesh.uvs[i], uvs[2 * was..][..2], "texture coordinates of vertex {was}");
     }

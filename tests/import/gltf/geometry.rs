@@ -93,7 +93,7 @@ fn quantised_positions() {
         [0i16, 0, 0, 300, 0, 0, 0, -7, 0].iter().flat_map(|x| x.to_le_bytes()).collect();
     let positions = model.typed(5122, "VEC3", 2, &bytes);
     model.primitive()["attributes"]["POSITION"] = positions.into();
-    assert_eq!(model.load().unwrap().scene.meshes[0].positions[2], [0., -7., 0.]);
+    assert_eq!(model.load().unwrap().scene.meshes[0].positions.at(2).to_array(), [0., -7., 0.]);
 }
 
 #[test]

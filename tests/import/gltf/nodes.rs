@@ -116,3 +116,14 @@ fn extensions_of_what_is_not_seen_are_passed_over_also_where_they_are_required()
     let Loaded { report, .. } = model.load().unwrap();
     assert_eq!(report.warnings, [""; 0]);
 }
+
+#[test]
+fn transforms_keep_the_digits_of_f64() {
+    let mut model = Model::triangle();
+    model.json["nodes"] = json!([
+        {"children": [1], "translation": [388096.123, 5412345.75, 12.5]},
+        {"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.001, 0.1, 1e-9, 1]},
+    ]);
+    let place = model.load().unwrap().scene.instances[0].transform.translation;
+    assert_eq!(place, DVec3::new(388096.123 + 0.001, 5412345.75 + 0.1, 12.5 + 1e-9));
+}

@@ -110,7 +110,7 @@ fn a_pane_lets_through_what_its_two_faces_leave() {
     let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
     let pane = scene.add_material(Material { thin: true, ..glass(GLASS) });
     let mesh = scene.add_mesh(Mesh {
-        positions: vec![[-1., -1., 0.], [1., -1., 0.], [0., 1., 0.]],
+        positions: vec![[-1., -1., 0.], [1., -1., 0.], [0., 1., 0.]].into(),
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     });
@@ -137,7 +137,7 @@ fn glass_on_a_smooth_mesh_bends_light_by_the_interpolated_normal() {
         let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
         let pane = scene.add_material(glass(GLASS));
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[-1., -1., 0.], [1., -1., 0.], [0., 1., 0.]],
+            positions: vec![[-1., -1., 0.], [1., -1., 0.], [0., 1., 0.]].into(),
             triangles: vec![[0, 1, 2]],
             normals: vec![normal; 3],
             ..Mesh::default()

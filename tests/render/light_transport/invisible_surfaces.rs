@@ -27,7 +27,7 @@ fn scene() -> Scene {
     sphere(&mut scene, DVec3::new(0.8, 0.8, 0.7), 0.8, Material { absorption, ..glass(1.5) });
     scene.spheres.push(Sphere::new(DVec3::new(2.2, 0.6, -1.0), 0.6, matt));
     let roof = scene.add_mesh(Mesh {
-        positions: vec![[-3., 3., -3.], [3., 3., -3.], [0., 4., 1.]],
+        positions: vec![[-3., 3., -3.], [3., 3., -3.], [0., 4., 1.]].into(),
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     });
@@ -91,7 +91,7 @@ fn a_closed_mesh_of_index_one_is_not_there() {
     let mut with = scene();
     let clear = with.add_material(Material { priority: -1, ..glass(1.0) });
     let mesh = with.add_mesh(Mesh {
-        positions: vec![[-2., 0.1, 3.], [2., 0.1, 3.], [0., 0.1, -3.], [0., 2.5, 0.]],
+        positions: vec![[-2., 0.1, 3.], [2., 0.1, 3.], [0., 0.1, -3.], [0., 2.5, 0.]].into(),
         triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
         ..Mesh::default()
     });

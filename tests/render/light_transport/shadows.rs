@@ -87,7 +87,7 @@ fn a_mesh_of_glass_that_casts_no_shadow_takes_nothing_off_whichever_way_it_winds
         let absorption = Vec3::splat(0.5);
         let material = scene.add_material(Material { absorption, ..glass(1.5) });
         let mesh = scene.add_mesh(Mesh {
-            positions: vec![[-2., 4., 3.], [2., 4., 3.], [0., 4., -3.], [0.3, 6., 0.2]],
+            positions: vec![[-2., 4., 3.], [2., 4., 3.], [0., 4., -3.], [0.3, 6., 0.2]].into(),
             triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
             ..Mesh::default()
         });

@@ -182,7 +182,7 @@ impl PrimitiveTable for TriangleTable {
         let vertices = self.mesh.triangle_vertices(index);
         let vertices = match &self.instance {
             Some((_, instance)) => vertices.map(|p| instance.to_world(p)),
-            None => vertices.map(|p| DVec3::from(p.map(f64::from))),
+            None => vertices,
         };
         (Bounds::from_points(vertices), &self.space)
     }

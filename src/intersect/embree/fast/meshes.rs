@@ -26,7 +26,7 @@ impl Blas {
         let SceneBuilder { device, quality, .. } = builder;
         let center = builder.mesh_bounds[mesh].center();
         let mesh = &builder.scene.meshes[mesh];
-        let recentred = |p: [f32; 3]| (DVec3::from(p.map(f64::from)) - center).as_vec3().to_array();
+        let recentred = |p: DVec3| (p - center).as_vec3().to_array();
         let geometry = new_mesh_geometry(device, mesh, *quality, recentred)?;
         let scene = CommittedScene::new(device, *quality, SCENE_FLAGS, &geometry)?;
         Ok(Self { scene, center, _mesh: mesh.clone() })

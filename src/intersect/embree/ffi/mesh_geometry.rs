@@ -5,6 +5,7 @@
 use std::mem::MaybeUninit;
 
 use embree4_sys as sys;
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
@@ -20,7 +21,7 @@ pub fn new_mesh_geometry(
     device: &DeviceHandle,
     mesh: &Mesh,
     quality: sys::RTCBuildQuality,
-    to_f32_space: impl Fn([f32; 3]) -> [f32; 3] + Sync,
+    to_f32_space: impl Fn(DVec3) -> [f32; 3] + Sync,
 ) -> Result<OwnedGeometry> {
     let failed = |e: Error| {
         Error::failed(format!("Embree cannot take mesh `{}`: {}", mesh.name, e.message()))
@@ -61,8 +62,8 @@ pub fn new_mesh_geometry(
     // SAFETY: Embree gave room for as many vertices, which nobody else reads or writes before
     // the geometry is committed; there was no error, so that the pointer is not null.
     let written = unsafe { std::slice::from_raw_parts_mut(buffer, vertices.len()) };
-    written.par_iter_mut().zip(vertices).with_min_len(GRAIN).for_each(|(to, &from)| {
-        to.write(to_f32_space(from));
+    written.par_iter_mut().enumerate().with_min_len(GRAIN).for_each(|(i, to)| {
+        to.write(to_f32_space(vertices.at(i)));
     });
     // SAFETY: the geometry is live, and all its buffers are filled.
     unsafe { sys::rtcCommitGeometry(geometry.0) };

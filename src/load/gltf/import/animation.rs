@@ -8,11 +8,11 @@ use glam::{DAffine3, DQuat, DVec3};
 use gltf::json::animation::{Channel, Interpolation as SamplerInterpolation, Property, Sampler};
 use gltf::json::{self, validation::Checked};
 
-use super::vectors::vector;
+use super::vectors::{unit_quaternion, vector};
 use crate::error::{Error, Result};
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::accessor::Accessors;
-use crate::load::gltf::json::lookup;
+use crate::load::gltf::json::{NodeTransform, lookup};
 use crate::load::limits::Limit;
 use crate::load::spelling;
 use crate::scene::animation::{
@@ -132,23 +132,19 @@ impl AnimationClip {
     pub fn add_node(
         &mut self,
         index: usize,
-        node: &json::Node,
+        node: &NodeTransform,
         parent: Option<NodeId>,
         base: DAffine3,
     ) -> Option<NodeId> {
         let NodeCurves { translation, rotation, scale } = self.nodes.get(&index)?;
         // Properties without a curve keep the value of the node.
-        let still = DQuat::from_array(node.rotation.unwrap_or_default().0.map(f64::from));
-        let still = if still.length() > 0.0 { still.normalize() } else { DQuat::IDENTITY };
-        let constant = |v: [f32; 3]| Curve::constant(vector(v));
+        let still = node.rotation.and_then(unit_quaternion).unwrap_or(DQuat::IDENTITY);
         let keys = Keyframes {
-            translation: translation
-                .clone()
-                .unwrap_or_else(|| constant(node.translation.unwrap_or_default())),
+            translation: translation.clone().unwrap_or_else(|| Curve::constant(node.translation())),
             rotation: Rotation::Quaternions(
                 rotation.clone().unwrap_or_else(|| Curve::constant(still)),
             ),
-            scale: scale.clone().unwrap_or_else(|| constant(node.scale.unwrap_or([1.0; 3]))),
+            scale: scale.clone().unwrap_or_else(|| Curve::constant(node.scale())),
             period: self.period(),
         };
         // The node stands where its parent's space places it.

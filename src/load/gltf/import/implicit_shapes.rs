@@ -161,14 +161,15 @@ fn capsule_profile(half: f64, bottom: f64, top: f64) -> Vec<[ProfilePoint; 2]> {
 /// Returns the surface that a profile, from bottom to top, makes when it is turned about Y.
 fn surface_of_revolution(profile: &[[ProfilePoint; 2]]) -> Mesh {
     let mut mesh = Mesh::default();
+    let mut positions: Vec<[f64; 3]> = Vec::new();
     for segment in profile {
-        let first = mesh.positions.len() as u32;
+        let first = positions.len() as u32;
         for i in 0..=AROUND {
             // Each step around the axis has a vertex at either end of the segment. The last step is
             // at the place of the first, so that the seam is closed.
             let (sin, cos) = (TAU * (i % AROUND) as f64 / AROUND as f64).sin_cos();
             for [r, y, nr, ny] in segment {
-                mesh.positions.push([r * cos, *y, r * sin].map(|x| x as f32));
+                positions.push([r * cos, *y, r * sin]);
                 mesh.normals.push([nr * cos, *ny, nr * sin].map(|x| x as f32));
             }
         }
@@ -181,23 +182,24 @@ fn surface_of_revolution(profile: &[[ProfilePoint; 2]]) -> Mesh {
             mesh.triangles.extend(low.then_some([a, d, c]));
         }
     }
+    mesh.positions = positions.into();
     mesh
 }
 
 /// Returns a rectangle in the plane of X and Z.
 fn rectangle(x: f64, z: f64) -> Mesh {
-    let (x, z) = ((x / 2.0) as f32, (z / 2.0) as f32);
+    let (x, z) = (x / 2.0, z / 2.0);
     Mesh {
-        positions: vec![[-x, 0.0, -z], [-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z]],
+        positions: vec![[-x, 0.0, -z], [-x, 0.0, z], [x, 0.0, z], [x, 0.0, -z]].into(),
         triangles: vec![[0, 1, 2], [0, 2, 3]],
         ..Mesh::default()
     }
 }
 
 fn box_mesh(size: DVec3) -> Mesh {
-    let half = (size / 2.0).as_vec3();
+    let half = size / 2.0;
     let corner = |i: usize| {
-        let side = |bit: usize, half: f32| if i & bit == 0 { -half } else { half };
+        let side = |bit: usize, half: f64| if i & bit == 0 { -half } else { half };
         [side(1, half.x), side(2, half.y), side(4, half.z)]
     };
     #[rustfmt::skip]
@@ -234,8 +236,7 @@ mod tests {
 
     /// Six times the volume within a closed mesh that winds outward.
     fn volume(mesh: &Mesh) -> f64 {
-        let corner = |i: u32| DVec3::from(mesh.positions[i as usize].map(f64::from));
-        let tetrahedra = mesh.triangles.iter().map(|t| t.map(corner));
+        let tetrahedra = mesh.triangles.iter().map(|t| mesh.corners(t));
         tetrahedra.map(|[a, b, c]| a.dot(b.cross(c))).sum::<f64>() / 6.0
     }
 

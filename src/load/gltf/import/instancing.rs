@@ -59,7 +59,7 @@ pub fn transforms(
     // The transforms, without those that are not finite.
     let parts = translations.into_iter().zip(rotations).zip(scales);
     let transforms = parts.map(|((translation, rotation), scale)| {
-        let rotation = unit_quaternion(rotation).unwrap_or(DQuat::IDENTITY);
+        let rotation = unit_quaternion(rotation.map(f64::from)).unwrap_or(DQuat::IDENTITY);
         DAffine3::from_scale_rotation_translation(vector(scale), rotation, vector(translation))
     });
     let mut transforms: Vec<DAffine3> = transforms.collect();

@@ -60,7 +60,7 @@ pub fn import(
     let buffers = Buffers::new(root, sandbox, path, bin);
     let accessors = Accessors::new(&buffers);
     let mut clip = AnimationClip::read(&accessors, options.animation, &mut diagnostics)?;
-    let nodes = collect_nodes(root, sandbox, &mut clip, &mut diagnostics)?;
+    let nodes = collect_nodes(document, sandbox, &mut clip, &mut diagnostics)?;
 
     // Nodes are added in the order of the file; joints of skins refer to any of them.
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();

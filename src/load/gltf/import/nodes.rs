@@ -3,14 +3,14 @@
 
 use std::collections::HashSet;
 
-use glam::{DAffine3, DMat3, DQuat};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use gltf::json::{self, Node};
 
 use super::animation::AnimationClip;
-use super::vectors::{unit_quaternion, vector};
+use super::vectors::unit_quaternion;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
-use crate::load::gltf::json::{at_path, error_at, lookup};
+use crate::load::gltf::json::{Document, NodeTransform, at_path, error_at, lookup};
 use crate::load::limits::Limit;
 use crate::load::sandbox::Sandbox;
 use crate::scene::animation::NodeId;
@@ -62,11 +62,12 @@ struct Parent {
 /// # Errors
 /// When a node refers to a missing one, is its own ancestor, or has numbers that are not finite.
 pub fn collect_nodes<'a>(
-    root: &'a json::Root,
+    document: &'a Document,
     sandbox: &Sandbox,
     clip: &mut AnimationClip,
     diagnostics: &mut Diagnostics,
 ) -> Result<Vec<SceneNode<'a>>> {
+    let root = &document.root;
     sandbox.consume(Limit::Nodes, root.nodes.len() as u64).map_err(at_path("nodes"))?;
     let parents = parents(root)?;
     let mut roots = scene_roots(root, &parents)?;
@@ -102,7 +103,8 @@ pub fn collect_nodes<'a>(
         }
 
         // The transforms of the node.
-        let local = local_transform(node, &path, diagnostics)?;
+        let transform = &document.transforms[index];
+        let local = local_transform(transform, &path, diagnostics);
         let to_world = parent.to_world * local;
         if !to_world.is_finite() {
             let message = "the transforms of the node and those above it overflow";
@@ -110,7 +112,7 @@ pub fn collect_nodes<'a>(
         }
         // A node that moves begins a space of its own; others stand still in that of an ancestor.
         let (animated, to_animated) =
-            match clip.add_node(index, node, parent.animated, parent.to_animated) {
+            match clip.add_node(index, transform, parent.animated, parent.to_animated) {
                 Some(own) => (Some(own), DAffine3::IDENTITY),
                 None => (parent.animated, parent.to_animated * local),
             };
@@ -183,38 +185,24 @@ fn scene_roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usiz
 }
 
 /// Returns the transform from a node's space to that of its parent.
-fn local_transform(node: &Node, path: &str, diagnostics: &mut Diagnostics) -> Result<DAffine3> {
-    let check_finite = |numbers: &[f32], key: &str| {
-        if numbers.iter().all(|x| x.is_finite()) {
-            return Ok(());
-        }
-        let error = error_at(format_args!("{path}.{key}"), "a number is too large");
-        Err(error.help("at most about 3.4e38"))
-    };
+fn local_transform(node: &NodeTransform, path: &str, diagnostics: &mut Diagnostics) -> DAffine3 {
     // A matrix, by columns.
     if let Some(m) = &node.matrix {
-        check_finite(m, "matrix")?;
         // The last row of an affine transform is 0 0 0 1.
         if [m[3], m[7], m[11], m[15]] != [0.0, 0.0, 0.0, 1.0] {
             let reason = "{} matrices have a last row other than 0 0 0 1, which is ignored";
             diagnostics.add(reason, 1, || format!("{path}.matrix"));
         }
-        let [x, y, z, translation] = [0, 4, 8, 12].map(|i| vector([m[i], m[i + 1], m[i + 2]]));
-        return Ok(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation));
+        let [x, y, z, translation] = [0, 4, 8, 12].map(|i| DVec3::new(m[i], m[i + 1], m[i + 2]));
+        return DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
     }
 
     // Or scale, rotation and translation, in this order.
-    let rotation = node.rotation.unwrap_or_default().0;
-    let scale = node.scale.unwrap_or([1.0; 3]);
-    let translation = node.translation.unwrap_or_default();
-    check_finite(&rotation, "rotation")?;
-    check_finite(&scale, "scale")?;
-    check_finite(&translation, "translation")?;
-    // Rounding in f32 must not make a rotation shear.
-    let rotation = unit_quaternion(rotation).unwrap_or_else(|| {
+    let rotation = node.rotation.map_or(Some(DQuat::IDENTITY), unit_quaternion);
+    let rotation = rotation.unwrap_or_else(|| {
         let reason = "{} rotations have length 0 and turn nothing";
         diagnostics.add(reason, 1, || format!("{path}.rotation"));
         DQuat::IDENTITY
     });
-    Ok(DAffine3::from_scale_rotation_translation(vector(scale), rotation, vector(translation)))
+    DAffine3::from_scale_rotation_translation(node.scale(), rotation, node.translation())
 }

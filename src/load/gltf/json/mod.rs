@@ -1,6 +1,7 @@
 //! The JSON of a glTF file: parsing it, paths within it, and references from one part to another.
 
 mod large_indices;
+mod node_transforms;
 mod parse;
 
 use std::fmt;
@@ -9,6 +10,7 @@ use gltf::json::Value;
 
 use crate::error::{Error, Location, Result};
 
+pub use node_transforms::NodeTransform;
 pub use parse::{Document, as_natural, estimated_memory, parse};
 
 /// The path from the root of the JSON to a value, which displays as `nodes[3].children[0]`.

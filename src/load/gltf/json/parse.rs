@@ -5,6 +5,7 @@ use gltf::json::{self, Value};
 
 use super::super::container::wrong_version;
 use super::super::validate;
+use super::node_transforms::{self, NodeTransform};
 use super::{JsonPath, error_at, large_indices, list};
 use crate::error::{Error, Location, Result};
 
@@ -35,6 +36,8 @@ const MAX_VALIDATED_MEMORY: u64 = 1 << 28;
 pub struct Document {
     /// The crate's types.
     pub root: json::Root,
+    /// The transforms of the nodes, in f64.
+    pub transforms: Vec<NodeTransform>,
     /// The values as they are in the file, unless they are too large to be validated.
     pub value: Option<Value>,
 }
@@ -53,8 +56,9 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
     if root.asset.version.split('.').next() != Some("2") {
         return Err(unsupported_version(&root.asset.version));
     }
+    let transforms = node_transforms::read(bytes).map_err(|e| syntax_error(bytes, &e))?;
     if estimated_memory(bytes) > MAX_VALIDATED_MEMORY {
-        return Ok(Document { root, value: None });
+        return Ok(Document { root, transforms, value: None });
     }
     let value = json::deserialize::from_slice(bytes).map_err(|e| syntax_error(bytes, &e))?;
     // A visit to all values takes time, and only a number of ten digits can be too large.
@@ -66,7 +70,7 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
     if bytes.iter().any(is_tenth_digit) {
         large_indices::check(&value, &JsonPath::Root, false)?;
     }
-    Ok(Document { root, value: Some(value) })
+    Ok(Document { root, transforms, value: Some(value) })
 }
 
 fn unsupported_version(version: &str) -> Error {

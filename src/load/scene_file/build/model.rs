@@ -130,12 +130,13 @@ fn rotate(axis: DVec3, degrees: f64) -> DMat3 {
         270.0 => (-1.0, 0.0),
         other => other.to_radians().sin_cos(),
     };
+    // What lies along the axis stays, to the bit; the rest is Rodrigues' formula.
     let [x, y, z] = axis.to_array();
-    // Rodrigues' formula for an axis that is one of the coordinate axes.
+    let stays = |along: f64| if along == 1.0 { 1.0 } else { cos };
     DMat3::from_cols(
-        DVec3::new(cos + x * (1.0 - cos), z * sin, -y * sin),
-        DVec3::new(-z * sin, cos + y * (1.0 - cos), x * sin),
-        DVec3::new(y * sin, -x * sin, cos + z * (1.0 - cos)),
+        DVec3::new(stays(x), z * sin, -y * sin),
+        DVec3::new(-z * sin, stays(y), x * sin),
+        DVec3::new(y * sin, -x * sin, stays(z)),
     )
 }
 

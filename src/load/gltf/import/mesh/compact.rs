@@ -24,7 +24,7 @@ pub fn compact(mesh: &mut Mesh) -> Option<Vec<usize>> {
     for i in mesh.triangles.as_flattened_mut() {
         *i = new_index.get(*i as usize).copied().unwrap_or(UNUSED);
     }
-    retain_vertices(&mut mesh.positions, &kept);
+    mesh.positions = mesh.positions.select(&kept);
     retain_vertices(&mut mesh.normals, &kept);
     retain_vertices(&mut mesh.uvs, &kept);
     retain_vertices(&mut mesh.second_uvs, &kept);
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn unused_vertices_go_when_they_are_many() {
-        let positions: Vec<_> = (0..9).map(|i| [i as f32; 3]).collect();
+        let positions = (0..9).map(|i| [i as f32; 3]).collect();
         let uvs: Vec<_> = (0..9).map(|i| [i as f32; 2]).collect();
         let mut mesh = Mesh { positions, uvs, triangles: vec![[8, 2, 4]], ..Mesh::default() };
         compact(&mut mesh);
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn vertices_stay_as_they_are_when_most_are_used() {
-        let positions: Vec<_> = (0..4).map(|i| [i as f32; 3]).collect();
+        let positions = (0..4).map(|i| [i as f32; 3]).collect();
         let mesh = Mesh { positions, triangles: vec![[3, 2, 0]], ..Mesh::default() };
         let mut same = mesh.clone();
         compact(&mut same);

@@ -108,7 +108,7 @@ impl PrimitiveReader<'_> {
         };
         // The faces that are incomplete are counted here, since none of them gets into the mesh.
         let triangles = topology::triangles(mode, &corners);
-        let mut mesh = Mesh { triangles, positions, ..Mesh::default() };
+        let mut mesh = Mesh { triangles, positions: positions.into(), ..Mesh::default() };
         let incomplete = u64::from(topology::is_incomplete(mode, corners.len()));
         self.diagnostics.read(incomplete);
         self.diagnostics.drop(DropReason::Incomplete, incomplete, to_string);

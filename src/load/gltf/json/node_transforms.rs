@@ -1,0 +1,52 @@
+//! The transforms of nodes in f64: the types of the `gltf` crate have them in f32.
+
+use glam::DVec3;
+use serde::Deserialize;
+
+/// The transform of a node as the file has it: a matrix, by columns, or translation, rotation and scale.
+#[derive(Clone, Debug, Default, Deserialize)]
+pub struct NodeTransform {
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    /// A quaternion, x y z w.
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+}
+
+impl NodeTransform {
+    /// Returns the translation, 0 by default.
+    pub fn translation(&self) -> DVec3 {
+        self.translation.map_or(DVec3::ZERO, DVec3::from)
+    }
+
+    /// Returns the scale, 1 by default.
+    pub fn scale(&self) -> DVec3 {
+        self.scale.map_or(DVec3::ONE, DVec3::from)
+    }
+}
+
+/// Reads the transforms of all nodes of a JSON text that the types of the `gltf` crate accept.
+///
+/// # Errors
+/// When the text is no JSON, or a transform is none.
+pub fn read(bytes: &[u8]) -> serde_json::Result<Vec<NodeTransform>> {
+    #[derive(Deserialize)]
+    struct Root {
+        #[serde(default)]
+        nodes: Vec<NodeTransform>,
+    }
+    serde_json::from_slice(bytes).map(|root: Root| root.nodes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_transform_keeps_the_digits_of_f64() {
+        let file = br#"{"nodes":[{"name":"a"},{"translation":[5412345.75,0.1,-1e200]}]}"#;
+        let transforms = read(file).unwrap();
+        assert_eq!(transforms[0].translation, None);
+        assert_eq!(transforms[1].translation, Some([5412345.75, 0.1, -1e200]));
+    }
+}
