@@ -43,6 +43,10 @@ pub enum Remedy {
     ReferenceSamples(u32),
 }
 
+/// The most characters of a line that an error quotes: those before its place, and those from there on.
+const MAX_BEFORE: usize = 60;
+const MAX_BEHIND: usize = 100;
+
 /// The place of an error in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Location {
@@ -52,10 +56,13 @@ pub enum Location {
         line: usize,
         /// The column, counted from 1, in characters.
         column: usize,
-        /// The number of characters that the error is about, at least 1.
+        /// The number of quoted characters that the error is about, at least 1.
         length: usize,
-        /// The line itself, without its line break.
+        /// The line itself, without its line break; of a long line the part around the place, with
+        /// `…` where it is cut.
         quote: String,
+        /// The number of characters of the quote before the place.
+        before: usize,
     },
     /// A line of a text file that is not quoted, counted from 1.
     Line(usize),
@@ -71,12 +78,22 @@ impl Location {
         let [start, end] = [span.start, span.end].map(|at| floor(at).unwrap_or(0));
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let line_end = text[start..].find('\n').map_or(text.len(), |i| start + i);
-        let quote = text[line_start..line_end].trim_end_matches('\r');
+        // The part of the line that is quoted: all of a short one.
+        let (before, rest) = (&text[line_start..start], &text[start..line_end]);
+        let cut = match before.char_indices().rev().nth(MAX_BEFORE - 1) {
+            Some((cut, _)) if line_end - line_start > MAX_BEFORE + MAX_BEHIND => cut,
+            _ => 0,
+        };
+        let kept = rest.char_indices().nth(MAX_BEHIND).map_or(rest.len(), |(cut, _)| cut);
+        let mark = |is_cut: bool| if is_cut { "…" } else { "" };
+        let shown = format!("{}{}", mark(cut > 0), &before[cut..]);
+        let behind = format!("{}{}", &rest[..kept], mark(kept < rest.len()));
         Location::Text {
             line: text[..line_start].matches('\n').count() + 1,
-            column: text[line_start..start].chars().count() + 1,
-            length: text[start..end.clamp(start, line_end)].chars().count().max(1),
-            quote: quote.to_owned(),
+            column: before.chars().count() + 1,
+            length: text[start..end.clamp(start, start + kept)].chars().count().max(1),
+            before: shown.chars().count(),
+            quote: (shown + &behind).trim_end_matches('\r').to_owned(),
         }
     }
 }
@@ -101,6 +118,8 @@ struct ErrorDetails {
     path: Option<PathBuf>,
     place: Option<Location>,
     message: String,
+    /// What the message announces, line by line.
+    list: Vec<String>,
     help: Option<String>,
     remedy: Option<Remedy>,
 }
@@ -130,6 +149,7 @@ impl Error {
             path: None,
             place: None,
             message: message.into(),
+            list: Vec::new(),
             help: None,
             remedy: None,
         }))
@@ -153,6 +173,14 @@ impl Error {
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.0.help.get_or_insert(help.into());
+        self
+    }
+
+    /// Adds a list of what the message announces, which is shown line by line.
+    #[cfg(feature = "cli")]
+    #[must_use]
+    pub(crate) fn listing(mut self, list: Vec<String>) -> Self {
+        self.0.list = list;
         self
     }
 
@@ -183,6 +211,12 @@ impl Error {
         &self.0.message
     }
 
+    /// The list that the message announces; mostly empty.
+    #[cfg(feature = "cli")]
+    pub(crate) fn list(&self) -> &[String] {
+        &self.0.list
+    }
+
     /// The advice, if there is some.
     pub fn advice(&self) -> Option<&str> {
         self.0.help.as_deref()
@@ -207,6 +241,7 @@ impl fmt::Display for Error {
             f.write_str(" ")?;
         }
         f.write_str(&self.0.message)?;
+        self.0.list.iter().try_for_each(|line| write!(f, "\n  {line}"))?;
         match &self.0.help {
             Some(help) if !f.alternate() => write!(f, " ({help})"),
             _ => Ok(()),
@@ -225,7 +260,25 @@ mod tests {
         let place = Location::in_text(text, start..start + 3);
         assert_eq!(
             place,
-            Location::Text { line: 2, column: 5, length: 3, quote: "é = \"x\"".into() }
+            Location::Text { line: 2, column: 5, length: 3, quote: "é = \"x\"".into(), before: 4 }
+        );
+    }
+
+    #[test]
+    fn long_lines_are_quoted_around_the_place() {
+        let text = format!("{}é = {}", "a".repeat(1 << 20), "b".repeat(1 << 20));
+        let at = 1 << 20;
+        let Location::Text { column, length, quote, before, .. } =
+            Location::in_text(&text, at..text.len())
+        else {
+            unreachable!()
+        };
+        assert_eq!((column, length, before), ((1 << 20) + 1, 100, 61));
+        assert_eq!(quote, format!("…{}é = {}…", "a".repeat(60), "b".repeat(96)));
+        // The whole of one that is not long.
+        let text = "x".repeat(150);
+        assert!(
+            matches!(Location::in_text(&text, 70..71), Location::Text { quote, before: 70, .. } if quote == text)
         );
     }
 

@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cli::flag_values::{
-    BVH_QUALITIES, BvhQuality, SampleRange, TONES, VIEWS, backend, choice, duration, finite, goal,
-    not_negative, sample_range, share,
+    BVH_QUALITIES, BvhQuality, NamedLimit, SampleRange, TONES, VIEWS, backend, choice, duration,
+    finite, goal, not_negative, sample_range, share,
 };
 use crate::cli::frame_range::FrameRange;
 use crate::cli::scene_args::{InputArgs, LoadArgs, TraceArgs};
@@ -271,6 +271,9 @@ pub struct Diff {
     /// Write an image of the differences, from black (equal) to white (the largest)
     #[arg(long, value_name = "FILE.png")]
     pub heatmap: Option<PathBuf>,
+    /// Change a limit on what the images may use: bytes or pixels; can be given several times
+    #[arg(long, value_name = "NAME=NUMBER")]
+    pub limit: Vec<NamedLimit>,
 }
 
 #[cfg(test)]

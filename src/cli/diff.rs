@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::{args::Diff, check_status, output, paths};
+use crate::cli::{args::Diff, check_status, output, paths, scene_args};
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::measure::{Comparison, Picture, compare_pictures, flip::PerceivedImage};
@@ -39,7 +39,8 @@ pub fn run(arguments: &Diff) -> Result<ExitCode> {
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
     // Compare the values, and what a viewer perceives of them.
-    let (a, b) = (Picture::read(&arguments.a)?, Picture::read(&arguments.b)?);
+    let limits = scene_args::limits(&arguments.limit);
+    let [a, b] = Picture::read_pair(&arguments.a, &arguments.b, limits)?;
     let comparison =
         compare_pictures(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
     let transfer = if format == Format::Png { Transfer::Srgb } else { Transfer::None };

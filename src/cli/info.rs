@@ -99,9 +99,11 @@ pub fn run(arguments: &Info) -> Result<ExitCode> {
     let Loaded { scene, report } = arguments.load.options(None).load(&arguments.scene)?;
     let animation = scene.animation.as_ref().map(AnimationSummary::new);
     // All but the animation is that of the first frame.
-    let summary = Summary::new(&scene.at_time(0.0)?, &report, animation);
+    // On a thread of the pool, where parallel loops over many small meshes cost nothing.
+    let summary =
+        rayon::scope(|_| scene.at_time(0.0).map(|scene| Summary::new(&scene, &report, animation)))?;
     if output::stdout_is_free(arguments.json.as_ref()) {
-        output::print(&messages::escape_controls(&summary.to_string()))?;
+        output::print(&summary.to_string())?;
         summary.warnings.iter().for_each(|w| messages::warning(w));
     }
     if let Some(path) = &arguments.json {
@@ -184,7 +186,7 @@ impl fmt::Display for Summary {
         // What only some scenes have.
         let variants: Vec<String> = self.report.variants.iter().map(|v| format!("`{v}`")).collect();
         if !variants.is_empty() {
-            writeln!(f, "variants   {}", variants.join(", "))?;
+            writeln!(f, "variants   {}", or_none(&variants))?;
         }
         if let Some(motion) = &self.animation {
             writeln!(f, "animation  {motion}")?;
@@ -196,7 +198,7 @@ impl fmt::Display for Summary {
         // The work that the scene needs, and the work that it does not.
         for (verb, features) in [("needs", &self.needed), ("skips", &self.skipped)] {
             for (feature, reason) in features {
-                writeln!(f, "{verb:10} {feature}: {reason}")?;
+                writeln!(f, "{verb:10} {feature}: {}", messages::line(reason))?;
             }
         }
         Ok(())
@@ -210,5 +212,5 @@ fn counted(count: usize, noun: &str) -> String {
 
 /// Returns a list with commas, or `none`.
 fn or_none(list: &[String]) -> String {
-    if list.is_empty() { "none".to_owned() } else { list.join(", ") }
+    if list.is_empty() { "none".to_owned() } else { messages::line(&list.join(", ")) }
 }

@@ -50,8 +50,8 @@ pub fn check_strictly(report: &LoadReport, path: &Path) -> Result<()> {
     let unsupported = unsupported.iter().map(|what| format!("not supported: {what}"));
     let placeholders = placeholders.iter().map(|what| format!("placeholder: {what}"));
     let list = dropped.chain(unsupported).chain(placeholders);
-    let list: String = list.map(|line| format!("\n  {line}")).collect();
-    Err(Error::input(format!("--strict: the files cannot be shown completely{list}"))
+    Err(Error::input("--strict: the files cannot be shown completely")
+        .listing(list.collect())
         .at(path)
         .help("correct the files, or leave out --strict to render without these parts"))
 }

@@ -10,7 +10,7 @@ use crate::scene::{self, Scene};
 
 /// Prints an error: file, place and message, the line of the file, and the help.
 pub fn error(error: &Error) {
-    to_stderr(&escape_controls(&format(error)));
+    to_stderr(&format(error));
 }
 
 /// Returns the warnings of a load, and those about lost precision, with the flag that avoids these.
@@ -29,20 +29,47 @@ pub fn labelled(kind: &str, name: &str) -> String {
 
 /// Prints a warning.
 pub fn warning(text: &str) {
-    to_stderr(&escape_controls(&format!("warning: {text}\n")));
+    to_stderr(&format!("warning: {}\n", line(text)));
 }
 
-/// Returns a text with control codes escaped. Names in an untrusted file can contain codes that move
-/// the cursor, hide text or reverse its direction.
-pub fn escape_controls(text: &str) -> String {
-    let is_safe = |c: char| match c {
-        '\n' | '\t' => true,
-        // Codes that change the direction of writing.
-        '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => false,
-        c => !c.is_control(),
+/// The most characters of a line of a message that are printed.
+const MAX_LINE: usize = 2000;
+
+/// Returns a text as one line of bounded length, with characters escaped that cannot be seen. Names in
+/// an untrusted file can be of any length, and contain codes that move the cursor, begin a line that
+/// looks like another message, hide text or reverse its direction.
+pub fn line(text: &str) -> String {
+    let escaped = |text: &str| -> String {
+        let escape =
+            |c| if is_visible(c) { String::from(c) } else { c.escape_unicode().to_string() };
+        text.chars().map(escape).collect()
     };
-    let escape = |c: char| if is_safe(c) { c.to_string() } else { c.escape_unicode().to_string() };
-    text.chars().map(escape).collect()
+    // Of a text that is too long, the beginning and the end.
+    let [begin, end] = [MAX_LINE * 3 / 4, MAX_LINE / 4];
+    let head = text.char_indices().nth(begin).map(|(at, _)| at);
+    let tail = text.char_indices().rev().nth(end).map(|(at, _)| at);
+    match head.zip(tail) {
+        Some((head, tail)) if head < tail => {
+            format!("{} … {}", escaped(&text[..head]), escaped(&text[tail..]))
+        }
+        _ => escaped(text),
+    }
+}
+
+/// True if a character can be seen, or is a space or a tab.
+fn is_visible(c: char) -> bool {
+    match c {
+        '\t' => true,
+        // Soft hyphens, fillers and other characters without width, marks and codes of the direction of
+        // writing, separators of lines and paragraphs, tags, byte order marks.
+        '\u{ad}' | '\u{34f}' | '\u{61c}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' => {
+            false
+        }
+        '\u{180b}'..='\u{180f}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' => false,
+        '\u{2060}'..='\u{206f}' | '\u{2800}' | '\u{3164}' | '\u{feff}' | '\u{ffa0}' => false,
+        '\u{fff0}'..='\u{fffb}' | '\u{1d173}'..='\u{1d17a}' | '\u{e0000}'..='\u{e0fff}' => false,
+        c => !c.is_control(),
+    }
 }
 
 /// Prints to stderr; errors of writing are ignored.
@@ -67,24 +94,35 @@ pub fn set_progress(bar: &ProgressBar, share: f32) {
     bar.set_position((share * 1000.0) as u64);
 }
 
-/// Returns the text of an error.
+/// Returns the text of an error, each line of it escaped.
 fn format(error: &Error) -> String {
-    let mut text = format!("error: {error:#}\n");
+    // File, place and message, and the list that it announces.
+    let mut place = String::new();
+    if let Some(path) = error.path() {
+        place += &format!("{}:", path.display());
+    }
+    if let Some(location) = error.location() {
+        place += &format!("{location}:");
+    }
+    let space = if place.is_empty() { "" } else { " " };
+    let mut text = format!("error: {}{space}{}\n", line(&place), line(error.message()));
+    error.list().iter().for_each(|item| text += &format!("  {}\n", line(item)));
     // The line of the file, with its number and a mark under the place.
-    if let Some(Location::Text { line, column, length, quote }) = error.location() {
-        let number = line.to_string();
+    if let Some(Location::Text { line: number, length, quote, before, .. }) = error.location() {
+        let number = number.to_string();
         let margin = " ".repeat(number.len());
         // Tabs stay tabs, so that the mark is aligned with the text above it.
-        let indent: String =
-            quote.chars().take(column - 1).map(|c| if c == '\t' { c } else { ' ' }).collect();
+        let split = quote.char_indices().nth(*before).map_or(quote.len(), |(at, _)| at);
+        let (ahead, rest) = (line(&quote[..split]), line(&quote[split..]));
+        let indent: String = ahead.chars().map(|c| if c == '\t' { c } else { ' ' }).collect();
         let mark = "^".repeat(*length);
-        text += &format!("{margin} |\n{number} | {quote}\n{margin} | {indent}{mark}\n");
+        text += &format!("{margin} |\n{number} | {ahead}{rest}\n{margin} | {indent}{mark}\n");
     }
     // The advice, and the flag that does what it says.
     let flag = error.remedy().map(flag);
     let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
     if !help.is_empty() {
-        text += &format!("help: {}\n", help.join(": "));
+        text += &format!("help: {}\n", line(&help.join(": ")));
     }
     text
 }
@@ -122,11 +160,31 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn control_codes_are_escaped() {
-        assert_eq!(
-            escape_controls("a\u{1b}[2J\tb\u{7}\u{202e}é\n"),
-            "a\\u{1b}[2J\tb\\u{7}\\u{202e}é\n"
-        );
+    fn what_cannot_be_seen_is_escaped() {
+        assert_eq!(line("a\u{1b}[2J\tb\u{7}\u{202e}é\n"), "a\\u{1b}[2J\tb\\u{7}\\u{202e}é\\u{a}");
+        for c in "\r\n\u{85}\u{ad}\u{200b}\u{200d}\u{2028}\u{2029}\u{2066}\u{feff}\u{e0041}".chars()
+        {
+            assert_eq!(line(&format!("a{c}b")), format!("a{}b", c.escape_unicode()));
+        }
+        assert_eq!(line("Größe 大 \u{1f600}"), "Größe 大 \u{1f600}");
+    }
+
+    #[test]
+    fn long_lines_are_cut_in_their_middle() {
+        let cut = line(&format!("begin {} end", "x".repeat(1 << 20)));
+        assert!(cut.starts_with("begin x") && cut.ends_with("x end") && cut.chars().count() < 2100);
+        let whole = "é".repeat(MAX_LINE);
+        assert_eq!(line(&whole), whole);
+    }
+
+    #[test]
+    fn names_begin_no_line_of_their_own() {
+        let error = Error::input("`a\nerror: b` is odd")
+            .at(Path::new("x\ny"))
+            .listing(vec!["c\nwarning: d".to_owned()])
+            .help("e\nhelp: f");
+        let lines = format(&error);
+        assert_eq!(lines.lines().count(), 3, "{lines}");
     }
 
     #[test]

@@ -31,14 +31,19 @@ pub struct LoadArgs {
 impl LoadArgs {
     /// Returns the options of a load.
     pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
-        let set = |limits: Limits, &NamedLimit(limit, value): &_| limits.with_limit(limit, value);
         LoadOptions {
             size,
             variant: self.variant.clone(),
             allow_outside: self.allow_outside,
-            limits: self.limit.iter().fold(Limits::default(), set),
+            limits: limits(&self.limit),
         }
     }
+}
+
+/// Returns the default limits with those that flags change.
+pub fn limits(changed: &[NamedLimit]) -> Limits {
+    let set = |limits: Limits, &NamedLimit(limit, value): &_| limits.with_limit(limit, value);
+    changed.iter().fold(Limits::default(), set)
 }
 
 /// The scene and the flags that select what of it to show; shared by the commands that render one.

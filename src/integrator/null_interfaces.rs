@@ -3,6 +3,8 @@
 //! They are hidden in another dielectric, or clear and with the same index of refraction on both
 //! sides. A ray that hits one goes straight on in the same wave.
 
+use std::collections::HashMap;
+
 use glam::Vec3;
 
 use crate::geometry::{HitBatch, RayBatch};
@@ -17,14 +19,15 @@ use crate::surface::Surface;
 
 /// True if a scene may have clear surfaces with the same index of refraction on both sides.
 pub(super) fn may_match_indices(scene: &Scene) -> bool {
-    let indices = || {
-        let dielectrics = scene.materials_in_use().filter(|material| material.is_dielectric());
-        std::iter::once(1.0).chain(dielectrics.map(|material| material.ior))
-    };
+    // How many media have each index of refraction: empty space, and the dielectrics.
+    let mut counts = HashMap::from([(1f64.to_bits(), 1)]);
+    for material in scene.materials_in_use().filter(|material| material.is_dielectric()) {
+        *counts.entry(material.ior.to_bits()).or_insert(0) += 1;
+    }
     scene.materials_in_use().any(|material| {
         // The material's own index is among them once, and counts where another one is the same.
-        let matches = indices().filter(|&ior| material.is_clear_in(ior)).count();
-        matches > usize::from(material.is_dielectric())
+        let matches = counts.get(&material.ior.to_bits()).copied().unwrap_or(0);
+        material.is_clear_in(material.ior) && matches > usize::from(material.is_dielectric())
     })
 }
 

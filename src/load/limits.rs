@@ -9,8 +9,9 @@ pub enum Limit {
     /// The bytes of all files that are read, and those of views that are packed in them
     /// (EXT_meshopt_compression).
     Bytes,
-    /// The bytes of memory that the JSON of a glTF file is estimated to take: 640 for each object, 128
-    /// for each list, 32 for each value.
+    /// The bytes of memory that the JSON of a glTF file is estimated to take (640 for each object, 128
+    /// for each list, 32 for each value), or the TOML of a scene file (128 for each bracket, comma and
+    /// other sign, 48 for each space, 8 for all else).
     Json,
     /// The nodes of glTF files.
     Nodes,
@@ -23,7 +24,9 @@ pub enum Limit {
     Vertices,
     /// The stored triangles.
     Triangles,
-    /// The vertices of the copies that nodes have of the meshes that they skin or morph.
+    /// The vertices of the copies that nodes have of the meshes that they skin or morph, with each set
+    /// of joints and every 16 morph targets that move them; the joints of a skin, for each such copy;
+    /// and four for each joint of each skin.
     Deformed,
     /// The elements that a glTF file's accessors give, beyond one for each byte of its buffers: those
     /// without a buffer view, and those that several accessors read from the same bytes. A triangle
@@ -35,7 +38,7 @@ pub enum Limit {
     /// The decoded images.
     Pictures,
     /// The pixels of all images beyond 16 for each byte of their files, so that only images count that
-    /// are much larger than their files. A pixel of 16-bit numbers counts twice, one
+    /// are much larger than their files; bytes that several images share account for one of them. A pixel of 16-bit numbers counts twice, one
     /// of floats four times.
     Pixels,
 }
@@ -72,14 +75,14 @@ impl Limit {
     const fn properties(self) -> (&'static str, u64, &'static str) {
         match self {
             Self::Bytes => ("bytes", 1 << 30, "bytes to read"),
-            Self::Json => ("json", 1 << 29, "bytes that the JSON is estimated to take"),
+            Self::Json => ("json", 1 << 29, "bytes that the JSON or TOML is estimated to take"),
             Self::Nodes => ("nodes", 1 << 20, "nodes"),
             Self::Depth => ("depth", 1 << 12, "nodes one below the other"),
             Self::Instances => ("instances", 1 << 20, "instances"),
             Self::Vertices => ("vertices", 1 << 27, "vertices"),
             Self::Triangles => ("triangles", 1 << 27, "triangles"),
             Self::Deformed => {
-                ("deformed", 1 << 22, "vertices of copies that are skinned or morphed")
+                ("deformed", 1 << 22, "vertices of copies that are skinned or morphed, and joints")
             }
             Self::Elements => {
                 ("elements", 1 << 25, "elements of accessors beyond the bytes of the buffers")

@@ -6,6 +6,7 @@
 
 mod defaults;
 mod diagnostics;
+mod duplicates;
 mod gltf;
 mod images;
 mod limits;
@@ -85,7 +86,13 @@ impl LoadOptions {
     /// The same as for [`load`]; when a file names another one outside, or asks for more than a
     /// limit allows, unless the options say otherwise; and when no file has the variant.
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
+        // On a thread of the pool, where a parallel loop over little costs nothing: a file can have a
+        // million meshes of a triangle.
         let path = path.as_ref();
+        rayon::scope(|_| self.load_on_thread(path))
+    }
+
+    fn load_on_thread(&self, path: &Path) -> Result<Loaded> {
         let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;
         // The extension decides between a scene file and a bare model.
         let file = sandbox.open_named(path)?;
@@ -104,6 +111,8 @@ impl LoadOptions {
         if let Some(size) = self.size {
             scene.film.size = size;
         }
+        // What stands at one place again and again would cost every ray that meets it.
+        duplicates::remove_duplicates(&mut scene, &mut report);
         // Defaults for what the file leaves out.
         defaults::auto_camera::add_camera(&mut scene);
         if !is_scene_file {
@@ -133,6 +142,24 @@ impl LoadOptions {
 /// When a file cannot be read, or is not what it should be; the error names file and place.
 pub fn load(path: impl AsRef<Path>) -> Result<Loaded> {
     LoadOptions::default().load(path)
+}
+
+/// Reads the files of pictures that are compared, within limits on all of them together.
+///
+/// # Errors
+/// When one cannot be read, or they exceed a limit.
+#[cfg(feature = "measure")]
+pub(crate) fn read_for_comparison<const N: usize>(
+    paths: [&Path; N],
+    limits: Limits,
+) -> Result<[Vec<u8>; N]> {
+    let mut files = [const { Vec::new() }; N];
+    let Some(first) = paths.first() else { return Ok(files) };
+    let sandbox = Sandbox::new(first, true, limits)?;
+    for (bytes, path) in files.iter_mut().zip(paths) {
+        *bytes = images::decode::read_for_comparison(sandbox.open_named(path)?, &sandbox)?;
+    }
+    Ok(files)
 }
 
 /// The options of loading a model file.

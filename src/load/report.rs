@@ -46,6 +46,8 @@ pub struct LoadReport {
 pub enum DropReason {
     /// Two corners of the face have the same position, so that it covers nothing.
     Degenerate,
+    /// The face stands at one place many times. Nothing is lost by that.
+    Duplicate,
     /// The face has fewer than three corners.
     Incomplete,
     /// The face names a vertex that is not there.
@@ -65,6 +67,7 @@ impl DropReason {
     pub fn name(self) -> &'static str {
         match self {
             Self::Degenerate => "degenerate",
+            Self::Duplicate => "duplicate",
             Self::Incomplete => "incomplete",
             Self::IndexOutOfRange => "index-out-of-range",
             Self::Flat => "flat",
@@ -78,6 +81,7 @@ impl DropReason {
     pub(crate) fn sentence(self) -> &'static str {
         match self {
             Self::Degenerate => "{} faces are left out: two of their corners are at one place",
+            Self::Duplicate => "{} faces are left out: others stand at the same place",
             Self::Incomplete => "{} faces are left out: they have fewer than three corners",
             Self::IndexOutOfRange => "{} faces are left out: they name vertices that are not there",
             Self::Flat => "{} faces are left out: their mesh is scaled to 0 along some direction",
@@ -101,9 +105,13 @@ impl LoadReport {
         self.read == self.handed_over + self.dropped_total()
     }
 
-    /// True if nothing was lost: no face dropped, every feature supported, every image read.
+    /// True if nothing was lost: no face dropped but copies of others, every feature supported, every
+    /// image read.
     pub fn is_clean(&self) -> bool {
-        self.dropped.is_empty() && self.unsupported.is_empty() && self.placeholders.is_empty()
+        let is_copy = |reason: &DropReason| *reason == DropReason::Duplicate;
+        self.dropped.keys().all(is_copy)
+            && self.unsupported.is_empty()
+            && self.placeholders.is_empty()
     }
 
     /// Adds the report of another file.

@@ -4,10 +4,12 @@
 //! another file names must be beside or below it, since that other file may come from a stranger. Only
 //! regular files are opened: a pipe could keep the program waiting, a device could do anything.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use super::limits::{Limit, Limits};
 use crate::error::{Error, Remedy, Result};
@@ -19,6 +21,17 @@ pub struct Sandbox {
     limits: Limits,
     /// The amount of each limit that is used up.
     used: [AtomicU64; Limit::ALL.len()],
+    /// The files that were read, each of which counts once.
+    files: Mutex<ReadFiles>,
+}
+
+/// The files that were read so far.
+#[derive(Default)]
+struct ReadFiles {
+    /// Their canonical paths.
+    identities: HashSet<PathBuf>,
+    /// The bytes that they have together, without those that images have accounted for.
+    bytes_left: u64,
 }
 
 /// A regular file, open for reading.
@@ -30,6 +43,9 @@ pub struct OpenedFile {
     file: File,
     length: u64,
 }
+
+/// The pixels for each byte of an image's file that do not count toward the limit.
+const FREE_PIXELS_PER_BYTE: u64 = 16;
 
 /// The name of a folder in messages.
 const FOLDER: &str = "a folder";
@@ -61,7 +77,7 @@ impl Sandbox {
     pub fn new(path: &Path, allow_outside: bool, limits: Limits) -> Result<Self> {
         let folder = (!allow_outside).then(|| parent(path).canonicalize()).transpose();
         let folder = folder.map_err(|error| Error::io("read", path, &error))?;
-        Ok(Self { folder, limits, used: Default::default() })
+        Ok(Self { folder, limits, used: Default::default(), files: Mutex::default() })
     }
 
     /// Opens the file that the user named.
@@ -141,7 +157,40 @@ impl Sandbox {
     }
 }
 
+impl Sandbox {
+    /// Uses up the pixels of an image for which the size of its file, of so many bytes, does not
+    /// account. The bytes of the files that were read account for pixels once, however many images are
+    /// read from the same bytes.
+    ///
+    /// # Errors
+    /// When that is more than the limit, together with those before.
+    pub fn consume_pixels(&self, pixels: u64, bytes: u64) -> Result<()> {
+        let free = {
+            let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+            let bytes = bytes.min(files.bytes_left);
+            // What an image does not need is left to others.
+            let needed = bytes.min(pixels.div_ceil(FREE_PIXELS_PER_BYTE));
+            files.bytes_left -= needed;
+            FREE_PIXELS_PER_BYTE * needed
+        };
+        self.consume(Limit::Pixels, pixels.saturating_sub(free))
+    }
+
+    /// Counts a file that is read.
+    fn count_file(&self, identity: PathBuf, bytes: u64) {
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        if files.identities.insert(identity) {
+            files.bytes_left += bytes;
+        }
+    }
+}
+
 impl OpenedFile {
+    /// Returns its number of bytes.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
     /// Reads the whole file.
     ///
     /// # Errors
@@ -149,6 +198,7 @@ impl OpenedFile {
     pub fn read(self, sandbox: &Sandbox) -> Result<Vec<u8>> {
         let path = self.path;
         sandbox.consume(Limit::Bytes, self.length).map_err(|e| e.at(&path))?;
+        sandbox.count_file(self.identity, self.length);
         let mut bytes = Vec::new();
         let fail = |error: io::Error| Error::io("read", &path, &error);
         bytes.try_reserve_exact(self.length as usize).map_err(|e| fail(e.into()))?;

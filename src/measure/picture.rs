@@ -1,11 +1,14 @@
 //! The comparison of two pictures: RMSE, PSNR and the largest difference.
 
+use std::io::Cursor;
 use std::path::Path;
 
 use exr::prelude::{ReadChannels, ReadLayers};
+use image::ImageFormat;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
+use crate::load::{self, Limits};
 use crate::write::Format;
 
 /// A picture as it is stored in a PNG or EXR file.
@@ -34,13 +37,27 @@ pub struct Comparison {
 }
 
 impl Picture {
-    /// Reads a PNG or an EXR.
+    /// Reads a PNG or an EXR, within the default limits.
     ///
     /// # Errors
-    /// When the file cannot be read, or is neither.
+    /// When the file cannot be read, is neither, or exceeds a limit.
     pub fn read(path: &Path) -> Result<Self> {
-        // A file that cannot be read is told from one that cannot be decoded.
-        std::fs::File::open(path).map_err(|e| Error::io("read", path, &e))?;
+        let [bytes] = load::read_for_comparison([path], Limits::default())?;
+        Self::decode(path, &bytes)
+    }
+
+    /// Reads two pictures, within limits on both together.
+    ///
+    /// # Errors
+    /// When a file cannot be read, is neither a PNG nor an EXR, or they exceed a limit.
+    pub fn read_pair(a: &Path, b: &Path, limits: Limits) -> Result<[Self; 2]> {
+        // The memory for both is counted before either is decoded.
+        let [first, second] = load::read_for_comparison([a, b], limits)?;
+        Ok([Self::decode(a, &first)?, Self::decode(b, &second)?])
+    }
+
+    /// Decodes the bytes of the file at a path.
+    fn decode(path: &Path, bytes: &[u8]) -> Result<Self> {
         let damaged = |e: &dyn std::fmt::Display| {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
@@ -49,7 +66,8 @@ impl Picture {
                 .at(path)
                 .help("compare their frames: render them as `-o frame-####.png`")),
             Format::Png => {
-                let image = image::open(path).map_err(|e| damaged(&e))?.into_rgb8();
+                let image = image::load_from_memory_with_format(bytes, ImageFormat::Png);
+                let image = image.map_err(|e| damaged(&e))?.into_rgb8();
                 Ok(Self {
                     size: image.dimensions().into(),
                     channels: ["R", "G", "B"].map(String::from).into(),
@@ -63,7 +81,7 @@ impl Picture {
                     .all_channels()
                     .first_valid_layer()
                     .all_attributes()
-                    .from_file(path)
+                    .from_buffered(Cursor::new(bytes))
                     .map_err(|e| damaged(&e))?;
                 let layer = image.layer_data;
                 let (width, height) = (layer.size.width(), layer.size.height());

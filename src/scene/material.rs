@@ -208,6 +208,19 @@ impl Material {
         self.metallic = (!is_plain).then(|| Box::new(maps));
     }
 
+    /// Multiplies its base colour, as the colours of a mesh's vertices do: what an unlit material emits,
+    /// the base of a metallic-roughness material, or else the diffuse colour. A lit base is at most 1.
+    pub(crate) fn multiply_base(&mut self, color: Vec3) {
+        if self.unlit {
+            self.emission *= color;
+        } else if let Some(mut maps) = self.metallic.take() {
+            maps.factors.base = (maps.factors.base * color).min(Vec3::ONE);
+            self.set_metallic_roughness(*maps);
+        } else {
+            self.diffuse = (self.diffuse * color).min(Vec3::ONE);
+        }
+    }
+
     /// True if it reflects as a mirror anywhere.
     pub fn may_reflect(&self) -> bool {
         self.reflect != Vec3::ZERO || self.metallic.as_ref().is_some_and(|m| m.may_reflect())

@@ -133,6 +133,26 @@ fn vertex_colours_are_decoded_and_white_where_missing() {
 }
 
 #[test]
+fn polypaint_colours_the_vertices_in_their_order() {
+    let square = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n";
+    let painted = |lines: &str| load(format!("{square}{lines}f 1 2 3 4\n"));
+    let [red, blue] = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    for lines in [
+        "#MRGB ffff0000ffff0000ff0000ffff0000ff\n",
+        "#MRGB FFFF0000 FFFF0000 FF0000FF FF0000FF\r\n",
+        "# Polypaint\n #MRGB 00ff0000ffff0000\n#MRGB ff0000ff000000ff\n# End of MRGB block\n",
+    ] {
+        let loaded = painted(lines);
+        assert_eq!(loaded.scene.meshes[0].colors, [red, red, blue, blue], "{lines}");
+        assert_eq!(loaded.report.warnings, [""; 0], "{lines}");
+    }
+    let loaded = painted("#MRGB ffff0000ff00\n");
+    assert_eq!(loaded.scene.meshes[0].colors, [red, [1.0; 3], [1.0; 3], [1.0; 3]]);
+    assert_warns(&loaded, "eight hexadecimal digits");
+    assert_warns(&loaded, "1 vertices have a colour in comments (`#MRGB`), of 4");
+}
+
+#[test]
 fn vertex_colours_above_1_go_up_to_255() {
     let scene = load("v 0 0 0 255 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 0\nf 1 2 3").scene;
     let colors = &scene.meshes[0].colors;
@@ -260,6 +280,29 @@ fn vertex_that_is_not_finite_drops_its_faces() {
 }
 
 #[test]
+fn no_number_in_any_spelling_refuses_no_file() {
+    for word in [
+        "-nan(ind)",
+        "nan(snan)",
+        "1.#QNAN",
+        "-1.#IND",
+        "1.#J",
+        "1.#inf",
+        "inf",
+        "-Infinity",
+        "NaNQ",
+    ] {
+        let square =
+            format!("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvn {word} {word} {word}\nvn 0 0 1\n");
+        let loaded = load(format!("{square}f 1//1 2//2 3//2 4//2"));
+        assert_eq!(loaded.scene.meshes[0].normals, [[0.0, 0.0, 1.0]; 4], "{word}");
+        assert_warns(&loaded, "a number that is broken or not finite");
+        let loaded = load(format!("{square}vt {word} 0\nvt 1 0\nf 1/1 2/2 3/2 4/2"));
+        assert_eq!(loaded.scene.triangle_count(), 2, "{word}");
+    }
+}
+
+#[test]
 fn face_of_two_corners_is_dropped() {
     assert_warns(
         &load(format!("{VERTICES}f 1 2\nf 1 2 3")),
@@ -336,8 +379,11 @@ fn opacity_of_1_is_opaque_whatever_index_and_filter_say() {
 
 #[test]
 fn opacity_of_0_is_a_warning() {
-    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nd 0");
-    assert_eq!(m.transmit, Vec3::ONE);
+    let folder = Folder::new();
+    folder.write("m.mtl", "newmtl m\nd 0");
+    let text = format!("mtllib m.mtl\n{VERTICES}f 1 2 3\nusemtl m\nf 1 2 3\n");
+    let loaded = folder.load("model.obj", text).unwrap();
+    assert_eq!(loaded.scene.materials[1].transmit, Vec3::ONE);
     assert_warns(&loaded, "an opacity of 0");
 }
 
@@ -389,8 +435,89 @@ fn illumination_models_6_and_7_refract() {
 
 #[test]
 fn illumination_model_4_is_a_pane() {
-    let m = transmission("Tf 1 1 1\nNi 1.25\nillum 4");
-    assert_eq!((m.transmit, m.thin, m.ior), (Vec3::ONE, true, 1.25));
+    let m = transmission("Tf 1 1 0.5\nNi 1.25\nillum 4");
+    assert_eq!((m.transmit, m.thin, m.ior), (Vec3::new(1.0, 1.0, 0.5), true, 1.25));
+}
+
+#[test]
+fn a_white_filter_alone_makes_no_glass_that_nobody_sees() {
+    for lines in [
+        "illum 4\nTf 1.00 1.00 1.00\nNi 1.00",
+        "illum 4\nTf 1 1 1\nNi 1.5",
+        "illum 4\nTf 1\nd 1",
+        "illum 4\nTf 1 1 1\nTr 0",
+        "illum 6\nTf 1 1 1\nNi 1",
+        "illum 7\nTf 1 1 1\nNi 1\nd 1",
+        "illum 4\nTr 1\nTf 1 1 1\nNi 1",
+    ] {
+        let (loaded, m) = with_mtl(&Folder::new(), &format!("newmtl m\nKd 0.5 0 0\n{lines}"));
+        assert_eq!((m.transmit, m.diffuse.x), (Vec3::ZERO, 0.5), "{lines}");
+        assert_warns(&loaded, "drawn opaque, as the programs that write it mean them");
+        assert!(loaded.report.is_clean());
+    }
+    // With an index or an opacity of its own it is glass as it says.
+    for lines in ["illum 7\nTf 1 1 1", "illum 7\nTf 1 1 1\nNi 1.5\nd 1", "illum 4\nTf 1 1 1\nd 0.5"]
+    {
+        let (_, m) = with_mtl(&Folder::new(), &format!("newmtl m\n{lines}"));
+        assert_ne!(m.transmit, Vec3::ZERO, "{lines}");
+    }
+}
+
+#[test]
+fn an_image_beside_a_black_colour_is_shown() {
+    for kd in ["Kd 0 0 0", "Kd 0", "Kd 0 \nKa 0 "] {
+        let (loaded, m) = imaged([255, 0, 0, 255], &format!("{kd}\nmap_Kd a.png"));
+        assert_eq!(m.diffuse, Vec3::ONE, "{kd}");
+        assert_warns(&loaded, "the image is shown as it is");
+    }
+    // Also where it is the base of a metal.
+    let (_, m) = imaged([255, 0, 0, 255], "Kd 0 0 0\nPm 0.5\nmap_Kd a.png");
+    assert_eq!(m.metallic.unwrap().factors.base, Vec3::ONE);
+    // Without an image black is black.
+    let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nKd 0 0 0");
+    assert_eq!((m.diffuse, loaded.report.warnings.len()), (Vec3::ZERO, 0));
+}
+
+#[test]
+fn images_of_highlights_and_emission_keep_their_black_factor_and_it_is_said() {
+    let (loaded, m) = imaged([255; 4], "Ks 0 0 0\nmap_Ks a.png\nKe 0 0 0\nmap_Ke a.png");
+    assert_eq!((m.specular, m.emission), (Vec3::ZERO, Vec3::ZERO));
+    assert_warns(&loaded, "2 images of highlights or emission are multiplied by 0");
+}
+
+#[test]
+fn opacity_of_0_in_all_materials_is_none() {
+    let load = |mtl: &str| {
+        let folder = Folder::new();
+        folder.write("m.mtl", mtl);
+        let text = format!("mtllib m.mtl\n{VERTICES}usemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n");
+        let loaded = folder.load("model.obj", text).unwrap();
+        let clear = loaded.scene.materials.iter().map(|m| m.may_transmit()).collect::<Vec<_>>();
+        (loaded, clear)
+    };
+    for mtl in [
+        "newmtl a\nd 0\nillum 9\nnewmtl b\nd 0",
+        "newmtl a\nd 0\nnewmtl b\nillum 4\nTf 1 1 1\nNi 1\nd 0",
+    ] {
+        let (loaded, clear) = load(mtl);
+        assert_eq!(clear, [false, false]);
+        assert_warns(&loaded, "they are drawn opaque, as other programs draw them");
+    }
+    // One that can be seen, and all of them are as they say.
+    for other in ["d 0.5", "d 1", "illum 7\nNi 1.5\nd 0"] {
+        let (_, clear) = load(&format!("newmtl a\nd 0\nnewmtl b\n{other}"));
+        assert!(clear[0], "{other}");
+    }
+    let (loaded, clear) = load("newmtl a\nd 0\nnewmtl c\nd 0");
+    assert_eq!(clear, [true, false]);
+    assert_warns(&loaded, "an opacity of 0");
+}
+
+#[test]
+fn opacity_of_0_beside_an_image_of_it_leaves_it_to_the_image() {
+    let (loaded, m) = imaged([128, 128, 128, 255], "d 0\nmap_d a.png");
+    assert_eq!(m.coverage.unwrap().alpha, 1.0);
+    assert_warns(&loaded, "the image alone counts");
 }
 
 #[test]
@@ -508,10 +635,15 @@ fn texture_options_that_are_not_read_are_a_warning() {
 }
 
 /// Loads a triangle whose material has maps that show `a.png`, of which there is nothing to say.
-fn mapped(pixel: [u8; 4], mtl: &str) -> (Loaded, Material) {
+fn imaged(pixel: [u8; 4], mtl: &str) -> (Loaded, Material) {
     let folder = Folder::new();
     folder.write("a.png", png(&[pixel]));
-    let (loaded, m) = with_mtl(&folder, &format!("newmtl m\n{mtl}"));
+    with_mtl(&folder, &format!("newmtl m\n{mtl}"))
+}
+
+/// The same of one that loads without a warning.
+fn mapped(pixel: [u8; 4], mtl: &str) -> (Loaded, Material) {
+    let (loaded, m) = imaged(pixel, mtl);
     assert_eq!(loaded.report.warnings, [""; 0], "{mtl}");
     (loaded, m)
 }
@@ -573,8 +705,8 @@ fn picture_of_opacity_covers_by_its_grey_or_its_alpha() {
 fn glass_with_a_picture_of_opacity_is_a_warning() {
     let folder = Folder::new();
     folder.write("a.png", png(&[GREY]));
-    let (loaded, m) = with_mtl(&folder, "newmtl m\nillum 4\nTf 1 1 1\nmap_d a.png");
-    assert_eq!((m.coverage, m.transmit), (None, Vec3::ONE));
+    let (loaded, m) = with_mtl(&folder, "newmtl m\nillum 4\nTf 1 1 0.5\nmap_d a.png");
+    assert_eq!((m.coverage, m.transmit), (None, Vec3::new(1.0, 1.0, 0.5)));
     assert_warns(&loaded, "their materials are glass");
 }
 

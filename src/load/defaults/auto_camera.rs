@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::extents::{box_extent, extents};
-use crate::geometry::Bounds;
+use super::surroundings;
+use crate::geometry::{Bounds, triangle};
 use crate::scene::{Camera, Projection, Scene};
 
 /// Half the vertical field of view of the automatic camera, in radians: 35° in all, about that of a
@@ -19,13 +20,31 @@ const VIEW_DIRECTION: DVec3 = DVec3::new(0.55, 0.45, 1.0);
 const MIN_SIZE: f64 = 1e-6;
 /// The ratio of thickness to length below which a model counts as flat.
 const FLATNESS: f64 = 0.02;
+/// The least distance of the model from the plane of the eye, as a share of its size: a tip that points at
+/// the eye would reach it.
+const CLEARANCE: f64 = 0.1;
+/// The share of a model's area that its view shows, below which it is seen from another side: its faces
+/// are then seen on their edges.
+const MIN_VISIBLE: f64 = 0.05;
+/// The greatest number of triangles of a mesh, and of instances, by which a view is judged.
+const SAMPLE: usize = 1024;
 
 /// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
-/// model fits, in the middle of the image.
+/// model fits, in the middle of the image. What encloses the model, as a sky does, is not framed if the
+/// camera is within it.
 pub fn add_camera(scene: &mut Scene) {
     if !scene.cameras.is_empty() {
         return;
     }
+    let within = surroundings::find(scene).and_then(|surroundings| {
+        let camera = framing_camera(&surroundings.without(scene))?;
+        surroundings.have_within(scene, camera.position).then_some(camera)
+    });
+    scene.cameras.extend(within.or_else(|| framing_camera(scene)));
+}
+
+/// Returns the camera that frames a scene; none if that is not finite.
+fn framing_camera(scene: &Scene) -> Option<Camera> {
     // The box to be framed, which must have a size.
     let mut bounds = scene.bounds_over_time();
     if bounds.is_empty() {
@@ -38,30 +57,76 @@ pub fn add_camera(scene: &mut Scene) {
         bounds = bounds.padded(least.max(MIN_SIZE));
     }
     // The direction, which fails only where the scene is not finite; `Scene::check` says that then.
-    let direction = view_direction(bounds.size());
+    let direction = view_direction(scene, bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
-    let Ok(mut camera) = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens) else { return };
+    let mut camera = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens).ok()?;
     if !bounds.max_abs().is_finite() {
-        return;
+        return None;
     }
     // The position, as near as all of the model is within the edges of the image.
     let [width, height] = scene.film.size.map(f64::from);
     let tangent = HALF_FOV.tan() * FILL_RATIO;
     let tangents = [tangent * width / height, tangent];
-    let normals = edge_normals(&camera, tangents);
-    let extents = if is_point {
-        normals.map(|normal| box_extent(&bounds, normal))
+    let [a, b, c, d] = edge_normals(&camera, tangents);
+    let directions = [a, b, c, d, -camera.forward];
+    let [a, b, c, d, nearest] = if is_point {
+        directions.map(|direction| box_extent(&bounds, direction))
     } else {
-        extents(scene, &bounds, normals)
+        extents(scene, &bounds, directions)
     };
-    camera.position = framing_position(extents, bounds.center(), &camera, tangents);
+    camera.position = framing_position([a, b, c, d], bounds.center(), &camera, tangents);
+    // Farther back, where the model would reach the eye.
+    let clearance = -nearest - camera.position.dot(camera.forward);
+    let missing = CLEARANCE * bounds.diagonal() - clearance;
+    if missing > 0.0 && missing.is_finite() {
+        camera.position -= camera.forward * missing;
+    }
     camera.name = "framing".to_owned();
-    scene.cameras.push(camera);
+    Some(camera)
 }
 
 /// Returns the direction from a model of a size to the camera: flat models are seen from their broad
-/// side.
-fn view_direction(size: DVec3) -> DVec3 {
+/// side, whatever way they are turned.
+fn view_direction(scene: &Scene, size: DVec3) -> DVec3 {
+    let usual = usual_direction(size);
+    let DVec3 { x, y, z } = VIEW_DIRECTION;
+    let others = [[-x, y, z], [z, y, x], [-z, y, x], [x, z, y]];
+    let others = others.map(|other| DVec3::from(other).normalize());
+    let shares = visible_shares(scene, [usual, others[0], others[1], others[2], others[3]]);
+    if shares[0] >= MIN_VISIBLE {
+        return usual;
+    }
+    let best = others.into_iter().zip(&shares[1..]).max_by(|a, b| a.1.total_cmp(b.1));
+    best.filter(|(_, share)| **share > shares[0]).map_or(usual, |(direction, _)| direction)
+}
+
+/// Returns the share of the area of a model's faces that each view shows; 1 if it has none.
+fn visible_shares<const N: usize>(scene: &Scene, directions: [DVec3; N]) -> [f64; N] {
+    let (mut total, mut shown) = (0.0, [0.0; N]);
+    let mut add = |area: f64, projected: [f64; N]| {
+        total += area;
+        shown = std::array::from_fn(|k| shown[k] + projected[k]);
+    };
+    // Some of many triangles and instances tell enough.
+    for instance in scene.instances.iter().step_by(scene.instances.len() / SAMPLE + 1) {
+        let Some(mesh) = scene.meshes.get(instance.mesh.0 as usize) else { continue };
+        let count = mesh.triangles.len();
+        for i in (0..count).step_by(count / SAMPLE + 1) {
+            let corners = mesh.triangle_vertices(i as u32).map(|p| instance.to_world(p));
+            let normal = triangle::area_normal(corners);
+            add(normal.length(), directions.map(|direction| normal.dot(direction).abs()));
+        }
+    }
+    // A sphere shows a quarter of its area, and hides as much that faces away.
+    for sphere in scene.spheres.iter().step_by(scene.spheres.len() / SAMPLE + 1) {
+        let area = sphere.radius * sphere.radius;
+        add(area, [area / 2.0; N]);
+    }
+    if total > 0.0 && total.is_finite() { shown.map(|shown| shown / total) } else { [1.0; N] }
+}
+
+/// Returns the direction from a model of a size to the camera, by its box alone.
+fn usual_direction(size: DVec3) -> DVec3 {
     let flat = size.cmplt(DVec3::splat(FLATNESS * size.max_element()));
     match [flat.x, flat.y, flat.z] {
         // A card that stands sideways.
@@ -213,6 +278,113 @@ mod tests {
         assert!(filled(&mut point).iter().all(|x| x.abs() < FILL_RATIO));
         let mut origin = mesh(&[[0., 0., 0.]]);
         assert!(filled(&mut origin).iter().all(|x| x.abs() < FILL_RATIO));
+    }
+
+    /// Returns the distance of the nearest corner from the plane of the eye, as a share of the model's size,
+    /// and the share of its area that is seen.
+    fn view_of(scene: &mut Scene) -> [f64; 2] {
+        add_camera(scene);
+        let camera = &scene.cameras[0];
+        let points = scene.meshes[0].positions.iter().map(|p| scene.instances[0].to_world(p));
+        let depths = points.map(|p| (p - camera.position).dot(camera.forward));
+        let nearest = depths.fold(f64::INFINITY, f64::min);
+        [nearest / scene.bounds().diagonal(), visible_shares(scene, [camera.forward])[0]]
+    }
+
+    #[test]
+    fn the_eye_keeps_clear_of_what_points_at_it() {
+        // A tip that points at the eye, and one that does almost.
+        let tip = (VIEW_DIRECTION * 5.0).as_vec3();
+        for (tip, side) in [
+            (tip.to_array(), [0., 0.1, 0.]),
+            ([5.0; 3], [0., 1., 0.]),
+            (tip.to_array(), [0.3, 0., 0.]),
+        ] {
+            let mut scene = mesh(&[[0.; 3], tip, side]);
+            scene.meshes =
+                vec![Mesh { triangles: vec![[0, 1, 2]], ..Mesh::clone(&scene.meshes[0]) }.into()];
+            let [nearest, shown] = view_of(&mut scene);
+            assert!(nearest >= 0.099 && shown >= MIN_VISIBLE, "{tip:?}: {nearest} {shown}");
+        }
+    }
+
+    #[test]
+    fn what_stands_on_edge_or_points_away_is_seen_from_another_side() {
+        let along = VIEW_DIRECTION.normalize();
+        let across = along.any_orthonormal_vector();
+        for width in [across, along.cross(across)] {
+            let corners = [DVec3::ZERO, along * 9.0, along * 9.0 + width, width];
+            let mut scene = mesh(&corners.map(|p| p.as_vec3().to_array()));
+            let triangles = vec![[0, 1, 2], [0, 2, 3]];
+            scene.meshes = vec![Mesh { triangles, ..Mesh::clone(&scene.meshes[0]) }.into()];
+            let [_, shown] = view_of(&mut scene);
+            assert!(shown > 0.2, "{shown}");
+        }
+    }
+
+    /// A box around a point, of four squares, and two more if it has a floor and a top.
+    fn walls(center: [f32; 3], half: f32, has_top: bool, has_floor: bool) -> Mesh {
+        let corner = |i: usize| {
+            let side = |k: usize| center[k] + if i >> k & 1 == 1 { half } else { -half };
+            [side(0), side(1), side(2)]
+        };
+        let square = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        let mut triangles: Vec<[u32; 3]> = [[0, 1, 3, 2], [4, 5, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]]
+            .into_iter()
+            .flat_map(square)
+            .collect();
+        if has_top {
+            triangles.extend(square([2, 3, 7, 6]));
+        }
+        if has_floor {
+            triangles.extend(square([0, 1, 5, 4]));
+        }
+        Mesh { positions: (0..8).map(corner).collect(), triangles, ..Mesh::default() }
+    }
+
+    /// Returns how far the camera of these meshes stands from the origin.
+    fn distance(meshes: Vec<Mesh>) -> f64 {
+        let mut scene = Scene::default();
+        for mesh in meshes {
+            let mesh = scene.add_mesh(mesh);
+            scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
+        }
+        add_camera(&mut scene);
+        scene.cameras[0].position.length()
+    }
+
+    #[test]
+    fn what_encloses_a_model_is_not_framed_if_the_camera_is_within_it() {
+        let model = || walls([0.1, 0.0, 0.0], 1.0, true, true);
+        let alone = distance(vec![model()]);
+        let sky = |has_floor| walls([0.0; 3], 1000.0, true, has_floor);
+        assert_eq!(distance(vec![sky(true), model()]), alone);
+        assert_eq!(distance(vec![model(), sky(false)]), alone, "a dome needs no floor");
+        // Six squares, each a mesh of its own, and a wide floor within.
+        let sides = sky(true)
+            .triangles
+            .chunks(2)
+            .map(|two| Mesh { triangles: two.to_vec(), ..sky(true) })
+            .collect::<Vec<_>>();
+        let mut all = vec![model()];
+        all.extend(sides);
+        assert_eq!(distance(all), alone);
+        let floor = Mesh {
+            positions: sky(true).positions.iter().map(|p| [p.x * 0.9, -1.0, p.z * 0.9]).collect(),
+            triangles: vec![[0, 1, 5], [0, 5, 4]],
+            ..Mesh::default()
+        };
+        assert_eq!(distance(vec![sky(true), floor, model()]), alone);
+    }
+
+    #[test]
+    fn rooms_and_hills_are_framed_with_what_is_in_them() {
+        let model = || walls([0.1, 0.0, 0.0], 1.0, true, true);
+        let alone = distance(vec![model()]);
+        // A room that the camera would stand outside of; walls without a roof; a plain.
+        for around in [walls([0.0; 3], 3.0, true, true), walls([0.0; 3], 1000.0, false, true)] {
+            assert!(distance(vec![around, model()]) > 1.5 * alone);
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub mod auto_lighting;
 mod extents;
 pub mod ground;
 mod mipmaps;
+mod surroundings;
 mod tangents;
 
 use crate::scene::Scene;

@@ -9,14 +9,11 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::load::images::ktx2::{self, undecodable};
+use crate::load::images::{MAX_SIDE, exr_header};
 use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::scene::{Image, Texels};
 
-/// The longest side of an image, in pixels.
-const MAX_SIDE: u32 = 1 << 15;
-/// The pixels for each byte of a file that do not count toward the limit.
-const FREE_PIXELS_PER_BYTE: u64 = 16;
 /// The number of encoded images that are read into memory, and then decoded in parallel.
 const BATCH: usize = 16;
 
@@ -85,6 +82,34 @@ fn prepare<'a>(
     Ok(image)
 }
 
+/// Returns the bytes of an image that is compared with another one, and charges the limits for it: each
+/// pixel, and the channels of an EXR, take about as much memory as four pixels of a texture, since they
+/// become floats and several pictures of what is perceived.
+///
+/// # Errors
+/// When the file cannot be read, the image's header is damaged, or it exceeds a limit.
+#[cfg(feature = "measure")]
+pub fn read_for_comparison(file: OpenedFile, sandbox: &Sandbox) -> Result<Vec<u8>> {
+    let path = file.path.clone();
+    let bytes = file.read(sandbox)?;
+    let charge = || {
+        let pixels = if exr_header::is_exr(&bytes) {
+            exr_header::pixels(&bytes, true)?
+        } else {
+            let reader = ImageReader::new(Cursor::new(&bytes)).with_guessed_format();
+            let reader = reader.map_err(undecodable)?;
+            let (width, height) = reader.into_dimensions().map_err(undecodable)?;
+            if width.max(height) > MAX_SIDE {
+                return Err(Error::input(format!("the image is larger than {MAX_SIDE} on a side")));
+            }
+            u64::from(width) * u64::from(height) * 4
+        };
+        sandbox.consume_pixels(pixels, bytes.len() as u64)
+    };
+    charge().map_err(|error| error.at(&path))?;
+    Ok(bytes)
+}
+
 impl PreparedImage<'_> {
     /// Adds the path to an error, if the image is a file.
     fn locate(&self, error: Error) -> Error {
@@ -111,20 +136,25 @@ impl PreparedImage<'_> {
     fn charge_limits(&self, sandbox: &Sandbox) -> Result<u64> {
         // The header tells the size, so that the limits are checked before any pixel is decoded.
         sandbox.consume(Limit::Pictures, 1)?;
-        let ([width, height], depth) = if ktx2::is_ktx(&self.bytes) {
+        let ([width, height], depth, asked) = if ktx2::is_ktx(&self.bytes) {
             let ktx2::Header { size, is_float } = ktx2::header(&self.bytes)?;
             if size.into_iter().any(|side| side > MAX_SIDE) {
                 return Err(Error::input(format!("the image is larger than {MAX_SIDE} on a side")));
             }
-            (size, if is_float { 4 } else { 1 })
+            (size, if is_float { 4 } else { 1 }, 0)
         } else {
+            // Headers of EXR files say more than the size of the image.
+            let asked = if exr_header::is_exr(&self.bytes) {
+                exr_header::pixels(&self.bytes, false)?
+            } else {
+                0
+            };
             let decoder = self.reader()?.into_decoder().map_err(undecodable)?;
-            (decoder.dimensions().into(), channel_bytes(decoder.color_type()))
+            let size = decoder.dimensions();
+            (size.into(), channel_bytes(decoder.color_type()), asked)
         };
-        let pixels = u64::from(width) * u64::from(height) * depth;
-        // Pixels for which the size of the file accounts are free.
-        let free = FREE_PIXELS_PER_BYTE * self.bytes.len() as u64;
-        sandbox.consume(Limit::Pixels, pixels.saturating_sub(free))?;
+        let pixels = (u64::from(width) * u64::from(height) * depth).max(asked);
+        sandbox.consume_pixels(pixels, self.bytes.len() as u64)?;
         Ok(pixels)
     }
 

@@ -1,5 +1,6 @@
 //! Placeholders for images that cannot be read.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::texture_cache::set_image;
@@ -11,7 +12,8 @@ use crate::scene::{Image, Scene, TextureId, Transfer};
 /// true if it was read.
 ///
 /// The placeholder of a colour is a checker of magenta and black, which nobody takes for the real
-/// image. Other values are as without an image: white, which changes no factor, and no normal map.
+/// image. Other values are as without an image: white, which changes no factor, and no normal map, once
+/// [`drop_normal_maps`] was called with the textures.
 pub fn set_image_or_placeholder(
     image: Result<Image>,
     name: &str,
@@ -42,9 +44,6 @@ pub fn set_image_or_placeholder(
             continue;
         }
         texture.image = white.clone();
-        for material in &mut scene.materials {
-            material.normal_map.take_if(|map| map.texture == id);
-        }
     }
 
     // One warning says what stands in the place of the image.
@@ -55,4 +54,11 @@ pub fn set_image_or_placeholder(
     };
     diagnostics.placeholder(format!("{error}; {instead}"));
     false
+}
+
+/// Drops the normal maps of textures whose images are missing.
+pub fn drop_normal_maps(missing: &HashSet<TextureId>, scene: &mut Scene) {
+    for material in &mut scene.materials {
+        material.normal_map.take_if(|map| missing.contains(&map.texture));
+    }
 }

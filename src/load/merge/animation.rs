@@ -1,10 +1,11 @@
 //! The animation of an instance of a model: the model's own, within the space that the instance moves
 //! with.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use super::{MergedModel, ModelInstance, SceneIndices};
-use crate::scene::animation::{Animated, Animation, Node, NodeId};
+use crate::scene::animation::{Animated, Animation, Joint, Node, NodeId};
 
 /// An animation to which that of an instance of a model is added.
 pub(super) struct InstanceAnimation<'a> {
@@ -25,6 +26,8 @@ struct AnimatedObjects {
     spheres: HashSet<usize>,
     lights: HashSet<usize>,
     cameras: HashSet<usize>,
+    /// The joints of skins as the instance places them, by the address of the model's.
+    joints: HashMap<*const Joint, Arc<[Joint]>>,
 }
 
 impl InstanceAnimation<'_> {
@@ -102,15 +105,23 @@ impl InstanceAnimation<'_> {
                     return None;
                 }
                 // Joints that stand still in the model move with the instance.
-                let skin = deformation.skin.iter_mut();
-                for joint in skin.flat_map(|skin| skin.joints.iter_mut().chain([&mut skin.space])) {
-                    match &mut joint.node {
-                        Some(node) => shift(node),
-                        None => {
-                            joint.transform = self.instance.transform * joint.transform;
-                            joint.node = self.instance.node;
-                        }
+                let place = |joint: &mut Joint| match &mut joint.node {
+                    Some(node) => shift(node),
+                    None => {
+                        joint.transform = self.instance.transform * joint.transform;
+                        joint.node = self.instance.node;
                     }
+                };
+                if let Some(skin) = &mut deformation.skin {
+                    place(&mut skin.space);
+                    // The meshes of a skin share its joints, as they do in the model.
+                    let own = skin.joints.clone();
+                    let placed = animated.joints.entry(own.as_ptr()).or_insert_with(|| {
+                        let mut joints = own.to_vec();
+                        joints.iter_mut().for_each(place);
+                        joints.into()
+                    });
+                    skin.joints = placed.clone();
                 }
             }
         }

@@ -20,6 +20,22 @@ pub struct Illumination {
 }
 
 impl Illumination {
+    /// Reads the statements of a material, as they are.
+    pub fn read(source: &tobj::Material) -> Self {
+        let statement = |key: &str| source.unknown_param.get(key);
+        let transparency = statement("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
+        let filter = statement("Tf").map(|tf| {
+            let mut numbers = tf.split_whitespace().flat_map(str::parse);
+            Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
+        });
+        Self {
+            model: source.illumination_model.unwrap_or(2),
+            opacity: source.dissolve.map_or(1.0 - transparency, |d| d as f32).clamp(0.0, 1.0),
+            filter,
+            ior: source.optical_density.map(|ior| ior as f32),
+        }
+    }
+
     /// Sets reflection and transmission of a material, whose specular colour is its `Ks`.
     pub fn apply(&self, material: &mut Material) {
         if self.is_glass() {
@@ -43,11 +59,28 @@ impl Illumination {
 
     /// True if light goes through the material as through glass.
     pub fn is_glass(&self) -> bool {
-        // Programs write 4 to 9 for opaque things too, and a filter of 1 for anything.
-        matches!(self.model, 4 | 6 | 7) && (self.opacity < 1.0 || self.has_filter())
+        // Programs write 4 to 9 for opaque things too.
+        let is_filter = |filter: Vec3| filter != Vec3::ZERO && !self.is_idle_filter();
+        matches!(self.model, 4 | 6 | 7)
+            && (self.opacity < 1.0 || self.filter.is_some_and(is_filter))
     }
 
-    fn has_filter(&self) -> bool {
-        self.filter.is_some_and(|filter| filter != Vec3::ZERO)
+    /// True if the material would be glass by its filter alone, and could not be seen: a white filter
+    /// changes no light, and neither does a pane, nor a body whose index of refraction is 1. Maya
+    /// writes such a filter for whatever is opaque.
+    pub fn is_idle_filter(&self) -> bool {
+        let is_white = self.filter.is_some_and(|filter| filter.min_element() >= 1.0);
+        self.opacity == 1.0 && is_white && (self.model == 4 || self.bends_nothing())
+    }
+
+    /// True if nothing of the material can be seen: all light passes straight through it.
+    pub fn is_invisible(&self) -> bool {
+        let is_clear = self.filter.is_none_or(|filter| filter.min_element() >= 1.0);
+        self.opacity == 0.0 && (!self.is_glass() || is_clear && self.bends_nothing())
+    }
+
+    /// True if light passes a body of the material as if nothing were there: its index is 1.
+    fn bends_nothing(&self) -> bool {
+        matches!(self.model, 4 | 6 | 7) && self.ior == Some(1.0)
     }
 }

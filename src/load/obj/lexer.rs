@@ -141,7 +141,13 @@ fn strip_comment(text: &str) -> &str {
 pub fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_start = |at: &usize| {
         let (before, after) = text.split_at_checked(*at).unwrap_or_default();
-        !(before.ends_with('.') && ["#I", "#Q", "#S"].iter().any(|name| after.starts_with(name)))
+        let is_number = || {
+            // The names, cut short by rounding where they are in capitals.
+            let capitals = ["#I", "#Q", "#S", "#J", "#R"];
+            let names = ["#inf", "#ind", "#qnan", "#snan"];
+            capitals.iter().chain(&names).any(|name| after.starts_with(name))
+        };
+        !(before.ends_with('.') && is_number())
     };
     let end = memchr::memchr_iter(b'#', text.as_bytes()).find(is_start).unwrap_or(text.len());
     text.get(..end).unwrap_or(text).split_whitespace()
@@ -192,6 +198,7 @@ mod tests {
         let all = |text| words(text).map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(all("1 2 3.# so #"), ["1", "2", "3."]);
         assert_eq!(all("1.#QNAN -1.#IND 2#c"), ["1.#QNAN", "-1.#IND", "2"]);
+        assert_eq!(all("1.#J 1.#inf 2.#jot"), ["1.#J", "1.#inf", "2."]);
     }
 
     #[test]

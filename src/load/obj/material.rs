@@ -48,6 +48,10 @@ impl<'a> MaterialBuilder<'a, '_> {
         } else if material.diffuse_map.is_some() {
             material.diffuse = Vec3::ONE;
         }
+        let illumination = self.illumination();
+        if !illumination.is_glass() {
+            self.show_image_beside_black(&mut material);
+        }
         // Models 0 and 1 are those without a highlight.
         if source.illumination_model.is_none_or(|model| model > 1) {
             self.set_highlight(&mut material);
@@ -55,13 +59,32 @@ impl<'a> MaterialBuilder<'a, '_> {
         material.emission_map = self.color_map(self.statement("map_Ke"));
         let default = if material.emission_map.is_some() { Vec3::ONE } else { Vec3::ZERO };
         material.emission = source.emissive.map_or(default, color);
-        self.set_transport(&mut material);
+        self.set_transport(illumination, &mut material);
         // Programs write 0 that mean no highlight: one of that exponent would be everywhere.
         if source.shininess == Some(0.0) && material.shininess_map.is_none() {
             (material.specular, material.specular_map) = (Vec3::ZERO, None);
         }
         self.set_normal_map(&mut material);
+        // Images of highlights and emission keep their factor: programs mean 0 that write it there.
+        let maps =
+            [(material.specular_map, source.specular), (material.emission_map, source.emissive)];
+        let lost = maps.iter().filter(|(map, factor)| map.is_some() && *factor == Some([0.0; 3]));
+        let reason =
+            "{} images of highlights or emission are multiplied by 0 (`Ks`, `Ke`) and not seen";
+        self.diagnostics.add(reason, lost.count() as u64, || format!("`{}`", source.name));
         material
+    }
+
+    /// Shows an image that a black `Kd` would hide: programs write `Kd 0 0 0` beside one and mean
+    /// that the image alone counts.
+    fn show_image_beside_black(&mut self, material: &mut Material) {
+        if material.diffuse_map.is_none() || material.diffuse != Vec3::ZERO {
+            return;
+        }
+        material.diffuse = Vec3::ONE;
+        let reason = "{} materials have `Kd 0 0 0` beside an image: the image is shown as it is, as \
+                      the programs that write it mean it";
+        self.diagnostics.add(reason, 1, || format!("`{}`", self.source.name));
     }
 
     /// Sets the specular colour and the shininess.
@@ -78,8 +101,7 @@ impl<'a> MaterialBuilder<'a, '_> {
     }
 
     /// Sets all that is no diffuse or specular reflection: mirrors, glass, opacity and metal.
-    fn set_transport(&mut self, material: &mut Material) {
-        let illumination = self.illumination();
+    fn set_transport(&mut self, illumination: Illumination, material: &mut Material) {
         let name = || format!("`{}`", self.source.name);
         let opacity_map = self.source.dissolve_texture.as_deref();
         // Glass.
@@ -218,26 +240,33 @@ impl<'a> MaterialBuilder<'a, '_> {
         self.textures.texture(map, transfer, self.folder, self.scene)
     }
 
-    /// Returns the statements about light that is not scattered.
+    /// Returns the statements about light that is not scattered, as the programs mean them that wrote
+    /// them; a warning says where that is not what they say.
     fn illumination(&mut self) -> Illumination {
-        let transparency = self.statement("Tr").and_then(|t| t.parse().ok()).unwrap_or(0.0f32);
-        let filter = self.statement("Tf").map(|tf| {
-            let mut numbers = tf.split_whitespace().flat_map(str::parse);
-            Vec3::from_array([0; 3].map(|_| numbers.next().unwrap_or(0.0)))
-        });
-        let mut illumination = Illumination {
-            model: self.source.illumination_model.unwrap_or(2),
-            opacity: self.source.dissolve.map_or(1.0 - transparency, |d| d as f32).clamp(0.0, 1.0),
-            filter,
-            ior: self.source.optical_density.map(|ior| ior as f32),
+        let source = self.source;
+        let mut illumination = Illumination::read(source);
+        let mut mend = |is_odd: bool, reason: &str| {
+            self.diagnostics.add(reason, u64::from(is_odd), || format!("`{}`", source.name));
+            is_odd
         };
-        // MeshLab and others write the opacity there, and seldom another one than 1.
-        if self.source.dissolve.is_none() && transparency == 1.0 && !illumination.is_glass() {
-            let reason = "{} materials have `Tr 1` and no `d`: they are drawn opaque, as the \
-                          programs that write it mean them";
-            self.diagnostics.add(reason, 1, || format!("`{}`", self.source.name));
+        // An image of opacity beside a 0 counts alone.
+        let has_map = source.dissolve_texture.is_some() && !illumination.is_glass();
+        let reason = "{} materials have an opacity of 0 beside an image of it: the image alone \
+                      counts, as the programs that write it mean it";
+        if mend(has_map && illumination.opacity == 0.0, reason) {
             illumination.opacity = 1.0;
         }
+        // MeshLab and others write the opacity as `Tr`, and seldom another one than 1.
+        let reason = "{} materials have `Tr 1` and no `d`: they are drawn opaque, as the programs \
+                      that write it mean them";
+        if mend(source.dissolve.is_none() && illumination.is_invisible(), reason) {
+            illumination.opacity = 1.0;
+            return illumination;
+        }
+        // Maya writes a white filter for whatever is opaque.
+        let reason = "{} materials would be clear glass that nobody sees, by `illum` and a white \
+                      `Tf` alone: they are drawn opaque, as the programs that write it mean them";
+        mend(illumination.is_idle_filter(), reason);
         illumination
     }
 }

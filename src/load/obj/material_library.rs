@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use super::file_lookup::{open_file, unquote};
+use super::illumination::Illumination;
 use super::lexer::decode_text;
 use super::material::MaterialBuilder;
 use super::mtl::{UNNAMED, normalize};
@@ -111,6 +112,32 @@ impl<'a> MaterialLibrary<'a> {
             }
             Err(error) => diagnostics.note(error.at(path).to_string()),
         }
+    }
+
+    /// Makes the materials of these names opaque if every one of them has `d 0`: nothing at all would be
+    /// seen, where other programs show the model.
+    pub fn show_what_is_all_clear<'n>(
+        &mut self,
+        names: impl Iterator<Item = &'n str> + Clone,
+        diagnostics: &mut Diagnostics,
+    ) {
+        let is_clear = |name| {
+            self.sources.get(name).is_some_and(|(source, _)| {
+                source.dissolve == Some(0.0)
+                    && source.dissolve_texture.is_none()
+                    && Illumination::read(source).is_invisible()
+            })
+        };
+        if names.clone().next().is_none() || !names.clone().all(is_clear) {
+            return;
+        }
+        for name in names {
+            self.sources.entry(name.to_owned()).and_modify(|(source, _)| source.dissolve = None);
+        }
+        diagnostics.note(
+            "all materials have an opacity of 0 (`d 0`), by which nothing could be seen: they are drawn \
+             opaque, as other programs draw them",
+        );
     }
 
     /// Returns the material of a name, which is added to the scene if it is new; a neutral grey if there

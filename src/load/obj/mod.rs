@@ -9,8 +9,8 @@
 //! 2. `normalize` splits the text into chunks, and finds the `state` at the start of each.
 //! 3. `parse` sorts the lines of each chunk, in parallel, into vertices and the faces of groups: all
 //!    faces of a group become one mesh, and have the same attributes. Lines that tobj reads right are
-//!    passed on as ranges of the file (`pieces`); the others are rewritten (`vertex_data`, `indices`) or
-//!    dropped, with a warning that names the line.
+//!    passed on as ranges of the file (`pieces`); the others are rewritten (`vertex_data`, `indices`), with
+//!    the colours of `polypaint`, or dropped, with a warning that names the line.
 //! 4. `tobj_input` is the text that tobj reads while later chunks are still being parsed: first all
 //!    vertices, then the faces, group by group. tobj unites the three indices of a corner.
 //! 5. This module builds a mesh of each group, with `triangulate` and `smooth_normals`.
@@ -27,6 +27,7 @@ mod mtl;
 mod normalize;
 mod parse;
 mod pieces;
+mod polypaint;
 mod smooth_normals;
 mod state;
 mod texture_map;
@@ -73,6 +74,9 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, needs_images: bool) -> R
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     // A mesh and an instance of each group.
     let mut library = MaterialLibrary::read(&info.libraries, path, sandbox, &mut diagnostics);
+    let names =
+        info.groups.iter().map(|group| group.settings.material.as_deref().unwrap_or_default());
+    library.show_what_is_all_clear(names, &mut diagnostics);
     let mut scene = Scene::default();
     let max_color_value = max_color_value(&models);
     for model in models {

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::lexer::{ends_in_backslash, line_length, lines};
 use super::parse::ChunkParser;
+use super::polypaint::Polypaint;
 use super::state::State;
 use super::tobj_input::{FileInfo, TobjInput};
 use super::vertex_data::KINDS;
@@ -41,7 +42,17 @@ pub fn normalize<T: Send>(
         starts.push(state.clone());
         state.advance(chunk);
     }
-    let total = state.vertices;
+    let mut total = state.vertices;
+    // Colours in comments are written beside the positions that they belong to.
+    let paint = Polypaint::read(text, diagnostics);
+    total.has_colors |= !paint.is_empty();
+    let (painted, positions) = (paint.len() as u64, u64::from(total.counts[0]));
+    if !paint.is_empty() && painted != positions {
+        let said =
+            format!("{painted} vertices have a colour in comments (`#MRGB`), of {positions}");
+        diagnostics.note(said);
+    }
+    let paint = &paint;
     // The chunks are parsed in parallel and sent to the reader.
     let (senders, receivers): (Vec<_>, Vec<_>) = chunks.iter().map(|_| mpsc::channel()).unzip();
     let mut input = TobjInput::new(text, receivers);
@@ -55,7 +66,7 @@ pub fn normalize<T: Send>(
             for ((chunk, start), sender) in chunks.into_iter().zip(starts).zip(senders) {
                 parsers.spawn_fifo(move |_| {
                     // After an error there is no receiver.
-                    let _ = sender.send(ChunkParser::new(chunk, start, total).parse());
+                    let _ = sender.send(ChunkParser::new(chunk, start, total, paint).parse());
                 });
             }
         });

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::indices::{Attributes, Corner, PlainFace, parse_face, scan_face, write_face};
 use super::lexer::{Line, Statement, lines};
 use super::pieces::Pieces;
+use super::polypaint::Polypaint;
 use super::state::{FaceGroup, FaceSettings, State, VertexCounts};
 use super::vertex_data::{self, scan_numbers};
 use crate::error::{self, Result};
@@ -42,6 +43,8 @@ pub struct ChunkParser<'a> {
     counts_so_far: [u32; 3],
     /// The numbers of vertex data in the whole file.
     total: VertexCounts,
+    /// The colours of the vertices of the whole file, if comments give them.
+    paint: &'a Polypaint,
     settings: FaceSettings,
     /// The indices of the groups with the current settings, by the attributes that faces name.
     current_groups: [Option<usize>; 4],
@@ -53,15 +56,16 @@ pub struct ChunkParser<'a> {
 }
 
 impl<'a> ChunkParser<'a> {
-    /// Returns the parser of a chunk, given the state at its start and the vertex data of the whole
-    /// file.
-    pub fn new(chunk: &'a str, start: State, total: VertexCounts) -> Self {
+    /// Returns the parser of a chunk, given the state at its start, and the vertex data and polypaint of
+    /// the whole file.
+    pub fn new(chunk: &'a str, start: State, total: VertexCounts, paint: &'a Polypaint) -> Self {
         Self {
             chunk,
             counts_so_far: start.vertices.counts,
             settings: start.settings.clone(),
             start,
             total,
+            paint,
             current_groups: [None; 4],
             indices: HashMap::new(),
             last: None,
@@ -177,9 +181,10 @@ impl<'a> ChunkParser<'a> {
         match keyword.as_ref() {
             "v" | "vt" | "vn" => {
                 let kind = vertex_data::KINDS.iter().position(|kind| kind == keyword).unwrap_or(0);
+                let vertex = self.counts_so_far[0];
                 self.counts_so_far[kind] += 1;
-                let has_colors = self.total.has_colors;
-                let rewrite = |out: &mut String| vertex_data::rewrite(kind, rest, has_colors, out);
+                let color = self.total.has_colors.then(|| self.paint.color(vertex));
+                let rewrite = |out: &mut String| vertex_data::rewrite(kind, rest, color, out);
                 if !self.parsed.vertices.add_rewritten(rewrite)? {
                     let reason =
                         "{} lines of vertex data have a number that is broken or not finite";

@@ -9,7 +9,7 @@ use super::file_lookup::open_file;
 use super::texture_map::TextureMap;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::images::decode;
-use crate::load::images::placeholder::set_image_or_placeholder;
+use crate::load::images::placeholder::{drop_normal_maps, set_image_or_placeholder};
 use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
 use crate::load::sandbox::Sandbox;
 use crate::scene::{
@@ -103,6 +103,7 @@ impl<'a> Textures<'a> {
                 missing.extend(cached.textures);
             }
         }
+        drop_normal_maps(&missing, scene);
         // Opacities that are in an alpha channel.
         for material in alpha_preferred {
             let Scene { materials, textures, .. } = scene;

@@ -10,12 +10,12 @@ use crate::error::{Error, Result};
 /// The keywords of positions, texture coordinates and normals.
 pub const KINDS: [&str; 3] = ["v", "vt", "vn"];
 
-/// Rewrites vertex data of a kind for tobj, and returns true if all numbers are finite. If a file
-/// `has_colors`, each position gets one.
+/// Rewrites vertex data of a kind for tobj, and returns true if all numbers are finite. A position
+/// without a colour gets this one, in a file that has colours.
 ///
 /// # Errors
 /// When they are no numbers, or too few.
-pub fn rewrite(kind: usize, text: &str, has_colors: bool, out: &mut String) -> Result<bool> {
+pub fn rewrite(kind: usize, text: &str, color: Option<[f32; 3]>, out: &mut String) -> Result<bool> {
     // The numbers that tobj wants, and those that there must be.
     let (wanted, least) = [(3, 3), (2, 1), (3, 3)][kind];
     let words: SmallVec<[&str; 8]> = words(text).collect();
@@ -46,8 +46,8 @@ pub fn rewrite(kind: usize, text: &str, has_colors: bool, out: &mut String) -> R
     for _ in numbers.len()..wanted {
         push_word(out, "0");
     }
-    if is_position && has_colors && wanted == 3 {
-        out.push_str(" 1 1 1");
+    if is_position && wanted == 3 {
+        color.into_iter().flatten().for_each(|x| push_word(out, &x.to_string()));
     }
     out.push('\n');
     Ok(numbers.iter().all(|x| x.is_finite()))
@@ -61,8 +61,7 @@ fn push_word(out: &mut String, word: &str) {
 /// Parses a number; NaN in any spelling is one, and so is what lies beyond f32. What begins as a number
 /// and goes on as none (`3.1+e2`) counts as one that is not finite: nobody can tell which it is.
 fn parse_number(word: &str) -> Result<f64> {
-    // Microsoft's old C library wrote 1.#QNAN, 1.#INF and -1.#IND.
-    if word.contains(".#") {
+    if is_not_finite(word) {
         return Ok(f64::NAN);
     }
     let begins_as_number =
@@ -77,6 +76,19 @@ fn parse_number(word: &str) -> Result<f64> {
             Err(if has_comma { error.help("decimals have a point, not a comma") } else { error })
         }
     }
+}
+
+/// True if a word is what some C library writes for a number that is not finite: `-nan(ind)` and
+/// `nan(0x8000)`, `1.#QNAN` and `-1.#IND` of Microsoft's old one (cut short to `1.#J` by rounding),
+/// `NaNQ` of AIX, `inf` and `Infinity`.
+fn is_not_finite(word: &str) -> bool {
+    // What may stand behind the name: its kind or its bits.
+    let is_kind = |rest: &str| {
+        matches!(rest, "" | "q" | "s" | "inity") || rest.starts_with('(') && rest.ends_with(')')
+    };
+    let name = word.trim_start_matches(['+', '-']).to_ascii_lowercase();
+    let names = ["nan", "inf", "ind", "qnan", "snan"];
+    word.contains(".#") || names.iter().any(|n| name.strip_prefix(n).is_some_and(is_kind))
 }
 
 /// The most digits before the point, counting the exponent's, of numbers that are surely finite in
@@ -150,6 +162,44 @@ mod tests {
             assert_eq!(scan_numbers(word.as_bytes()), None, "{word}");
         }
         assert_eq!(scan_numbers(&[b'9'; 38]), None);
+    }
+
+    #[test]
+    fn what_c_libraries_write_for_no_number_is_not_finite() {
+        for word in [
+            "nan",
+            "-nan",
+            "+NaN",
+            "nan(ind)",
+            "-nan(ind)",
+            "NAN(IND)",
+            "nan(snan)",
+            "-nan(0x8000000000000)",
+            "nan()",
+            "NaNQ",
+            "nanS",
+            "QNAN",
+            "-sNaN",
+            "1.#QNAN",
+            "-1.#IND",
+            "1.#IND00",
+            "1.#INF",
+            "-1.#INF",
+            "1.#QNAN0e+000",
+            "1.#J",
+            "-1.#R",
+            "inf",
+            "-inf",
+            "+Inf",
+            "INFINITY",
+            "-Infinity",
+            "1e999",
+        ] {
+            assert!(parse_number(word).is_ok_and(|x| !x.is_finite()), "{word}");
+        }
+        for word in ["nano", "info", "indigo", "x", "(ind)", "nan(", "", "-"] {
+            assert!(parse_number(word).is_err(), "{word}");
+        }
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod schema;
 mod source;
 
 use crate::error::{Error, Location, Result};
+use crate::load::limits::Limit;
 use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::load::{LoadOptions, Loaded};
 
@@ -22,9 +23,19 @@ pub use schema::json_schema::schema;
 /// the column in the scene file, or the place in the model at fault.
 pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Result<Loaded> {
     let path = &file.path.clone();
+    // The size alone can be too much, before anything is read.
+    sandbox.check(Limit::Json, source::least_memory(file.length())).map_err(|e| e.at(path))?;
     let bytes = file.read(sandbox)?;
     let text = decode_utf8(&bytes).map_err(|e| e.at(path))?;
     let source = source::Source { path, text };
+    if let Some((at, found)) = source::control_character(text) {
+        let message = format!("the control character U+{:04X} cannot stand here", found as u32);
+        return Err(source
+            .error(&(at..at + 1), message)
+            .help("a scene file is TOML, which is text"));
+    }
+    let memory = source::estimated_memory(text);
+    sandbox.check(Limit::Json, memory).map_err(|e| e.at(path))?;
     let tables = toml::from_str(text).map_err(|e| errors::reword(&source, e))?;
     build::build_scene(&source, &tables, sandbox, options)
 }
@@ -33,7 +44,8 @@ pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Resul
 fn decode_utf8(bytes: &[u8]) -> Result<&str> {
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let at = e.valid_up_to();
-        let shown = String::from_utf8_lossy(bytes);
+        // Only what precedes the place, and a little more, is shown.
+        let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + 200)]);
         Error::input("the file is not UTF-8 text")
             .with_location(Location::in_text(&shown, at..at + 1))
             .help("save it as UTF-8")

@@ -8,6 +8,43 @@ use crate::error::{Error, Location};
 /// A range of bytes in the text.
 pub type Span = Range<usize>;
 
+/// The bytes of memory that the parser is estimated to take for a sign of a text.
+const PER_SIGN: u64 = 128;
+/// The same for spaces between words, and for each other byte.
+const PER_SPACE: u64 = 48;
+const PER_BYTE: u64 = 8;
+
+/// Returns what [`estimated_memory`] is at least, for a file of so many bytes.
+pub const fn least_memory(bytes: u64) -> u64 {
+    PER_BYTE.saturating_mul(bytes)
+}
+
+/// Returns an estimate of the memory that a text takes as TOML: its parser keeps a record of every
+/// bracket, comma and word.
+pub fn estimated_memory(text: &str) -> u64 {
+    let (mut bytes, mut after_space) = (0, false);
+    for byte in text.bytes() {
+        let is_space = matches!(byte, b' ' | b'\t');
+        let is_sign = matches!(
+            byte,
+            b'[' | b']' | b'{' | b'}' | b'=' | b',' | b'.' | b'"' | b'\'' | b'#' | b'\n' | b'\r'
+        );
+        bytes += match (is_sign, is_space) {
+            (true, _) => PER_SIGN,
+            (_, true) if !after_space => PER_SPACE,
+            _ => PER_BYTE,
+        };
+        after_space = is_space;
+    }
+    bytes
+}
+
+/// Returns the place of the first control character that no TOML may have, if there is one: a parser
+/// would go on and report each of a thousand million of them.
+pub fn control_character(text: &str) -> Option<(usize, char)> {
+    text.char_indices().find(|(_, c)| c.is_ascii_control() && !matches!(c, '\t' | '\n' | '\r'))
+}
+
 /// The path and the text of a scene file.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {

@@ -37,8 +37,8 @@ pub struct MorphTarget {
 /// A skin: joints, and their influences on the vertices of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Skin {
-    /// The joints.
-    pub joints: Vec<Joint>,
+    /// The joints, which all meshes of a skin share.
+    pub joints: Arc<[Joint]>,
     /// The influences of the joints; meshes of the same glTF primitive share them.
     pub influences: Arc<Influences>,
     /// The space of the skinned mesh's instances, as a joint without a bind matrix: skinning gives
@@ -158,9 +158,10 @@ impl Influences {
 
     /// Reduces the influences to those of some vertices, in the order given.
     pub(crate) fn retain_vertices(&mut self, vertices: &[usize]) {
-        let kept: Vec<usize> = vertices.iter().flat_map(|&v| self.range(v)).collect();
-        self.joints = kept.iter().map(|&i| self.joints[i]).collect();
-        self.weights = kept.iter().map(|&i| self.weights[i]).collect();
+        let joints = vertices.iter().flat_map(|&v| &self.joints[self.range(v)]).copied().collect();
+        self.weights =
+            vertices.iter().flat_map(|&v| &self.weights[self.range(v)]).copied().collect();
+        self.joints = joints;
     }
 
     /// The range of a vertex's influences.
@@ -242,7 +243,8 @@ mod tests {
     fn bent(joints: Vec<Joint>, space: DAffine3, ids: [u16; 6], weights: [f32; 6]) -> Mesh {
         let influences =
             Influences { per_vertex: 2, joints: ids.to_vec(), weights: weights.to_vec() };
-        let skin = Skin { joints, influences: Arc::new(influences), space: joint(space) };
+        let (joints, influences) = (joints.into(), Arc::new(influences));
+        let skin = Skin { joints, influences, space: joint(space) };
         let (morphs, weights) = ([].into(), vec![]);
         Deformation { base: base(), morph_targets: morphs, weights, period: None, skin: Some(skin) }
             .deform(0.0, &[])
@@ -263,7 +265,7 @@ mod tests {
             let base = Mesh { tangents: vec![[1.0, 0.0, 0.0, 1.0]; 3], ..Mesh::clone(&base()) };
             let influences =
                 Influences { per_vertex: 1, joints: vec![0; 3], weights: vec![1.0; 3] };
-            let joints = vec![joint(DAffine3::from_mat3(by))];
+            let joints = [joint(DAffine3::from_mat3(by))].into();
             let skin =
                 Skin { joints, influences: Arc::new(influences), space: joint(DAffine3::IDENTITY) };
             let (base, morphs) = (Arc::new(base), [].into());

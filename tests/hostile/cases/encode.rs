@@ -85,24 +85,41 @@ pub fn webp(kind: &[u8; 4], data: &[u8], length: u32) -> Vec<u8> {
 
 /// An OpenEXR header of scan lines of one channel with this data window.
 pub fn exr(window: [i32; 4], compression: u8, rest: &[u8]) -> Vec<u8> {
-    let mut bytes = vec![0x76, 0x2F, 0x31, 0x01, 2, 0, 0, 0];
+    exr_of(window, window, compression, &["R"], None, rest)
+}
+
+/// An OpenEXR header with a data and a display window, and tiles of a size or lines.
+pub fn exr_of(
+    data: [i32; 4],
+    display: [i32; 4],
+    compression: u8,
+    channels: &[&str],
+    tiles: Option<[u32; 2]>,
+    rest: &[u8],
+) -> Vec<u8> {
+    let flags = if tiles.is_some() { 2 } else { 0 };
+    let mut bytes = vec![0x76, 0x2F, 0x31, 0x01, 2, flags, 0, 0];
     let mut attribute = |name: &str, kind: &str, value: &[u8]| {
         bytes.extend(name.bytes().chain([0]).chain(kind.bytes()).chain([0]));
         bytes.extend((value.len() as i32).to_le_bytes());
         bytes.extend(value);
     };
-    let channel =
-        [b"R\0", &2i32.to_le_bytes()[..], &[0; 4], &1i32.to_le_bytes(), &1i32.to_le_bytes(), &[0]]
-            .concat();
-    attribute("channels", "chlist", &channel);
+    let words = |numbers: &[i32]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    // Floats, with one sample for each pixel.
+    let channel = |name: &&str| [name.as_bytes(), &[0], &words(&[2, 0, 1, 1])].concat();
+    let list = channels.iter().flat_map(channel).chain([0]).collect::<Vec<u8>>();
+    attribute("channels", "chlist", &list);
     attribute("compression", "compression", &[compression]);
-    let window: Vec<u8> = window.iter().flat_map(|x| x.to_le_bytes()).collect();
-    attribute("dataWindow", "box2i", &window);
-    attribute("displayWindow", "box2i", &window);
+    attribute("dataWindow", "box2i", &words(&data));
+    attribute("displayWindow", "box2i", &words(&display));
     attribute("lineOrder", "lineOrder", &[0]);
     attribute("pixelAspectRatio", "float", &1f32.to_le_bytes());
     attribute("screenWindowCenter", "v2f", &[0; 8]);
     attribute("screenWindowWidth", "float", &1f32.to_le_bytes());
+    if let Some([width, height]) = tiles {
+        let size = [&width.to_le_bytes()[..], &height.to_le_bytes(), &[0]].concat();
+        attribute("tiles", "tiledesc", &size);
+    }
     bytes.push(0);
     [&bytes, rest].concat()
 }

@@ -10,6 +10,7 @@ mod encode;
 mod glb;
 mod gltf;
 mod gltf_edits;
+mod growth;
 mod links;
 mod mtl;
 mod obj;
@@ -18,7 +19,7 @@ mod scene;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{self, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -43,13 +44,24 @@ struct Case {
     files: Vec<(String, Vec<u8>)>,
     /// The further preparation of the folder.
     prepare: fn(&Path),
+    command: Command,
     expect: Expect,
+}
+
+/// What is done with a file.
+#[derive(Clone, Copy)]
+enum Command {
+    Info,
+    /// Rendered at 64 × 48 pixels, with the default number of samples.
+    Render,
+    /// Compared with itself.
+    Diff,
 }
 
 impl Case {
     fn new(name: impl Into<String>, file: &str, bytes: impl AsRef<[u8]>, expect: Expect) -> Self {
         let files = vec![(file.to_owned(), bytes.as_ref().to_vec())];
-        Self { name: name.into(), files, prepare: |_| {}, expect }
+        Self { name: name.into(), files, prepare: |_| {}, command: Command::Info, expect }
     }
 
     /// Returns the same case with another text in its file.
@@ -84,6 +96,7 @@ fn cases() -> Vec<Case> {
     let all = [
         gltf::cases(),
         gltf_edits::cases(),
+        growth::cases(),
         deform::cases(),
         links::cases(),
         glb::cases(),
@@ -101,12 +114,17 @@ fn cases() -> Vec<Case> {
 const HANGS: Duration = Duration::from_secs(300);
 
 /// Runs the command on a file, within 10 s and 1 GiB; returns its exit status and its messages.
-fn run(file: &Path) -> Result<(i32, String), String> {
+fn run(command: Command, file: &Path) -> Result<(i32, String), String> {
     // Seconds of processors, and the data segment, which since Linux 4.7 is all memory of one's own,
     // in KiB.
-    let limited = "ulimit -t 10; ulimit -d 1048576; ulimit -c 0; exec \"$0\" info \"$1\"";
-    let mut child = Command::new("sh")
-        .args(["-c", limited, env!("CARGO_BIN_EXE_envers")])
+    let done = match command {
+        Command::Info => "info \"$1\"",
+        Command::Render => "render \"$1\" --size 64x48 -o \"$1.png\"",
+        Command::Diff => "diff \"$1\" \"$1\"",
+    };
+    let limited = format!("ulimit -t 10; ulimit -d 1048576; ulimit -c 0; exec \"$0\" {done}");
+    let mut child = process::Command::new("sh")
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_envers")])
         .arg(file)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -134,8 +152,20 @@ fn run(file: &Path) -> Result<(i32, String), String> {
         std::thread::sleep(Duration::from_millis(2));
     };
     let (said, shown) = (stderr.join().unwrap(), stdout.join().unwrap());
-    if [&said, &shown].iter().any(|text| text.contains(|c: char| c.is_control() && c != '\n')) {
+    let is_code = |c: char| match c {
+        '\n' => false,
+        '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{feff}' => true,
+        c => c.is_control(),
+    };
+    if [&said, &shown].iter().any(|text| text.contains(is_code)) {
         return Err(format!("it sends codes to the terminal: {said:?}"));
+    }
+    if [&said, &shown].iter().any(|text| text.lines().any(|line| line.starts_with("error: forged")))
+    {
+        return Err(format!("a name looks like a message: {said:?}"));
+    }
+    if let Some(long) = said.lines().find(|line| line.chars().count() > 3000) {
+        return Err(format!("a message has {} bytes", long.len()));
     }
     match status.code() {
         Some(code) => Ok((code, said)),
@@ -168,10 +198,10 @@ fn hostile_files_are_refused_or_shown_as_far_as_they_go() {
     let cases = cases();
     for case in &cases {
         let place =
-            kept.as_deref().unwrap_or(folder.path()).join(case.name.replace(['/', ' '], "-"));
+            kept.as_deref().unwrap_or(folder.path()).join(case.name.replace(['/', ' ', '\\'], "-"));
         let file = case.write(&place);
         let start = Instant::now();
-        let outcome = run(&file);
+        let outcome = run(case.command, &file);
         slowest.push((start.elapsed(), &case.name));
         if let Some(fault) = fault(case.expect, outcome) {
             faults.push(format!("{}: {fault}", case.name));
@@ -186,7 +216,7 @@ fn hostile_files_are_refused_or_shown_as_far_as_they_go() {
 }
 
 #[test]
-fn there_are_three_hundred_hostile_files_and_each_has_its_name() {
+fn there_are_six_hundred_hostile_files_and_each_has_its_name() {
     let mut names: Vec<String> = cases().into_iter().map(|case| case.name).collect();
     let count = names.len();
     names.sort();

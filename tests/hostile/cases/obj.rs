@@ -133,7 +133,7 @@ pub fn cases() -> Vec<Case> {
             let object = |i: usize| format!("o part{i}\nf 1 2 3\n");
             after((0..100_000).map(object).collect())
         },
-        Loads,
+        Warning("stand at the same place"),
     );
     case(
         "100000 materials that are in no file",

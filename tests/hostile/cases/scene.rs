@@ -1,6 +1,6 @@
 //! Scene files.
 
-use super::{Case, Error, Expect, Loads};
+use super::{Case, Error, Expect, Loads, Warning};
 use envers_testing::{Model, png};
 
 const CAMERA: &str = "[camera]\nposition = [0, 0, 9]\nlook_at = [0, 0, 0]\nfov_y = 40\n";
@@ -184,7 +184,7 @@ pub fn cases() -> Vec<Case> {
         (0..20_000).map(named).collect(),
         "a.glb",
         Model::triangle().glb(),
-        Loads,
+        Warning("stand at the same place"),
     );
     let picture = |i: usize| {
         format!(
@@ -193,7 +193,13 @@ pub fn cases() -> Vec<Case> {
         )
     };
     let text = CAMERA.to_owned() + &(0..5000).map(picture).collect::<String>();
-    with("of one picture by 60 names", text, "a.png", super::encode::flat_png(2048, 2048), Loads);
+    with(
+        "of one picture by 60 names",
+        text,
+        "a.png",
+        super::encode::flat_png(2048, 2048),
+        Warning("stand at the same place"),
+    );
     with(
         "with a picture that is none",
         format!("{CAMERA}{}", picture(0)),

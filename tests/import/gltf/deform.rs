@@ -293,6 +293,46 @@ fn one_node_has_many_instances() {
 }
 
 #[test]
+fn instances_have_their_own_colours() {
+    let places: Vec<f32> = (0..4).flat_map(|i| [i as f32, 0.0, 0.0]).collect();
+    let colored = |name: &str, width: &str, colors: &[f32], material: serde_json::Value| {
+        let mut model = instanced(json!({}));
+        model.material(material);
+        let (places, colors) = (model.floats("VEC3", &places), model.floats(width, colors));
+        let attributes = json!({"TRANSLATION": places, name: colors});
+        model.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"] = attributes;
+        let loaded = model.load().unwrap();
+        assert_eq!(loaded.report.warnings, [""; 0]);
+        loaded.scene
+    };
+    let base =
+        json!({"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 1, 1], "metallicFactor": 0}});
+    let three = [1., 1., 1., 1., 0., 0., 0., 1., 0., 1., 0., 0.];
+    for name in ["_COLOR_0", "COLOR_0"] {
+        let scene = colored(name, "VEC3", &three, base.clone());
+        let color =
+            |i: usize| scene.materials[scene.instances[i].material.0 as usize].diffuse.to_array();
+        assert_eq!([0, 1, 2].map(color), [[1., 0.5, 1.], [1., 0., 0.], [0., 0.5, 0.]]);
+        assert_eq!(
+            (color(3), scene.materials.len()),
+            (color(1), 3),
+            "equal colours share a material"
+        );
+    }
+    // An unlit one, a metal, and an alpha.
+    let mut unlit = base.clone();
+    unlit["extensions"] = json!({"KHR_materials_unlit": {}});
+    let scene = colored("_COLOR_0", "VEC3", &three, unlit);
+    assert_eq!(scene.materials[1].emission.to_array(), [1., 0., 0.]);
+    let metal = json!({"pbrMetallicRoughness": {"roughnessFactor": 0.5}, "alphaMode": "BLEND"});
+    let four = [0.5, 0., 0., 0.25].repeat(4);
+    let scene = colored("_COLOR_0", "VEC4", &four, metal);
+    let material = &scene.materials[1];
+    assert_eq!(material.metallic.as_ref().unwrap().factors.base.to_array(), [0.5, 0., 0.]);
+    assert_eq!(material.coverage.unwrap().alpha, 0.25);
+}
+
+#[test]
 fn instances_of_unequal_number_are_an_error() {
     let mut model = instanced(json!({}));
     let places = model.floats("VEC3", &[0.0; 6]);

@@ -351,6 +351,6 @@ fn a_diffuse_colour_in_bytes_is_a_warning() {
 
 #[test]
 fn a_hundred_thousand_spheres_are_read() {
-    let sphere = "[[sphere]]\ncenter = [1, 2, 3]\nradius = 0.5\n";
-    assert_eq!(seen(&sphere.repeat(100_000)).spheres.len(), 100_000);
+    let sphere = |i: u32| format!("[[sphere]]\ncenter = [{i}, 2, 3]\nradius = 0.5\n");
+    assert_eq!(seen(&(0..100_000).map(sphere).collect::<String>()).spheres.len(), 100_000);
 }

@@ -72,6 +72,14 @@ impl<'a> Accessors<'a> {
         self.count_elements(ELEMENTS_PER_FACE * faces as u64 + values as u64)
     }
 
+    /// Counts the influences of joints on vertices, beside the accessors that they are read from.
+    ///
+    /// # Errors
+    /// When there are more than the limit allows.
+    pub fn count_influences(&self, sets: usize, vertices: usize) -> Result<()> {
+        self.count_elements((sets as u64).saturating_mul(vertices as u64))
+    }
+
     /// Counts elements that are read; the bytes that were loaded allow as many without a limit.
     fn count_elements(&self, elements: u64) -> Result<()> {
         let total = self.elements_read.get().saturating_add(elements);

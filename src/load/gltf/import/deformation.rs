@@ -14,6 +14,9 @@ use crate::load::limits::Limit;
 use crate::scene::animation::{Animated, Curve, Deformation, Joint, Skin};
 use crate::scene::{Mesh, MeshId};
 
+/// The number of morph targets that take as long to add to a vertex as it takes to skin it.
+const TARGETS_PER_VERTEX: usize = 16;
+
 impl Importer<'_> {
     /// Returns the mesh of a primitive as it is at a node, which is added to the scene if it is
     /// new; and true if joints determine its position, whatever the transform of the node.
@@ -52,7 +55,15 @@ impl Importer<'_> {
 
         // The mesh as it is deformed at rest.
         let path = format_args!("nodes[{}]", node.index);
-        let (sandbox, count) = (self.accessors.buffers.sandbox, base.positions.len() as u64);
+        let sandbox = self.accessors.buffers.sandbox;
+        let targets = match curves {
+            Some(curves) => curves.len(),
+            None => weights.iter().filter(|weight| **weight != 0.0).count(),
+        };
+        let sets = influences.as_ref().filter(|_| skin.is_some()).map_or(0, |i| i.per_vertex / 4);
+        let work = 1.max(sets) + targets / TARGETS_PER_VERTEX;
+        let joints = skin.as_ref().map_or(0, |(joints, _)| joints.still.len());
+        let count = (base.positions.len() as u64).saturating_mul(work as u64) + joints as u64;
         sandbox.consume(Limit::Deformed, count).map_err(at_path(path))?;
         let mut deformation = Deformation {
             base: base.clone(),
@@ -82,7 +93,7 @@ impl Importer<'_> {
             }
             deformation.period = self.clip.period();
             if let (Some(skin), Some((joints, _))) = (&mut deformation.skin, &skin) {
-                skin.joints.clone_from(&joints.animated);
+                skin.joints = joints.animated.clone();
             }
             let (mesh, deformation) = (id.0 as usize, Box::new(deformation));
             self.clip.objects.push(Animated::Mesh { mesh, deformation });

@@ -11,19 +11,32 @@ use crate::load::gltf::accessor::Accessors;
 use crate::load::gltf::json::{as_index, at_path, error_at};
 use crate::load::limits::Limit;
 
-/// Returns the transforms of the instances of a node's mesh, in the node's space: one that changes
-/// nothing if the node does not use the extension.
+/// An instance of a node's mesh.
+#[derive(Clone, Copy)]
+pub struct MeshInstance {
+    /// The transform from the mesh's space to the node's.
+    pub transform: DAffine3,
+    /// The colour and alpha that multiply the base colour of the material.
+    pub color: [f32; 4],
+}
+
+impl MeshInstance {
+    /// The instance of a node that has one: in the node's own space, in the material's own colour.
+    pub const PLAIN: Self = Self { transform: DAffine3::IDENTITY, color: [1.0; 4] };
+}
+
+/// Returns the instances of a node's mesh: a plain one if the node does not use the extension.
 ///
 /// # Errors
 /// When the extension's accessors cannot be read, or are not equally long.
-pub fn transforms(
+pub fn instances(
     node: &SceneNode,
     accessors: &Accessors,
     diagnostics: &mut Diagnostics,
-) -> Result<Vec<DAffine3>> {
+) -> Result<Vec<MeshInstance>> {
     let extensions = node.node.extensions.as_ref();
     let Some(extension) = extensions.and_then(|e| e.others.get("EXT_mesh_gpu_instancing")) else {
-        return Ok(vec![DAffine3::IDENTITY]);
+        return Ok(vec![MeshInstance::PLAIN]);
     };
     let path = format!("nodes[{}].extensions.EXT_mesh_gpu_instancing.attributes", node.index);
     let path_of = |name: &str| format!("{path}.{name}");
@@ -56,17 +69,34 @@ pub fn transforms(
         None => vec![[0.0, 0.0, 0.0, 1.0]; count],
     };
 
-    // The transforms, without those that are not finite.
-    let parts = translations.into_iter().zip(rotations).zip(scales);
-    let transforms = parts.map(|((translation, rotation), scale)| {
+    // Colours, under the name of a custom attribute or of a vertex attribute.
+    let named = ["_COLOR_0", "COLOR_0"].into_iter().find_map(|name| Some((name, accessor(name)?)));
+    let mut colors = match named {
+        Some((name, index)) if accessors.width(index) == 3 => {
+            let colors = accessors.normalized_floats::<3>(index, &path_of(name))?;
+            colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect()
+        }
+        Some((name, index)) => accessors.normalized_floats::<4>(index, &path_of(name))?,
+        None => vec![[1.0; 4]; count],
+    };
+    let is_bad = |x: &&mut f32| !(x.is_finite() && **x >= 0.0);
+    let bad = colors.as_flattened_mut().iter_mut().filter(is_bad).map(|x| *x = 0.0).count();
+    let reason = "{} colours of instances are negative or not finite and become 0";
+    diagnostics.add(reason, bad as u64, || path.clone());
+
+    // The instances, without those whose transform is not finite.
+    let parts = translations.into_iter().zip(rotations).zip(scales).zip(colors);
+    let instances = parts.map(|(((translation, rotation), scale), color)| {
         let rotation = unit_quaternion(rotation.map(f64::from)).unwrap_or(DQuat::IDENTITY);
-        DAffine3::from_scale_rotation_translation(vector(scale), rotation, vector(translation))
+        let (scale, translation) = (vector(scale), vector(translation));
+        let transform = DAffine3::from_scale_rotation_translation(scale, rotation, translation);
+        MeshInstance { transform, color }
     });
-    let mut transforms: Vec<DAffine3> = transforms.collect();
-    let before = transforms.len();
-    transforms.retain(DAffine3::is_finite);
-    let dropped = (before - transforms.len()) as u64;
+    let mut instances: Vec<MeshInstance> = instances.collect();
+    let before = instances.len();
+    instances.retain(|instance| instance.transform.is_finite());
+    let dropped = (before - instances.len()) as u64;
     let reason = "{} instances of a node are left out: a number is not finite";
     diagnostics.add(reason, dropped, || path);
-    Ok(transforms)
+    Ok(instances)
 }

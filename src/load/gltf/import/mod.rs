@@ -74,6 +74,7 @@ pub fn import(
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
         mesh_ids: HashMap::new(),
+        colored: HashMap::new(),
         nodes: &nodes,
         joints: HashMap::new(),
         scene: Scene::default(),
@@ -105,6 +106,8 @@ struct Importer<'a> {
     meshes: HashMap<usize, Vec<ImportedPrimitive>>,
     /// The ids of meshes that are in the scene as they were modelled, by their address.
     mesh_ids: HashMap<*const Mesh, MeshId>,
+    /// The materials in the colours of instances, by the bits of these.
+    colored: HashMap<(MaterialId, [u32; 4]), MaterialId>,
     /// The nodes, by their index in the file.
     nodes: &'a HashMap<usize, SceneNode<'a>>,
     /// The joints of the skins so far.
@@ -154,7 +157,7 @@ impl Importer<'_> {
         let Some(mesh) = node.node.mesh else { return Ok(()) };
         let by = format!("nodes[{}].mesh", node.index);
         let primitives = self.primitives(mesh.value(), &by)?;
-        let instances = instancing::transforms(node, &self.accessors, &mut self.diagnostics)?;
+        let instances = instancing::instances(node, &self.accessors, &mut self.diagnostics)?;
         if instances.is_empty() {
             return Ok(());
         }

@@ -2,28 +2,29 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use super::implicit_shapes::ImplicitShape;
+use super::instancing::MeshInstance;
 use super::mesh::PrimitiveMesh;
 use super::nodes::SceneNode;
 use super::{ImportedPrimitive, Importer};
 use crate::error::Result;
 use crate::scene::animation::Animated;
-use crate::scene::{Instance, Plane, Sphere};
+use crate::scene::{Instance, MaterialId, Plane, Sphere};
 
 impl Importer<'_> {
-    /// Adds instances of a primitive to the scene, at some transforms in the space of a node.
+    /// Adds instances of a primitive to the scene, in the space of a node.
     pub(super) fn add_mesh(
         &mut self,
         primitive: &ImportedPrimitive,
         node: &SceneNode,
-        transforms: &[DAffine3],
+        instances: &[MeshInstance],
         by: &str,
     ) -> Result<()> {
         let (mesh, is_skinned) = self.mesh_at_node(primitive, node)?;
         if is_skinned {
-            let instanced = u64::from(transforms.len() > 1);
+            let instanced = u64::from(instances.len() > 1);
             let reason = "{} skinned meshes stand once, whatever the instances of their node";
             self.diagnostics.unsupported(reason, instanced, || by.to_owned());
             // The joints place the mesh, whatever the transform of the node.
@@ -31,8 +32,9 @@ impl Importer<'_> {
             self.scene.instances.push(instance);
             return Ok(());
         }
-        for &transform in transforms {
-            let instance = Instance::new(mesh, node.to_world * transform, primitive.material);
+        for &MeshInstance { transform, color } in instances {
+            let material = self.colored(primitive.material, color);
+            let instance = Instance::new(mesh, node.to_world * transform, material);
             // An instance that moves may be flat at one time and not at another.
             if let Some(animated) = node.animated {
                 self.clip.objects.push(Animated::Instance {
@@ -48,6 +50,23 @@ impl Importer<'_> {
             self.scene.instances.push(instance);
         }
         Ok(())
+    }
+
+    /// Returns the id of a material in the colour and alpha of an instance.
+    fn colored(&mut self, material: MaterialId, color: [f32; 4]) -> MaterialId {
+        if color == [1.0; 4] {
+            return material;
+        }
+        let key = (material, color.map(f32::to_bits));
+        *self.colored.entry(key).or_insert_with(|| {
+            let [r, g, b, alpha] = color;
+            let mut colored = self.scene.materials[material.0 as usize].clone();
+            colored.multiply_base(Vec3::new(r, g, b));
+            if let Some(coverage) = &mut colored.coverage {
+                coverage.alpha = (coverage.alpha * alpha).min(1.0);
+            }
+            self.scene.add_material(colored)
+        })
     }
 
     /// Adds the implicit shape of a node to the scene, with the material of an index in the file.
@@ -99,6 +118,6 @@ impl Importer<'_> {
         let mesh =
             PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
         let primitive = ImportedPrimitive { mesh, material };
-        self.add_mesh(&primitive, node, &[DAffine3::IDENTITY], &path)
+        self.add_mesh(&primitive, node, &[MeshInstance::PLAIN], &path)
     }
 }

@@ -1,5 +1,6 @@
 //! Textures: their samplers and images, which are decoded when all textures are known.
 
+use std::collections::HashSet;
 use std::fmt::Display;
 use std::path::PathBuf;
 
@@ -13,7 +14,7 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::buffers::{Buffers, UriTarget, unreadable};
 use crate::load::gltf::json::{as_index, at_path, lookup};
 use crate::load::images::decode;
-use crate::load::images::placeholder::set_image_or_placeholder;
+use crate::load::images::placeholder::{drop_normal_maps, set_image_or_placeholder};
 use crate::load::images::texture_cache::{ImageIndex, TextureCache, transform_bits};
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer, Wrap};
 
@@ -30,7 +31,8 @@ pub struct Textures<'a> {
 enum ImageKey<'a> {
     DataUri(&'a str),
     File(PathBuf),
-    BufferView(usize),
+    /// The bytes themselves: several views may have the same.
+    Bytes(&'a [u8]),
 }
 
 /// The index of a texture in the file, the bits of its transform, the set of texture coordinates
@@ -114,7 +116,7 @@ impl<'a> Textures<'a> {
         }))
     }
 
-    /// The image with an index in the file; several of one file, URI or buffer view are the same.
+    /// The image with an index in the file; several of one file or URI, or of the same bytes, are the same.
     fn image(&mut self, index: usize, by: impl Display) -> Result<ImageIndex> {
         let image = lookup(&self.buffers.root.images, index, "image", by)?;
         let path = format!("images[{index}]");
@@ -125,7 +127,7 @@ impl<'a> Textures<'a> {
             }),
             (None, Some(view)) => {
                 let bytes = self.buffers.view(view.value(), &format!("{path}.bufferView"));
-                bytes.map(|b| (ImageKey::BufferView(view.value()), ImageBytes::BufferView(b)))
+                bytes.map(|b| (ImageKey::Bytes(b), ImageBytes::BufferView(b)))
             }
             (None, None) => Err(Error::input("the image has neither a URI nor a buffer view")),
         };
@@ -149,11 +151,15 @@ impl<'a> Textures<'a> {
             };
             Ok(decode::Source::Bytes(bytes, image.path.clone()))
         };
+        let mut missing = HashSet::new();
         for (cached, image) in cache.decode(buffers.sandbox, open, |_| reads_images) {
             let path = cached.source.path;
             let image = image.map_err(at_path(&path));
-            set_image_or_placeholder(image, &path, &cached.textures, scene, diagnostics);
+            if !set_image_or_placeholder(image, &path, &cached.textures, scene, diagnostics) {
+                missing.extend(cached.textures);
+            }
         }
+        drop_normal_maps(&missing, scene);
     }
 }
 
