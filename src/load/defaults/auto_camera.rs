@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use super::extents::{box_extent, extents};
+use crate::error::{Error, Result};
 use crate::geometry::Bounds;
+use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Camera, Projection, Scene};
 
 /// Half the vertical field of view of the automatic camera, in radians: 35° in all, about that of a
@@ -22,9 +24,12 @@ const FLATNESS: f64 = 0.02;
 
 /// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
 /// model fits, in the middle of the image.
-pub fn add_camera(scene: &mut Scene) {
+///
+/// # Errors
+/// When the scene is so large that such a camera would stand beyond the coordinates that are supported.
+pub fn add_camera(scene: &mut Scene) -> Result<()> {
     if !scene.cameras.is_empty() {
-        return;
+        return Ok(());
     }
     // The box to be framed, which must have a size.
     let mut bounds = scene.bounds_over_time();
@@ -40,9 +45,13 @@ pub fn add_camera(scene: &mut Scene) {
     // The direction, which fails only where the scene is not finite; `Scene::check` says that then.
     let direction = view_direction(bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
-    let Ok(mut camera) = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens) else { return };
-    if !bounds.max_abs().is_finite() {
-        return;
+    let Ok(mut camera) = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens) else {
+        return Ok(());
+    };
+    // The same where it is too large for any camera.
+    let extent = bounds.max_abs();
+    if !(extent <= MAX_COORDINATE) {
+        return Ok(());
     }
     // The position, as near as all of the model is within the edges of the image.
     let [width, height] = scene.film.size.map(f64::from);
@@ -55,8 +64,15 @@ pub fn add_camera(scene: &mut Scene) {
         extents(scene, &bounds, normals)
     };
     camera.position = framing_position(extents, bounds.center(), &camera, tangents);
+    if camera.position.abs().max_element() > MAX_COORDINATE {
+        return Err(Error::input(format!(
+            "the scene reaches out to {extent:e}: a camera that sees all of it would stand beyond the \
+             {MAX_COORDINATE:e} supported; scale the scene down, or give it a camera of its own"
+        )));
+    }
     camera.name = "framing".to_owned();
     scene.cameras.push(camera);
+    Ok(())
 }
 
 /// Returns the direction from a model of a size to the camera: flat models are seen from their broad
@@ -132,7 +148,7 @@ mod tests {
 
     /// Returns the greatest distance, to the side and up, of a model's corners from the middle.
     fn filled(scene: &mut Scene) -> [f64; 2] {
-        add_camera(scene);
+        add_camera(scene).unwrap();
         let camera = &scene.cameras[0];
         let placed = |p: &[f32; 3]| scene.instances[0].to_world(*p);
         let points = scene.meshes[0].positions.iter().map(placed);
@@ -164,7 +180,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.film.size = [400, 300];
         scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let camera = &scene.cameras[0];
         let to = scene.spheres[0].center - camera.position;
         let half = (2.0 / to.length()).asin();
@@ -188,7 +204,7 @@ mod tests {
         let (center, radius) = (DVec3::ZERO, None);
         animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let to = -scene.cameras[0].position;
         let half = (1.0 / to.length()).asin();
         assert!((half.tan() - HALF_FOV.tan() * FILL_RATIO).abs() < 1e-9, "{half}");
@@ -199,7 +215,7 @@ mod tests {
         for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
             let corner = |p: &[f32; 3]| (DVec3::from(p.map(f64::from)) * (1.0 - flat)).as_vec3();
             let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
-            add_camera(&mut scene);
+            add_camera(&mut scene).unwrap();
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
         }
     }
@@ -219,16 +235,16 @@ mod tests {
     fn a_scene_that_is_not_finite_gets_no_camera() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::INFINITY, 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         assert_eq!(scene.cameras, []);
     }
 
     #[test]
     fn a_files_own_camera_is_kept() {
         let mut scene = mesh(&BOX);
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let camera = scene.cameras.clone();
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         assert_eq!(camera, scene.cameras);
     }
 }
