@@ -70,6 +70,15 @@ impl Bounds {
         if self.is_empty() { 0.0 } else { self.lower.abs().max(self.upper.abs()).max_element() }
     }
 
+    /// The t at which a line enters the box and leaves it; it passes the box where the first is greater.
+    #[cfg(feature = "embree")]
+    #[inline(always)]
+    pub(crate) fn crossing(&self, origin: DVec3, direction: DVec3) -> (f64, f64) {
+        let (a, b) = ((self.lower - origin) / direction, (self.upper - origin) / direction);
+        // `min` and `max` pass over the NaN of 0/0.
+        (a.min(b).max_element(), a.max(b).min_element())
+    }
+
     /// The smallest box around the transformed box.
     pub fn transformed(&self, transform: &DAffine3) -> Self {
         if self.is_empty() {

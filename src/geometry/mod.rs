@@ -16,9 +16,9 @@
 //! ```
 
 mod bounds;
-mod double_double;
+pub(crate) mod double_double;
 #[cfg(test)]
-mod dyadic;
+pub(crate) mod dyadic;
 mod estimate;
 pub mod exact_order;
 mod hit;

@@ -6,6 +6,8 @@ use std::collections::{HashMap, HashSet};
 use std::hash::{Hash, Hasher};
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use crate::geometry::Bounds;
 use crate::load::report::{DropReason, LoadReport};
 use crate::scene::animation::Animated;
@@ -226,7 +228,7 @@ fn bits(x: f64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use glam::{DAffine3, DVec3};
+    use glam::DAffine3;
 
     use super::*;
     use crate::scene::{Instance, MaterialId, MeshId, Plane, Sphere};

@@ -114,7 +114,7 @@ impl LoadOptions {
         // What stands at one place again and again would cost every ray that meets it.
         duplicates::remove_duplicates(&mut scene, &mut report);
         // Defaults for what the file leaves out.
-        defaults::auto_camera::add_camera(&mut scene);
+        defaults::auto_camera::add_camera(&mut scene).map_err(|e| e.at(path))?;
         if !is_scene_file {
             scene.film.spp = BARE_MODEL_SPP;
             defaults::auto_lighting::add_lights(&mut scene);

@@ -12,6 +12,7 @@ mod oracle;
 mod order;
 mod random_scenes;
 mod ray_ends;
+mod scale;
 mod self_intersection;
 #[cfg(feature = "measure")]
 mod stress;

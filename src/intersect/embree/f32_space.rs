@@ -1,10 +1,13 @@
-//! The f32 space: the recentred copies of scene and rays that Embree traverses.
+//! The f32 space: the recentred and scaled copies of scene and rays that Embree traverses.
 //!
-//! Only these copies are recentred on the scene: the f64 tests use world coordinates.
+//! Only these copies are moved: the f64 tests use world coordinates. The copies are centred on the
+//! scene, and scaled by a power of two so that its longest side is from 1 to 2 long. Such a scale rounds
+//! nothing, and keeps the products of three coordinates in Embree's triangle test, as well as the
+//! squares of lengths, from overflowing or underflowing, whatever unit the scene is in.
 //!
 //! # How far off an f32 ray can be
 //!
-//! Let L be the longest side of the scene's box and u = 2⁻²⁴. An f32 ray starts at most
+//! Let L be the longest side of the scene's box, before it is scaled, and u = 2⁻²⁴. An f32 ray starts at most
 //! [`MAX_ORIGIN_DISTANCE`]·L = 4 L from the centre in each coordinate (a ray that starts farther away is
 //! first moved, in f64, to where it enters the box), and what it can hit lies within L/2 of it. On each
 //! axis, to where it crosses the plane of a box,
@@ -17,19 +20,37 @@
 //! 36 u L in all. Boxes of user geometry are therefore rounded outward and widened by
 //! [`BOX_PADDING`] = 40 u L; Embree's ROBUST flag does not reach them. The padding is fixed while the rays are
 //! not, which is why the move to the box is needed.
+//!
+//! # The move to the box
+//!
+//! A ray o + t·d may start its f32 copy at any of its points near the box: all that counts is how far off
+//! the line that point is. From up to [`MAX_MOVED_DISTANCE`]·L = 2²⁷ L away it is computed in f64: the three
+//! roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to spare.
+//!
+//! From farther away it is computed in double-double numbers (`packet/approach.rs`). The difference o − c
+//! from the centre c, of two f64s, is exact in these, and so is t·d for any f64 t. Their sum has a relative
+//! error below 8 · 2⁻¹⁰⁶ in each component, however much of it cancels. As t has only 53 bits, the point lies
+//! up to 2⁻⁴⁵ of the way before or behind the box, and the same is repeated from there. What the first of
+//! the sums has lost is then 2⁻¹⁰³ · 2⁻⁴⁵ of the way, below u L / 2 up to [`MAX_APPROACH`]·L = 2¹⁰⁰ L;
+//! what the others lose is less.
 
 use glam::DVec3;
 
 use crate::geometry::Bounds;
 
 /// The distance from the scene's centre, in units of L, up to which f64 may move the origin of a ray to
-/// the box: the three roundings on the way come to 3 · 2⁻⁵³ · 2²⁷ L < u L, which the padding has to
-/// spare.
+/// the box.
 pub const MAX_MOVED_DISTANCE: f64 = (1u32 << 27) as f64;
+/// The same for double-double numbers.
+pub const MAX_APPROACH: f64 = (1u128 << 100) as f64;
 /// The distance from the scene's centre, in units of L, up to which an f32 ray may start.
 pub const MAX_ORIGIN_DISTANCE: f64 = 4.0;
 /// The widening of boxes of user geometry, in units of L.
 pub const BOX_PADDING: f64 = 40.0 / (1u32 << 24) as f64;
+
+/// The least L: a scale by its inverse, and by the length of a direction that is not extreme, stays
+/// within the range of f64.
+const MIN_EXTENT: f64 = f64::from_bits((1023 - 500) << 52);
 
 /// The space of the f32 copies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -37,24 +58,28 @@ pub struct F32Space {
     pub center: DVec3,
     /// The scene's box in world space.
     pub bounds: Bounds,
-    /// The longest side of the box, L.
+    /// The longest side of the box, L, in world units.
     pub extent: f64,
+    /// The length of a world unit in this space: the power of two by which L is from 1 to 2 long.
+    pub scale: f64,
 }
 
 impl F32Space {
     /// Makes the space of a scene with this box.
     pub fn from_bounds(bounds: Bounds) -> Self {
         if bounds.is_empty() {
-            return Self {
-                center: DVec3::ZERO,
-                bounds: Bounds::from_points([DVec3::ZERO]),
-                extent: 1.0,
-            };
+            return Self::new(DVec3::ZERO, Bounds::from_points([DVec3::ZERO]), 1.0);
         }
         let extent = bounds.size().max_element();
         // A scene that is a single point still needs room to round in.
-        let extent = extent.max(1e-9 * bounds.max_abs()).max(1e-30);
-        Self { center: bounds.center(), bounds, extent }
+        let extent = extent.max(1e-9 * bounds.max_abs()).max(MIN_EXTENT);
+        Self::new(bounds.center(), bounds, extent)
+    }
+
+    fn new(center: DVec3, bounds: Bounds, extent: f64) -> Self {
+        // The power of two below it, by the bits.
+        let power = f64::from_bits(extent.to_bits() >> 52 << 52);
+        Self { center, bounds, extent, scale: 1.0 / power }
     }
 
     /// Makes the space of a frame, with box `bounds`, of an animation that lies mostly within
@@ -74,10 +99,10 @@ impl F32Space {
     /// So the box lies within (2/5 + 1/16) L < L/2 of it, and what is said at the head of this file
     /// holds.
     fn snapped(bounds: Bounds) -> Self {
-        let Self { center, extent, bounds } = Self::from_bounds(bounds);
+        let Self { center, extent, bounds, .. } = Self::from_bounds(bounds);
         let extent = (1.25 * extent).log2().floor().exp2() * 2.0;
         let step = extent / 8.0;
-        Self { center: (center / step).round() * step, bounds, extent }
+        Self::new((center / step).round() * step, bounds, extent)
     }
 
     /// True if f32 copies in the other space are those in this one.
@@ -85,20 +110,21 @@ impl F32Space {
         (self.center, self.extent) == (other.center, other.extent)
     }
 
-    /// A point, recentred and rounded.
+    /// A point, recentred, scaled and rounded.
     pub fn point(&self, p: DVec3) -> [f32; 3] {
-        (p - self.center).as_vec3().to_array()
+        ((p - self.center) * self.scale).as_vec3().to_array()
     }
 
-    /// A box of user geometry, recentred, widened and rounded outward.
+    /// A box of user geometry, recentred, widened, scaled and rounded outward.
     pub fn padded(&self, bounds: &Bounds) -> ([f32; 3], [f32; 3]) {
         let pad = self.margin();
-        let lower = (bounds.lower - self.center - pad).as_vec3().to_array();
-        let upper = (bounds.upper - self.center + pad).as_vec3().to_array();
+        let lower = ((bounds.lower - self.center - pad) * self.scale).as_vec3().to_array();
+        let upper = ((bounds.upper - self.center + pad) * self.scale).as_vec3().to_array();
         (lower.map(f32::next_down), upper.map(f32::next_up))
     }
 
-    /// The distance by which an f32 ray may be off, with room to spare; see the head of this file.
+    /// The distance in world units by which an f32 ray may be off, with room to spare; see the head of
+    /// this file.
     pub fn margin(&self) -> f64 {
         BOX_PADDING * self.extent
     }
@@ -113,7 +139,7 @@ impl F32Space {
     /// side of a surface that it starts on: the errors above, with the direction at least 1 long and
     /// a triangle seen at a grazing angle allowed for.
     pub fn t_uncertainty(&self) -> f32 {
-        (1024.0 * self.margin()) as f32
+        (1024.0 * self.margin() * self.scale) as f32
     }
 }
 
@@ -133,11 +159,12 @@ mod tests {
             let middle = DVec3::from(middle) * 10f64.powi(offset);
             let half = DVec3::from(size) * f64::from(scale).exp2();
             let bounds = Bounds { lower: middle - half, upper: middle + half };
-            let F32Space { center, extent, .. } = F32Space::snapped(bounds);
+            let F32Space { center, extent, scale, .. } = F32Space::snapped(bounds);
             let far = (bounds.lower - center).abs().max((bounds.upper - center).abs());
             prop_assert!(far.max_element() < 0.5 * extent, "{far} {extent}");
+            prop_assert_eq!(scale * extent, 1.0);
             let longest = bounds.size().max_element().max(1e-9 * bounds.max_abs());
-            prop_assert!(extent <= 2.5 * longest.max(1e-30), "{extent} {longest}");
+            prop_assert!(extent <= 2.5 * longest.max(MIN_EXTENT), "{extent} {longest}");
         }
     }
 

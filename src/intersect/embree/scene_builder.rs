@@ -10,7 +10,6 @@ use crate::intersect::embree::ffi::{
 };
 use crate::intersect::{BuildQuality, Precision};
 use crate::scene::Scene;
-use crate::scene::check::MAX_COORDINATE;
 
 /// The options of an Embree intersector.
 #[derive(Clone, Copy, Default)]
@@ -79,10 +78,4 @@ impl<'a> SceneBuilder<'a> {
         self.scene.instances.iter().for_each(|i| counts[i.mesh.0 as usize] += 1);
         counts
     }
-}
-
-/// True if a mesh with these bounds cannot be traced in object space: f32 vertices reach 3e38, but
-/// Embree passes over boxes beyond 1.8e18 without an error.
-pub fn is_outsized(mesh_bounds: &Bounds) -> bool {
-    mesh_bounds.max_abs() > MAX_COORDINATE
 }

@@ -115,3 +115,81 @@ fn trees_of_low_quality_equal_the_bvh() {
     compare(PacketWidth::One, Precision::Fast, BuildQuality::Low);
     compare(PacketWidth::One, Precision::Certified, BuildQuality::Low);
 }
+
+/// The hits of rays on `scene`, and the number of times that primitives were tested without a tree.
+fn closest_and_count(intersector: &dyn Intersector, rays: &[Ray]) -> (Vec<Option<Hit>>, u32) {
+    packet::BRUTE_FORCED.set(0);
+    let mut hits = vec![None; rays.len()];
+    intersector.closest(rays, Coherence::Coherent, &mut hits);
+    let mut occluded = vec![false; rays.len()];
+    intersector.occluded(rays, Coherence::Coherent, &mut occluded);
+    assert_eq!(occluded, hits.iter().map(Option::is_some).collect::<Vec<_>>());
+    (hits, packet::BRUTE_FORCED.get())
+}
+
+/// Rays toward points within 2 of the origin, from `distance` away, some of them with an end.
+fn rays_from_afar(distance: f64) -> Vec<Ray> {
+    let mut state = 3;
+    (0..2003)
+        .map(|i| {
+            let mut point =
+                || DVec3::new(random(&mut state), random(&mut state), random(&mut state));
+            let (from, target) = (point().normalize() * distance, point() * 2.0);
+            let tmax = if i % 3 == 0 { 2.0 } else { f64::INFINITY };
+            Ray { tmax, ..Ray::new(from, target - from) }
+        })
+        .collect()
+}
+
+#[test]
+fn rays_from_any_distance_are_traced_and_equal_the_bvh() {
+    let scene = scene(&mut 7);
+    for distance in [1e9, 1e12, 1e15] {
+        let rays = rays_from_afar(distance);
+        let embree = Embree::build(&scene, Precision::Certified, 1).unwrap();
+        let (hits, brute_forced) = closest_and_count(&embree, &rays);
+        assert_eq!(hits, closest_and_count(&Bvh::build(&scene, Precision::Certified), &rays).0);
+        assert!(hits.iter().flatten().count() > 300, "too few hits from {distance:e}");
+        assert_eq!(brute_forced, 0, "from {distance:e}");
+    }
+}
+
+#[test]
+fn fast_traces_rays_from_any_distance() {
+    let scene = scene(&mut 7);
+    for distance in [1e9, 1e12, 1e15] {
+        let rays = rays_from_afar(distance);
+        let certified = Bvh::build(&scene, Precision::Certified);
+        let expected = closest_and_count(&certified, &rays).0.into_iter().flatten().count();
+        let embree = Embree::build(&scene, Precision::Fast, 1).unwrap();
+        packet::BRUTE_FORCED.set(0);
+        let mut hits = vec![None; rays.len()];
+        embree.closest(&rays, Coherence::Coherent, &mut hits);
+        let found = hits.into_iter().flatten().count();
+        // From 1e15 away the f64 of `fast` has lost the spheres.
+        let lost = if distance < 1e15 { 10 } else { expected };
+        assert!(found.abs_diff(expected) <= lost, "{found} {expected} from {distance:e}");
+        assert_eq!(packet::BRUTE_FORCED.get(), 0, "from {distance:e}");
+    }
+}
+
+#[test]
+fn a_tiny_mesh_far_away_is_traced_in_its_own_space() {
+    let mut state = 7;
+    let mut scene = scene(&mut state);
+    let tiny = DAffine3::from_scale(DVec3::splat(1e-7));
+    scene.instances.truncate(2);
+    scene.instances[1].transform = tiny;
+    let rays: Vec<Ray> = rays_from_afar(20.0)
+        .into_iter()
+        .map(|ray| {
+            let target = ray.position(1.0);
+            Ray::new(ray.origin, tiny.transform_point3(target) - ray.origin)
+        })
+        .collect();
+    let embree = Embree::build(&scene, Precision::Certified, 1).unwrap();
+    let (hits, brute_forced) = closest_and_count(&embree, &rays);
+    assert_eq!(hits, closest_and_count(&Bvh::build(&scene, Precision::Certified), &rays).0);
+    assert!(hits.iter().flatten().any(|hit| hit.id.instance == 1 && hit.u > 0.0));
+    assert_eq!(brute_forced, 0);
+}

@@ -16,7 +16,7 @@ use crate::intersect::embree::certified::{self, CertifiedSphere};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::fast::{self, FastSpheres, SphereTable};
 use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, check_abi, update_geometry};
-use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder, is_outsized};
+use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder};
 use crate::intersect::frame_diff::FrameDiff;
 use crate::scene::{Mesh, Scene};
 
@@ -103,22 +103,8 @@ impl Tlas {
         }
     }
 
-    /// True if it can be updated to a frame in which only `diff` moved, and whose f32 space is `space`.
-    fn can_update(
-        &self,
-        scene: &Scene,
-        space: &F32Space,
-        mesh_bounds: &[Bounds],
-        diff: &FrameDiff,
-    ) -> bool {
-        // The triangles of an outsized mesh are in world space.
-        let is_fixed =
-            |&i: &u32| is_outsized(&mesh_bounds[scene.instances[i as usize].mesh.0 as usize]);
-        self.space.has_same_coordinates(space) && !diff.instances.iter().any(is_fixed)
-    }
-
-    /// Moves what `diff` names to where another frame has it, as [`Tlas::can_update`] allows. If
-    /// anything moved, the scene is committed again, which builds no mesh.
+    /// Moves what `diff` names to where another frame has it, whose f32 space has the same coordinates.
+    /// If anything moved, the scene is committed again, which builds no mesh.
     ///
     /// # Errors
     /// When Embree runs out of memory; then it is of no further use.
@@ -214,7 +200,7 @@ impl FrameCache {
         let mut last = self.tlas.take();
         // An intersector that still traces the last frame holds it, too: then it must not change.
         if let (Some(tlas), Some(diff)) = (last.as_mut().and_then(Arc::get_mut), diff)
-            && tlas.can_update(scene, &space, mesh_bounds, diff)
+            && tlas.space.has_same_coordinates(&space)
         {
             tlas.update(scene, space, mesh_bounds, diff)?;
         } else {

@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use super::extents::{box_extent, extents};
 use super::surroundings;
+use crate::error::{Error, Result};
 use crate::geometry::{Bounds, triangle};
+use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Camera, Projection, Scene};
 
 /// Half the vertical field of view of the automatic camera, in radians: 35° in all, about that of a
@@ -32,18 +34,30 @@ const SAMPLE: usize = 1024;
 /// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
 /// model fits, in the middle of the image. What encloses the model, as a sky does, is not framed if the
 /// camera is within it.
-pub fn add_camera(scene: &mut Scene) {
+///
+/// # Errors
+/// When the scene is so large that such a camera would stand beyond the coordinates that are supported.
+pub fn add_camera(scene: &mut Scene) -> Result<()> {
     if !scene.cameras.is_empty() {
-        return;
+        return Ok(());
     }
     let within = surroundings::find(scene).and_then(|surroundings| {
         let camera = framing_camera(&surroundings.without(scene))?;
         surroundings.have_within(scene, camera.position).then_some(camera)
     });
-    scene.cameras.extend(within.or_else(|| framing_camera(scene)));
+    let camera = within.or_else(|| framing_camera(scene));
+    if camera.as_ref().is_some_and(|c| c.position.abs().max_element() > MAX_COORDINATE) {
+        let extent = scene.bounds_over_time().max_abs();
+        return Err(Error::input(format!(
+            "the scene reaches out to {extent:e}: a camera that sees all of it would stand beyond the \
+             {MAX_COORDINATE:e} supported; scale the scene down, or give it a camera of its own"
+        )));
+    }
+    scene.cameras.extend(camera);
+    Ok(())
 }
 
-/// Returns the camera that frames a scene; none if that is not finite.
+/// Returns the camera that frames a scene; none if that is not finite or too large for any camera.
 fn framing_camera(scene: &Scene) -> Option<Camera> {
     // The box to be framed, which must have a size.
     let mut bounds = scene.bounds_over_time();
@@ -60,7 +74,7 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
     let direction = view_direction(scene, bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
     let mut camera = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens).ok()?;
-    if !bounds.max_abs().is_finite() {
+    if !(bounds.max_abs() <= MAX_COORDINATE) {
         return None;
     }
     // The position, as near as all of the model is within the edges of the image.
@@ -197,7 +211,7 @@ mod tests {
 
     /// Returns the greatest distance, to the side and up, of a model's corners from the middle.
     fn filled(scene: &mut Scene) -> [f64; 2] {
-        add_camera(scene);
+        add_camera(scene).unwrap();
         let camera = &scene.cameras[0];
         let placed = |p| scene.instances[0].to_world(p);
         let points = scene.meshes[0].positions.iter().map(placed);
@@ -229,7 +243,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.film.size = [400, 300];
         scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let camera = &scene.cameras[0];
         let to = scene.spheres[0].center - camera.position;
         let half = (2.0 / to.length()).asin();
@@ -253,7 +267,7 @@ mod tests {
         let (center, radius) = (DVec3::ZERO, None);
         animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let to = -scene.cameras[0].position;
         let half = (1.0 / to.length()).asin();
         assert!((half.tan() - HALF_FOV.tan() * FILL_RATIO).abs() < 1e-9, "{half}");
@@ -264,7 +278,7 @@ mod tests {
         for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
             let corner = |p: &[f64; 3]| DVec3::from(*p) * (1.0 - flat);
             let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
-            add_camera(&mut scene);
+            add_camera(&mut scene).unwrap();
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
         }
     }
@@ -283,7 +297,7 @@ mod tests {
     /// Returns the distance of the nearest corner from the plane of the eye, as a share of the model's size,
     /// and the share of its area that is seen.
     fn view_of(scene: &mut Scene) -> [f64; 2] {
-        add_camera(scene);
+        add_camera(scene).unwrap();
         let camera = &scene.cameras[0];
         let points = scene.meshes[0].positions.iter().map(|p| scene.instances[0].to_world(p));
         let depths = points.map(|p| (p - camera.position).dot(camera.forward));
@@ -349,7 +363,7 @@ mod tests {
             let mesh = scene.add_mesh(mesh);
             scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
         }
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         scene.cameras[0].position.length()
     }
 
@@ -391,16 +405,16 @@ mod tests {
     fn a_scene_that_is_not_finite_gets_no_camera() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::INFINITY, 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         assert_eq!(scene.cameras, []);
     }
 
     #[test]
     fn a_files_own_camera_is_kept() {
         let mut scene = mesh(&BOX);
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         let camera = scene.cameras.clone();
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         assert_eq!(camera, scene.cameras);
     }
 }

@@ -123,7 +123,7 @@ mod tests {
     fn ball() -> Scene {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         scene
     }
 

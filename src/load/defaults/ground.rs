@@ -54,7 +54,7 @@ mod tests {
     fn the_ground_lies_under_the_lowest_point_and_looks_like_the_background() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene);
+        add_camera(&mut scene).unwrap();
         add_lights(&mut scene);
         add_ground(&mut scene);
         let plane = &scene.planes[0];

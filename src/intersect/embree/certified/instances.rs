@@ -8,6 +8,7 @@
 use std::sync::Arc;
 
 use embree4_sys::RTCSceneFlags;
+use glam::DVec3;
 
 use crate::error::Result;
 use crate::geometry::{Bounds, PrimitiveId};
@@ -17,7 +18,7 @@ use crate::intersect::embree::ffi::{
     CallbackPacket, CommittedScene, LaneMask, PrimitiveTable, RayHitRecord, UserPrimitive,
     UserPrimitives, new_geometry,
 };
-use crate::intersect::embree::packet::{PacketRays, QueryContext};
+use crate::intersect::embree::packet::{Approach, PacketRays, QueryContext};
 use crate::intersect::embree::scene_builder::SceneBuilder;
 use crate::intersect::object_space::ObjectSpace;
 use crate::scene::Instance;
@@ -119,13 +120,33 @@ impl InstanceEntry {
         // Transform the rays into object space, in f64.
         let mut rays = PacketRays::<W>::new();
         rays.tmax = limits;
-        let mut imprecise = [false; W];
+        let (mut imprecise, mut any_imprecise) = ([false; W], false);
         for i in 0..W {
             let (o, d) = context.rays.origin_and_direction(i);
             rays.set_lane(i, self.object_space.object_ray(o, d));
-            // Negated for what is not a number.
-            let precise = self.object_space.error(o) <= self.blas.space.max_transform_error();
-            imprecise[i] = !precise;
+            imprecise[i] = !self.is_precise(o) & (active[i] != 0);
+            any_imprecise |= imprecise[i];
+        }
+        // Those that start too far away for that are transformed from where they come near.
+        let (mut starts, mut passes) = ([0.0; W], [false; W]);
+        if any_imprecise {
+            for i in 0..W {
+                if !imprecise[i] {
+                    continue;
+                }
+                let (o, d) = context.rays.origin_and_direction(i);
+                let near = F32Space::from_bounds(self.bounds);
+                match Approach::new(o, d, &near) {
+                    Approach::Near { t, point } if self.is_precise(near.center + point) => {
+                        starts[i] = Approach::least_t(t);
+                        rays.set_lane(i, self.object_space.object_ray(near.center + point, d));
+                        rays.tmax[i] = limits[i] - starts[i];
+                        imprecise[i] = false;
+                    }
+                    Approach::Passes => passes[i] = true,
+                    Approach::Near { .. } | Approach::Lost => {}
+                }
+            }
         }
         // Set up the f32 rays there.
         let mut record = RayHitRecord::<W>::new();
@@ -134,11 +155,13 @@ impl InstanceEntry {
             Traced { world_tfar: *tfar, active: LaneMask([0; W]), brute_force: [false; W] };
         let mut any = false;
         for i in 0..W {
+            let may_hit = (active[i] != 0) & !passes[i];
             let brute_force = imprecise[i] | lanes.brute_force[i];
-            let is_traced = (active[i] != 0) & lanes.traced[i] & !brute_force;
+            let is_traced = may_hit & lanes.traced[i] & !brute_force;
             traced.active.0[i] = if is_traced { -1 } else { 0 };
-            traced.brute_force[i] = (active[i] != 0) & brute_force;
+            traced.brute_force[i] = may_hit & brute_force;
             any |= is_traced;
+            rays.interval.start[i] += starts[i];
         }
         for i in 0..W {
             if traced.active.0[i] != 0 {
@@ -153,6 +176,12 @@ impl InstanceEntry {
             packet.parts().0.rays.interval = interval;
         }
         traced
+    }
+
+    /// True if f64 transforms a ray from `origin` well enough into object space.
+    #[inline(always)]
+    fn is_precise(&self, origin: DVec3) -> bool {
+        self.object_space.error(origin) <= self.blas.space.max_transform_error()
     }
 
     /// True if the triangles of the instance block light.

@@ -7,7 +7,7 @@ use crate::intersect::embree::certified::instances::{Blas, InstanceTable};
 use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{CommittedScene, PrimitiveTable, update_geometry};
-use crate::intersect::embree::scene_builder::{SceneBuilder, is_outsized};
+use crate::intersect::embree::scene_builder::SceneBuilder;
 use crate::intersect::object_space::world_bounds;
 use crate::scene::{Mesh, Scene};
 
@@ -27,7 +27,6 @@ const SMALL: f64 = 1e-4;
 impl Meshes {
     /// Attaches every instance: the mesh of a single instance in world space, unless it is small; and
     /// the others in object space. Where the builder says that all are instanced, all are in object space.
-    /// Outsized meshes are always in world space.
     ///
     /// # Errors
     /// When Embree runs out of memory.
@@ -50,8 +49,7 @@ impl Meshes {
             let in_world_space = !builder.all_instanced
                 && instance_counts[index] == 1
                 && !is_small(mesh, bounds, &space);
-            has_blas[index] =
-                !(mesh.triangles.is_empty() || in_world_space || is_outsized(&mesh_bounds[index]));
+            has_blas[index] = !(mesh.triangles.is_empty() || in_world_space);
         }
         // Build those, and attach the meshes that have none.
         let build = |mesh| Blas::new(builder, mesh);
@@ -82,7 +80,7 @@ impl Meshes {
         self.instances.as_ref().map_or(0, |(_, instances)| instances.len() as u64)
     }
 
-    /// Moves the instances with the indices `moved`, of which none is outsized.
+    /// Moves the instances with the indices `moved`.
     pub fn update(
         &mut self,
         top: &mut CommittedScene,

@@ -197,6 +197,8 @@ impl<const W: usize> QueryContext<'_, W> {
     }
 
     fn instance_triangles(&self, instance: u32) -> impl Iterator<Item = PrimitiveId> + use<W> {
+        #[cfg(test)]
+        crate::intersect::embree::packet::BRUTE_FORCED.with(|count| count.set(count.get() + 1));
         let scene = self.scene;
         let mesh = scene.instances[instance as usize].mesh.0;
         let count = scene.meshes[mesh as usize].triangles.len() as u32;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use rayon::prelude::*;
 
 use crate::error::Result;
@@ -10,13 +10,15 @@ use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{CommittedScene, OwnedGeometry, new_mesh_geometry};
-use crate::intersect::embree::scene_builder::{SCENE_FLAGS, SceneBuilder, is_outsized};
+use crate::intersect::embree::scene_builder::{SCENE_FLAGS, SceneBuilder};
 use crate::scene::{Instance, Mesh, Scene};
 
-/// The BLAS of a mesh, in object space, recentred: a model may lie far from its own origin.
+/// The BLAS of a mesh, in object space, recentred and scaled: a model may lie far from its own origin,
+/// and be of any size.
 pub struct Blas {
     scene: CommittedScene,
-    center: DVec3,
+    /// The space of its f32 vertices.
+    space: F32Space,
     /// The mesh whose indices Embree reads; dropped after the scene.
     _mesh: Arc<Mesh>,
 }
@@ -24,12 +26,11 @@ pub struct Blas {
 impl Blas {
     fn new(builder: &SceneBuilder<'_>, mesh: usize) -> Result<Self> {
         let SceneBuilder { device, quality, .. } = builder;
-        let center = builder.mesh_bounds[mesh].center();
+        let space = F32Space::from_bounds(builder.mesh_bounds[mesh]);
         let mesh = &builder.scene.meshes[mesh];
-        let recentred = |p: DVec3| (p - center).as_vec3().to_array();
-        let geometry = new_mesh_geometry(device, mesh, *quality, recentred)?;
+        let geometry = new_mesh_geometry(device, mesh, *quality, |p| space.point(p))?;
         let scene = CommittedScene::new(device, *quality, SCENE_FLAGS, &geometry)?;
-        Ok(Self { scene, center, _mesh: mesh.clone() })
+        Ok(Self { scene, space, _mesh: mesh.clone() })
     }
 }
 
@@ -43,8 +44,8 @@ pub struct Meshes {
 
 impl Meshes {
     /// Attaches every instance: the mesh of a single instance as triangles in world space, and the
-    /// others as instances. Where the builder says that all are instanced, all are. Outsized meshes are
-    /// always in world space. Embree goes on reading the meshes.
+    /// others as instances. Where the builder says that all are instanced, all are. Embree goes on reading
+    /// the meshes.
     ///
     /// # Errors
     /// When Embree runs out of memory.
@@ -56,9 +57,7 @@ impl Meshes {
         // Build the BLAS of each mesh that has one.
         let counts = builder.instance_counts();
         let is_visible = |mesh: usize| counts[mesh] > 0 && !scene.meshes[mesh].triangles.is_empty();
-        let in_world_space = |mesh: usize| {
-            (counts[mesh] == 1 && !builder.all_instanced) || is_outsized(&builder.mesh_bounds[mesh])
-        };
+        let in_world_space = |mesh: usize| counts[mesh] == 1 && !builder.all_instanced;
         let has_blas: Vec<bool> =
             (0..counts.len()).map(|mesh| is_visible(mesh) && !in_world_space(mesh)).collect();
         let build = |mesh| Blas::new(builder, mesh);
@@ -71,7 +70,7 @@ impl Meshes {
         let geometry = |&(_, instance): &(u32, &Instance)| {
             let mesh = instance.mesh.0 as usize;
             if let Some(blas) = &blas[mesh] {
-                let columns = object_to_f32_space(instance, blas.center, &space);
+                let columns = object_to_f32_space(instance, &blas.space, &space);
                 OwnedGeometry::instance(device, &blas.scene, &columns)
             } else {
                 let to_f32_space = |p| space.point(instance.to_world(p));
@@ -90,7 +89,7 @@ impl Meshes {
         Ok(Self { instance_of, instance_count })
     }
 
-    /// Moves the instances with the indices `moved`, of which none is outsized.
+    /// Moves the instances with the indices `moved`.
     pub fn update(
         &self,
         top: &mut CommittedScene,
@@ -103,17 +102,23 @@ impl Meshes {
             // A mesh without triangles has no geometry.
             let Ok(id) = self.instance_of.binary_search(index) else { continue };
             let instance = &scene.instances[*index as usize];
-            let center = mesh_bounds[instance.mesh.0 as usize].center();
-            top.set_instance_transform(id as u32, &object_to_f32_space(instance, center, space));
+            let blas_space = F32Space::from_bounds(mesh_bounds[instance.mesh.0 as usize]);
+            let columns = object_to_f32_space(instance, &blas_space, space);
+            top.set_instance_transform(id as u32, &columns);
         }
     }
 }
 
-/// The columns of the matrix from the mesh's object space, recentred on `center`, to f32 space.
-fn object_to_f32_space(instance: &Instance, center: DVec3, space: &F32Space) -> [[f32; 3]; 4] {
+/// The columns of the matrix from the f32 space of a mesh's BLAS to that of the scene.
+fn object_to_f32_space(
+    instance: &Instance,
+    blas_space: &F32Space,
+    space: &F32Space,
+) -> [[f32; 3]; 4] {
     let m = DAffine3::from_translation(-space.center)
         * instance.transform
-        * DAffine3::from_translation(center);
-    [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis, m.translation]
-        .map(|column| column.as_vec3().to_array())
+        * DAffine3::from_translation(blas_space.center);
+    let [x, y, z] = [m.matrix3.x_axis, m.matrix3.y_axis, m.matrix3.z_axis]
+        .map(|axis| axis * (space.scale / blas_space.scale));
+    [x, y, z, m.translation * space.scale].map(|column| column.as_vec3().to_array())
 }

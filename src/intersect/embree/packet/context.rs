@@ -30,6 +30,12 @@ pub struct QueryScene<'a> {
     pub masked: &'a [bool],
 }
 
+#[cfg(test)]
+thread_local! {
+    /// The number of rays that were tested by brute force, with a scene or with an instance.
+    pub static BRUTE_FORCED: std::cell::Cell<u32> = const { std::cell::Cell::new(0) };
+}
+
 impl QueryScene<'_> {
     /// The tests of one ray against one primitive.
     #[inline(always)]
@@ -39,6 +45,8 @@ impl QueryScene<'_> {
 
     /// The intersector for rays that no f32 ray can stand for.
     pub fn brute_force(&self) -> BruteForce<'_> {
+        #[cfg(test)]
+        BRUTE_FORCED.with(|count| count.set(count.get() + 1));
         BruteForce::new(self.scene, self.precision)
     }
 
@@ -222,6 +230,10 @@ impl<'a, const W: usize> QueryContext<'a, W> {
         self.rays.load(&packet);
         let lanes = self.rays.set_up_f32_rays(self.query.space, record);
         self.f32_tmax = record.tfar;
+        if lanes.any_open_end {
+            // So that no hit seems to lie certainly before the end.
+            self.f32_tmax = [0.0; W];
+        }
         self.hits.reset(&self.rays.tmax);
         if self.query.precision == Precision::Certified
             && let Some(viewers) = packet.viewers()

@@ -1,10 +1,14 @@
 //! The packet loop: rays of a batch, traced through Embree as many at a time as a packet is wide.
 
+mod approach;
 mod context;
 mod planes;
 mod query;
 mod rays;
 
+pub use approach::Approach;
+#[cfg(test)]
+pub use context::BRUTE_FORCED;
 pub use context::{QueryContext, QueryScene};
 pub use query::{ClosestQuery, OcclusionQuery};
 pub use rays::PacketRays;

@@ -4,11 +4,9 @@ use glam::DVec3;
 
 use crate::geometry::sphere;
 use crate::intersect::brute_force::is_extreme;
-use crate::intersect::embree::f32_space::{
-    BOX_PADDING, F32Space, MAX_MOVED_DISTANCE, MAX_ORIGIN_DISTANCE,
-};
+use crate::intersect::embree::f32_space::{F32Space, MAX_MOVED_DISTANCE, MAX_ORIGIN_DISTANCE};
 use crate::intersect::embree::ffi::RayHitRecord;
-use crate::intersect::embree::packet::Packet;
+use crate::intersect::embree::packet::{Approach, Packet};
 
 /// Components of an f32 direction below this share of the largest are set to 0: over any
 /// distance in the scene they move the ray by far less than the rounding above, and their
@@ -33,7 +31,7 @@ pub struct PacketRays<const W: usize> {
 pub struct RayInterval<const W: usize> {
     /// The t at which the f32 ray starts.
     pub start: [f64; W],
-    /// The length of a unit of t along the f32 ray: a power of two.
+    /// The number of units of the f32 ray's t in a unit of t: a power of two.
     pub scale: [f64; W],
 }
 
@@ -57,11 +55,13 @@ impl<const W: usize> RayInterval<W> {
 pub struct TracedLanes<const W: usize> {
     /// The rays that enter the scene's box.
     pub traced: [bool; W],
-    /// The rays that no f32 ray can stand for: they start too far away, or their direction is too
-    /// short or too long for f64. They are not traced.
+    /// The rays that no f32 ray can stand for: their direction is too short or too long for f64, or
+    /// they start 2¹⁰⁰ L away. They are not traced.
     pub brute_force: [bool; W],
     /// True if there is any of the latter.
     pub any_brute_force: bool,
+    /// True if f64 does not tell where any of the f32 rays ends.
+    pub any_open_end: bool,
 }
 
 impl<const W: usize> PacketRays<W> {
@@ -131,8 +131,12 @@ impl<const W: usize> PacketRays<W> {
         record: &mut RayHitRecord<W>,
     ) -> TracedLanes<W> {
         let RayHitRecord { org, dir, tfar, .. } = record;
-        let mut lanes =
-            TracedLanes { traced: [true; W], brute_force: [false; W], any_brute_force: false };
+        let mut lanes = TracedLanes {
+            traced: [true; W],
+            brute_force: [false; W],
+            any_brute_force: false,
+            any_open_end: false,
+        };
         for i in 0..W {
             lanes.traced[i] = self.tmax[i] > 0.0;
         }
@@ -146,16 +150,17 @@ impl<const W: usize> PacketRays<W> {
         }
         // If so, let all rays start where they enter the box.
         self.interval.start = [0.0; W];
+        let mut very_far = [false; W];
         if any_far {
             for i in 0..W {
                 let (o, d) = self.origin_and_direction(i);
                 let distance = (o - space.center).abs().max_element();
                 let (start, enters) = self.enter_bounds(i, space);
-                // A ray that passes the box certainly does so, however far away it starts.
-                let lost = (distance > MAX_MOVED_DISTANCE * space.extent) & enters;
-                lanes.brute_force[i] = (lost | is_extreme(o, d)) & lanes.traced[i];
+                very_far[i] = distance > MAX_MOVED_DISTANCE * space.extent;
+                lanes.brute_force[i] = is_extreme(o, d) & lanes.traced[i];
                 lanes.any_brute_force |= lanes.brute_force[i];
                 self.interval.start[i] = start;
+                // A ray that passes the box certainly does so, however far away it starts.
                 lanes.traced[i] &= enters & !lanes.brute_force[i];
             }
         }
@@ -167,40 +172,73 @@ impl<const W: usize> PacketRays<W> {
             let exponent = (largest.to_bits() >> 52).clamp(1, 2045);
             let scale = f64::from_bits(exponent << 52);
             let inverse_scale = f64::from_bits((2046 - exponent) << 52);
-            self.interval.scale[i] = scale;
-            let start = o - space.center;
+            self.interval.scale[i] = scale * space.scale;
+            let start = (o - space.center) * space.scale;
             for axis in 0..3 {
                 let component = d[axis] * inverse_scale;
                 dir[axis][i] = if component.abs() < NEGLIGIBLE { 0.0 } else { component as f32 };
                 org[axis][i] = start[axis] as f32;
             }
-            tfar[i] = round_up(self.tmax[i] * scale);
+            tfar[i] = round_up(self.tmax[i] * self.interval.scale[i]);
         }
         // Move the origins to the box.
         if any_far {
             for i in 0..W {
                 let (o, d) = self.origin_and_direction(i);
-                let start = o - space.center + d * self.interval.start[i];
+                let start = (o - space.center + d * self.interval.start[i]) * space.scale;
                 for axis in 0..3 {
                     org[axis][i] = start[axis] as f32;
                 }
                 let length = self.tmax[i] - self.interval.start[i];
                 tfar[i] = round_up(length * self.interval.scale[i]);
             }
+            for i in 0..W {
+                if very_far[i] & lanes.traced[i] {
+                    self.approach(i, space, record, &mut lanes);
+                }
+            }
         }
         lanes
+    }
+
+    /// Sets up the f32 ray in lane `i`, which starts too far away for f64.
+    #[cold]
+    #[inline(never)]
+    fn approach(
+        &mut self,
+        i: usize,
+        space: &F32Space,
+        record: &mut RayHitRecord<W>,
+        lanes: &mut TracedLanes<W>,
+    ) {
+        let (o, d) = self.origin_and_direction(i);
+        match Approach::new(o, d, space) {
+            Approach::Near { t, point } => {
+                self.interval.start[i] = Approach::least_t(t);
+                for axis in 0..3 {
+                    record.org[axis][i] = (point[axis] * space.scale) as f32;
+                }
+                let length = self.tmax[i] - self.interval.start[i];
+                record.tfar[i] = round_up(length * self.interval.scale[i]);
+                lanes.traced[i] = length > 0.0;
+                lanes.any_open_end = true;
+            }
+            Approach::Passes => lanes.traced[i] = false,
+            Approach::Lost => {
+                lanes.traced[i] = false;
+                lanes.brute_force[i] = true;
+                lanes.any_brute_force = true;
+            }
+        }
     }
 
     /// The t at which ray `i` enters the scene's box, and whether it does before it ends.
     fn enter_bounds(&self, i: usize, space: &F32Space) -> (f64, bool) {
         let (o, d) = self.origin_and_direction(i);
         let rounding = 64.0 * f64::EPSILON * (o - space.center).abs().max_element();
-        let bounds = space.bounds.padded(BOX_PADDING * space.extent + rounding);
-        let (a, b) = ((bounds.lower - o) / d, (bounds.upper - o) / d);
-        // `min` and `max` pass over the NaN of 0/0.
-        let (near, far) = (a.min(b), a.max(b));
-        let start = near.max_element().max(0.0);
-        let end = far.min_element().min(self.tmax[i]);
+        let bounds = space.bounds.padded(space.margin() + rounding);
+        let (start, end) = bounds.crossing(o, d);
+        let (start, end) = (start.max(0.0), end.min(self.tmax[i]));
         if start <= end { (start, true) } else { (0.0, false) }
     }
 }
@@ -221,6 +259,7 @@ fn round_up(x: f64) -> f32 {
 mod tests {
     use super::*;
     use crate::geometry::{Bounds, Ray, RayBatch};
+    use crate::intersect::embree::f32_space::BOX_PADDING;
     use proptest::prelude::*;
 
     fn single(space: &F32Space, ray: Ray) -> (PacketRays<1>, [f32; 3], [f32; 3], f32, bool) {
@@ -297,7 +336,8 @@ mod tests {
             let t = (offset + to - ray.origin).dot(direction) / direction.length_squared();
             let along = (t - exact.interval.start[0]) * exact.interval.scale[0];
             let p = DVec3::from(org.map(f64::from)) + DVec3::from(dir.map(f64::from)) * along;
-            let error = (p - (ray.position(t) - space.center)).abs().max_element();
+            let exact = (ray.position(t) - space.center) * space.scale;
+            let error = (p - exact).abs().max_element();
             prop_assert!(error <= 0.5 * BOX_PADDING, "{error:e}");
         }
     }
