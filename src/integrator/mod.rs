@@ -159,15 +159,14 @@ impl<'a> Integrator<'a> {
 
     /// True if some pixels may get more samples than others.
     pub fn is_adaptive(&self) -> bool {
-        self.contrast_threshold.is_some() && self.samples.steps.len() > 1
+        self.samples.first + 1 < self.samples.steps.len()
     }
 
     /// Returns true for each pixel that needs more samples after the first pass; `pixels` are the
-    /// sums of the first samples of all pixels of the picture, and `records` their records.
+    /// means of the first samples of all pixels of the picture, and `records` their records.
     pub fn pixels_to_refine(&self, pixels: &[Pixel], records: &[PixelRecord]) -> Vec<bool> {
         let width = self.scene.film.size[0] as usize;
         let height = pixels.len() / width;
-        let weight = 1.0 / self.samples.steps[0] as f32;
         let threshold = self.contrast_threshold.unwrap_or(0.0);
         let rows = self.tiling.rows;
         let mut refined = vec![false; pixels.len()];
@@ -176,7 +175,7 @@ impl<'a> Integrator<'a> {
             let [mut row, mut below] = [ContrastRow::default(), ContrastRow::default()];
             let set = |row: &mut ContrastRow, y: usize| {
                 let range = y * width..(y + 1) * width;
-                row.set(&pixels[range.clone()], &records[range], weight);
+                row.set(&pixels[range.clone()], &records[range]);
             };
             // Each row is compared with the one below, from the row above the strip on.
             let first = strip * rows;

@@ -18,7 +18,8 @@ pub fn sample_positions(film: &FilmSettings) -> Vec<[f64; 2]> {
 /// Returns the numbers of samples that a pixel can have, ascending: the first is that of every pixel;
 /// at each of the others it is decided which pixels need more.
 pub fn sample_steps(film: &FilmSettings) -> Vec<usize> {
-    SamplePattern::new(film).steps
+    let SamplePattern { mut steps, first, .. } = SamplePattern::new(film);
+    steps.split_off(first)
 }
 
 /// Converts offsets from the sample position of a film into offsets from the pixel's corner.
@@ -33,30 +34,32 @@ pub(super) struct SamplePattern {
     /// The offsets of the samples from the pixel's corner; while the pattern is built, from the
     /// film's sample position.
     pub offsets: Vec<[f64; 2]>,
-    /// The numbers of samples after which one may stop, ascending.
+    /// The numbers of samples after which one may stop, ascending; a film stores means of that many.
     pub steps: Vec<usize>,
+    /// The index of the step up to which every pixel's samples are taken.
+    pub first: usize,
 }
 
 impl SamplePattern {
-    /// Builds the pattern of a film. The first step is the samples that every pixel has.
+    /// Builds the pattern of a film.
     pub fn new(film: &FilmSettings) -> Self {
         let pattern = match film.adaptive {
-            None => Self { steps: vec![film.spp as usize], ..regular(film.spp) },
+            None => regular(film.spp),
             Some(adaptive) => progressive(film.spp, adaptive.max),
         };
         Self { offsets: from_corner(film, pattern.offsets), ..pattern }
     }
 }
 
-/// Returns regular samples: their mean is 0, and they stay within the pixel's square. In a grid the
-/// coarser grids within it come first.
+/// Returns regular samples, all of which every pixel has: their mean is 0, and they stay within the
+/// pixel's square. In a grid the coarser grids within it come first.
 fn regular(spp: u32) -> SamplePattern {
     let side = spp.isqrt();
     if side * side == spp {
         let (cells, steps) = grid(side);
         let center = |k: u32| (f64::from(k) + 0.5) / f64::from(side) - 0.5;
         let offsets = cells.into_iter().map(|cell| cell.map(center)).collect();
-        return SamplePattern { offsets, steps };
+        return SamplePattern { first: steps.len() - 1, offsets, steps };
     }
     let n = f64::from(spp);
     let golden_ratio = (5f64.sqrt() - 1.0) / 2.0;
@@ -66,7 +69,7 @@ fn regular(spp: u32) -> SamplePattern {
     let mean = (0..spp).map(lattice).sum::<f64>() / n;
     let half_height = (0..spp).map(|i| (lattice(i) - mean).abs()).fold(0.5, f64::max);
     let offset = |i| [(f64::from(i) + 0.5) / n - 0.5, (lattice(i) - mean) * (0.5 / half_height)];
-    SamplePattern { offsets: (0..spp).map(offset).collect(), steps: vec![spp as usize] }
+    SamplePattern { offsets: (0..spp).map(offset).collect(), steps: vec![spp as usize], first: 0 }
 }
 
 /// Returns the cells of a square grid, in an order that begins with the coarser grids within it, and
@@ -106,8 +109,8 @@ fn grid(side: u32) -> (Vec<[u32; 2]>, Vec<usize>) {
 fn progressive(min: u32, max: u32) -> SamplePattern {
     let (first, full) = (regular(min).offsets, regular(max));
     if full.offsets.starts_with(&first) {
-        let steps = full.steps.into_iter().filter(|&step| step >= first.len()).collect();
-        return SamplePattern { offsets: full.offsets, steps };
+        let first = full.steps.partition_point(|&step| step < first.len());
+        return SamplePattern { first, ..full };
     }
     let mut rest = full.offsets;
     let mut remove_nearest = |[x, y]: [f64; 2]| {
@@ -130,7 +133,7 @@ fn progressive(min: u32, max: u32) -> SamplePattern {
     }
     offsets.append(&mut rest);
     steps.push(offsets.len());
-    SamplePattern { offsets, steps }
+    SamplePattern { offsets, steps, first: 0 }
 }
 
 #[cfg(test)]
@@ -181,15 +184,16 @@ mod tests {
             assert!(regular(fine).offsets.starts_with(&regular(coarse).offsets), "{coarse} {fine}");
         }
         assert_eq!(regular(81).steps, [1, 5, 9, 45, 81]);
-        assert_eq!(progressive(9, 81).steps, [9, 45, 81]);
+        let SamplePattern { steps, first, .. } = progressive(9, 81);
+        assert_eq!(steps[first..], [9, 45, 81]);
     }
 
     #[test]
     fn adaptive_samples_begin_with_the_regular_ones_and_are_as_many_as_asked_for() {
         for (min, max) in [(1, 1), (1, 2), (1, 16), (2, 9), (3, 17), (4, 64), (4, 5), (5, 100)] {
-            let SamplePattern { offsets, steps } = progressive(min, max);
+            let SamplePattern { offsets, steps, first } = progressive(min, max);
             assert!(offsets.starts_with(&regular(min).offsets), "{min} {max}");
-            assert_eq!((offsets.len(), steps[0]), (max as usize, min as usize));
+            assert_eq!((offsets.len(), steps[first]), (max as usize, min as usize));
             assert_eq!(steps.last(), Some(&offsets.len()));
             assert!(steps.is_sorted_by(|a, b| a < b), "{steps:?}");
             assert!(offsets.as_flattened().iter().all(|x| x.abs() <= 0.5));
@@ -199,7 +203,7 @@ mod tests {
     #[test]
     fn where_a_sample_may_stop_the_mean_is_the_sample_position() {
         for spp in [9, 25, 36, 49, 81, 100, 225] {
-            let SamplePattern { offsets, steps } = regular(spp);
+            let SamplePattern { offsets, steps, .. } = regular(spp);
             for step in steps {
                 for axis in 0..2 {
                     let sum: f64 = offsets[..step].iter().map(|s| s[axis]).sum();

@@ -1,11 +1,12 @@
 //! The loop of the integrator: the way of a tile from its camera rays to its pixels.
 
-use glam::Vec3;
-
 use crate::film::{Pixel, View};
 use crate::geometry::{HitBatch, LANES, RayBatch};
 use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
-use crate::integrator::radiance::{DARK, Radiance16, WaveRadiance, lane, set_lane};
+use crate::integrator::radiance::{
+    DARK, GROUP, Radiance16, RadianceSum16, WaveRadiance, mean, set_sum_lane, sum_lane, sum_of_mean,
+};
+use crate::integrator::sample_pattern::SamplePattern;
 use crate::integrator::shadow_rays::ShadowQueue;
 use crate::integrator::surface_evaluation::WaveSurfaces;
 use crate::integrator::tiling::Tile;
@@ -30,9 +31,11 @@ pub struct Scratch {
     radiance: WaveRadiance,
     shadows: ShadowMemory,
     /// One sample of each pixel of the tile.
-    samples: Vec<Radiance16>,
+    samples: Vec<RadianceSum16>,
+    /// The sums of the samples that are not in `sums` yet.
+    group: Vec<Radiance16>,
     /// The sums of their samples.
-    sums: Vec<Radiance16>,
+    sums: Vec<RadianceSum16>,
     records: PixelRecords,
 }
 
@@ -47,7 +50,7 @@ struct ShadowMemory {
 pub struct RefineStrip<'a> {
     /// The row of the picture where it begins.
     pub first_row: usize,
-    /// The sums of each pixel's first samples; they become means.
+    /// The means of each pixel's first samples; they become those of all.
     pub pixels: &'a mut [Pixel],
     /// The records of the pixels.
     pub records: &'a [PixelRecord],
@@ -65,7 +68,7 @@ struct ActivePixel {
 
 impl Integrator<'_> {
     /// Renders the strip that begins at row `first_row`; `pixels` are whole rows. In an adaptive
-    /// picture they become the sums of every pixel's first samples, and `records`, as many, the
+    /// picture they become the means of every pixel's first samples, and `records`, as many, the
     /// records of these; otherwise `records` is empty.
     pub fn render_strip(
         &self,
@@ -76,7 +79,6 @@ impl Integrator<'_> {
     ) -> Counts {
         let width = self.scene.film.size[0] as usize;
         let rows = pixels.len() / width;
-        let first_samples = self.samples.steps[0];
         let mut counts = Counts::default();
         for column in (0..width).step_by(self.tiling.columns) {
             // The first samples of each pixel of a tile.
@@ -84,13 +86,13 @@ impl Integrator<'_> {
             scratch.sums.clear();
             scratch.sums.resize(scratch.tile.pixels.len(), DARK);
             scratch.records.clear();
-            for position in &self.samples.offsets[..first_samples] {
-                self.trace_sample(*position, scratch, &mut counts);
+            for step in 0..=self.samples.first {
+                self.trace_step(step, scratch, &mut counts);
             }
-            // Their means, or, where more may follow, their sums and records.
+            // Their means, and, where more may follow, their records.
             let Scratch { tile, sums, records: tile_records, .. } = &*scratch;
-            let weight = if self.is_adaptive() { 1.0 } else { 1.0 / first_samples as f32 };
-            radiance::write_pixels(self.arch, tile, sums, weight, pixels, width);
+            let samples = self.samples.steps[self.samples.first];
+            radiance::write_pixels(self.arch, tile, sums, samples, pixels, width);
             if self.is_adaptive() {
                 let mut read = tile_records.records.iter();
                 for run in &tile.runs {
@@ -102,10 +104,31 @@ impl Integrator<'_> {
         counts
     }
 
-    /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to their
-    /// sums.
+    /// Traces the samples of one step of each pixel of a tile, and adds them to the sums of those before.
+    fn trace_step(&self, step: usize, scratch: &mut Scratch, counts: &mut Counts) {
+        let steps = &self.samples.steps;
+        let taken = if step == 0 { 0 } else { steps[step - 1] };
+        // Wherever a step may be the last of a pass, a regular picture, too, goes on from what a film
+        // stores: so the two are equal to the bit.
+        if taken > 0 {
+            radiance::round_to_means(&mut scratch.sums, taken);
+        }
+        // Four at a time, and one by one what is left.
+        let (groups, rest) = self.samples.offsets[taken..steps[step]].as_chunks::<GROUP>();
+        let groups = groups.iter().map(|group| &group[..]).chain(rest.chunks(1));
+        for group in groups {
+            for position in group {
+                self.trace_sample(*position, scratch, counts);
+            }
+            radiance::add_group(self.arch, &mut scratch.group, &mut scratch.sums);
+        }
+    }
+
+    /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to the
+    /// sums of its group.
     fn trace_sample(&self, position: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { tile, waves, surfaces, radiance, samples, sums, records, .. } = scratch;
+        let Scratch { tile, waves, surfaces, radiance, samples, group, sums, records, .. } =
+            scratch;
         // Camera rays, one through each pixel.
         let mut wave = &mut waves.current;
         wave.paths.clear();
@@ -159,7 +182,7 @@ impl Integrator<'_> {
             std::mem::swap(sums, samples);
             return;
         }
-        radiance::add_samples(self.arch, samples, sums, &mut counts.not_finite.sum);
+        radiance::add_samples(self.arch, samples, group, sums, &mut counts.not_finite.sum);
     }
 
     /// Adds the light of each source that the surfaces of the current wave reflect.
@@ -213,19 +236,14 @@ impl Integrator<'_> {
         counts.work.add_extra_tests(self.scene, has_filter, rays);
     }
 
-    /// Takes more samples of the pixels of a strip that need them, and makes all sums means.
+    /// Takes more samples of the pixels of a strip that need them.
     pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
         let RefineStrip { first_row, pixels, records, refined } = strip;
         let width = self.scene.film.size[0] as usize;
         let rows = pixels.len() / width;
-        let steps = &self.samples.steps;
-        let weights: Vec<f32> = steps.iter().map(|&samples| 1.0 / samples as f32).collect();
+        let SamplePattern { steps, first, .. } = &self.samples;
         let mut counts = Counts::default();
-        // Pixels without contrast have all their samples.
-        for (pixel, _) in pixels.iter_mut().zip(refined).filter(|(_, refined)| !**refined) {
-            pixel.iter_mut().for_each(|value| *value *= weights[0]);
-        }
-        // The others are taken in the order in which tiles order their rays.
+        // They are taken in the order in which tiles order their rays.
         let mut active: Vec<ActivePixel> = Vec::new();
         for column in (0..width).step_by(self.tiling.columns) {
             scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
@@ -234,8 +252,8 @@ impl Integrator<'_> {
                 active.extend(run.map(|index| ActivePixel { index, record: records[index] }));
             }
         }
-        for step in 1..steps.len() {
-            counts.refined[step - 1] += active.len() as u64;
+        for step in first + 1..steps.len() {
+            counts.refined[step - first - 1] += active.len() as u64;
             let mut next_active = Vec::new();
             for group in active.chunks(REFINED_TOGETHER) {
                 // A tile of these pixels, with their sums and records so far.
@@ -247,21 +265,18 @@ impl Integrator<'_> {
                 sums.resize(group.len().div_ceil(LANES), DARK);
                 records.clear();
                 for (i, &ActivePixel { index, record }) in group.iter().enumerate() {
-                    let sum = Vec3::from(pixels[index]);
-                    set_lane(&mut sums[i / LANES], i % LANES, sum);
-                    records.push(record, sum * weights[step - 1]);
+                    let sum = pixels[index].map(|mean| sum_of_mean(mean, steps[step - 1]));
+                    set_sum_lane(&mut sums[i / LANES], i % LANES, sum.into());
+                    records.push(record, pixels[index].into());
                 }
                 // The samples of this step.
-                for position in &self.samples.offsets[steps[step - 1]..steps[step]] {
-                    self.trace_sample(*position, scratch, &mut counts);
-                }
+                self.trace_step(step, scratch, &mut counts);
                 // Pixels whose samples disagree go on, if there are more to take.
                 let read = group.iter().zip(&scratch.records.records);
                 for (i, (&ActivePixel { index, .. }, &record)) in read.enumerate() {
                     let goes_on = record.disagrees && step + 1 < steps.len();
-                    let weight = if goes_on { 1.0 } else { weights[step] };
-                    let sum = lane(&scratch.sums[i / LANES], i % LANES);
-                    pixels[index] = (sum * weight).to_array();
+                    let sum = sum_lane(&scratch.sums[i / LANES], i % LANES);
+                    pixels[index] = sum.to_array().map(|sum| mean(sum, steps[step]));
                     if goes_on {
                         next_active.push(ActivePixel { index, record });
                     }

@@ -97,11 +97,20 @@ fn ambient_light_counts_as_sum_too() {
 }
 
 #[test]
-fn samples_that_add_up_to_more_are_left_out_one_by_one() {
+fn samples_that_add_up_to_more_have_their_mean() {
     let mut scene = wall(Material { emission: Vec3::splat(2e38), ..matt(0.0) });
     scene.film.spp = 4;
-    // Only the first of the four fits.
-    assert_counted(&scene, NotFinite { sum: 3, ..NONE });
+    assert_eq!(assert_counted(&scene, NONE), 2e38);
+}
+
+#[test]
+fn samples_beyond_f32_are_left_out_one_by_one() {
+    // Each is what the wall emits, and as much that it mirrors.
+    let glow = Vec3::splat(2e38);
+    let mut scene = wall(Material { emission: glow, reflect: Vec3::ONE, ..matt(0.0) });
+    scene.film.background = glow;
+    scene.film.spp = 4;
+    assert_eq!(assert_counted(&scene, NotFinite { sum: 4, ..NONE }), 0.0);
 }
 
 #[test]

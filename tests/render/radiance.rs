@@ -3,8 +3,8 @@
 use envers::internals::Counts;
 use envers::scene::Filter;
 use envers::{
-    Camera, Checker, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Plane,
-    Projection, RenderOptions, Renderer, Scene, Shadow, Sphere,
+    AdaptiveSampling, Camera, Checker, Falloff, Instance, Light, LightKind, Material, MaterialId,
+    Mesh, Plane, Projection, RenderOptions, Renderer, Scene, Shadow, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -143,6 +143,40 @@ fn two_lights_add_up() {
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
     scene.lights.push(light(LightKind::Directional { direction: DVec3::NEG_Z }));
     assert_near(radiance(&scene), 1.0);
+}
+
+/// Lights that shine head-on onto a wall, with shadows and without: what it reflects is the sum of as
+/// many products.
+#[test]
+fn thousands_of_lights_add_up_to_within_an_ulp() {
+    for casts_shadows in [false, true] {
+        let mut scene = scene(matt(0.7));
+        wall(&mut scene);
+        let mut expected = 0.0;
+        for i in 0..5000 {
+            let intensity = 0.1 + (i % 7) as f32;
+            let sun = light(LightKind::Directional { direction: DVec3::NEG_Z });
+            let shadow = if casts_shadows { Shadow::default() } else { Shadow::None };
+            scene.lights.push(Light { intensity: Vec3::splat(intensity), shadow, ..sun });
+            expected += f64::from(0.7 * intensity);
+        }
+        let [red, ..] = radiance(&scene);
+        assert!(red.to_bits().abs_diff((expected as f32).to_bits()) <= 1, "{red} {expected}");
+    }
+}
+
+#[test]
+fn a_constant_background_is_itself_at_any_number_of_samples() {
+    let mut scene = scene(matt(1.0));
+    scene.film.background = Vec3::new(0.1, 0.3, 0.7);
+    let steps = [1, 2, 3, 5, 7, 9, 36, 49, 81, 225, 1000, 1024, 2025, 10_000, 65_536];
+    let regular = steps.map(|spp| (spp, None));
+    let adaptive = [(1, 9), (1, 81), (3, 17), (4, 36), (9, 2025), (7, 1000), (1, 4096)]
+        .map(|(spp, max)| (spp, Some(AdaptiveSampling { max, threshold: 0.0 })));
+    for (spp, adaptive) in regular.into_iter().chain(adaptive) {
+        (scene.film.spp, scene.film.adaptive) = (spp, adaptive);
+        assert_eq!(radiance(&scene), [0.1, 0.3, 0.7], "{spp} {adaptive:?}");
+    }
 }
 
 #[test]
