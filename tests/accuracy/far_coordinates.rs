@@ -4,8 +4,7 @@
 use std::fmt::Write;
 
 use envers::{
-    Backend, BruteForce, Bvh, Coherence, Hit, Intersector, LoadOptions, Precision, Ray, Renderer,
-    Scene, View,
+    Backend, BruteForce, Bvh, Coherence, Hit, Intersector, Precision, Ray, Renderer, Scene, View,
 };
 use envers_testing::Folder;
 use glam::DVec3;
@@ -33,7 +32,7 @@ fn obj(millimetres: &[[i64; 3]], offset: [i64; 3], triangles: &[[u32; 3]]) -> Sc
     }
     let folder = Folder::new();
     let path = folder.write("model.obj", text);
-    envers::load(&path, &LoadOptions::default()).unwrap().scene
+    envers::load(&path).unwrap().scene
 }
 
 /// A toothed wheel of radius 1 m and thickness 0.2 m, whose teeth stand out by a millimetre.

@@ -16,10 +16,10 @@ fn balls(power: i32, mesh_power: i32) -> Scene {
     let scale = f64::from(power).exp2();
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
-    let mut mesh = |level: u32| -> Mesh {
+    let mesh = |level: u32| -> Mesh {
         let mut mesh = ball(level);
-        let factor = f64::from(mesh_power).exp2() as f32;
-        mesh.positions.iter_mut().for_each(|p| *p = p.map(|x| x * factor));
+        let factor = f64::from(mesh_power).exp2();
+        mesh.positions = mesh.positions.map(|_, p| p * factor);
         mesh
     };
     let (alone, twice) = (mesh(3), mesh(2));

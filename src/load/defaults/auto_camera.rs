@@ -308,7 +308,7 @@ mod tests {
     #[test]
     fn the_eye_keeps_clear_of_what_points_at_it() {
         // A tip that points at the eye, and one that does almost.
-        let tip = (VIEW_DIRECTION * 5.0).as_vec3();
+        let tip = VIEW_DIRECTION * 5.0;
         for (tip, side) in [
             (tip.to_array(), [0., 0.1, 0.]),
             ([5.0; 3], [0., 1., 0.]),
@@ -328,7 +328,7 @@ mod tests {
         let across = along.any_orthonormal_vector();
         for width in [across, along.cross(across)] {
             let corners = [DVec3::ZERO, along * 9.0, along * 9.0 + width, width];
-            let mut scene = mesh(&corners.map(|p| p.as_vec3().to_array()));
+            let mut scene = mesh(&corners.map(|p| p.to_array()));
             let triangles = vec![[0, 1, 2], [0, 2, 3]];
             scene.meshes = vec![Mesh { triangles, ..Mesh::clone(&scene.meshes[0]) }.into()];
             let [_, shown] = view_of(&mut scene);

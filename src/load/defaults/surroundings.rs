@@ -82,7 +82,8 @@ impl Surroundings {
     pub fn without(&self, scene: &Scene) -> Scene {
         let mut inner = scene.clone();
         let center = self.inner.center().to_array();
-        let point = Mesh { positions: vec![center].into(), triangles: vec![[0; 3]], ..Mesh::default() };
+        let point =
+            Mesh { positions: vec![center].into(), triangles: vec![[0; 3]], ..Mesh::default() };
         let mesh = inner.add_mesh(point);
         for &i in &self.instances {
             let Instance { material, .. } = scene.instances[i];
