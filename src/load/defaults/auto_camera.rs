@@ -50,7 +50,7 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
     };
     // The same where it is too large for any camera.
     let extent = bounds.max_abs();
-    if !(extent <= MAX_COORDINATE) {
+    if extent > MAX_COORDINATE {
         return Ok(());
     }
     // The position, as near as all of the model is within the edges of the image.
