@@ -51,8 +51,6 @@ pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
 pub(crate) use metallic_roughness::{mirror_share, shininess};
-#[cfg(feature = "embree")]
-pub(crate) use precision_warnings::FAST_RATIO;
 pub use precision_warnings::{PrecisionWarning, precision_warnings};
 #[doc(hidden)]
 pub use shading_params::ShadingParams;
