@@ -223,6 +223,27 @@ impl Bare {
         hits
     }
 
+    /// Traces single rays; returns the primitives that they hit.
+    pub fn primitives(&self, rays: &[Packet<1>]) -> Vec<Option<u32>> {
+        let mut context = Context([u32::MAX; 16]);
+        let mut args = sys::RTCIntersectArguments {
+            flags: sys::RTCRayQueryFlags::INCOHERENT,
+            feature_mask: sys::RTCFeatureFlags(u32::MAX),
+            context: std::ptr::from_mut(&mut context).cast(),
+            filter: None,
+            intersect: None,
+        };
+        let mut record = Record::<1>::new();
+        let mut primitive = |ray| {
+            record.load(ray);
+            let ptr = std::ptr::from_mut(&mut record);
+            // SAFETY: as in `closest`.
+            unsafe { sys::rtcIntersect1(self.scene, ptr.cast(), &mut args) };
+            (record.geom[0] != u32::MAX).then_some(record.prim[0])
+        };
+        rays.iter().map(&mut primitive).collect()
+    }
+
     /// Asks for every packet's occlusion; returns how many rays are blocked.
     pub fn occluded<const W: usize>(&self, packets: &[Packet<W>]) -> usize {
         let mut context = Context([u32::MAX; 16]);

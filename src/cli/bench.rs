@@ -4,8 +4,7 @@ use std::process::ExitCode;
 
 use crate::cli::{args::Bench, flag_values::SampleRange, messages, output, scene_args::SceneInput};
 use crate::error::{Error, Result};
-use crate::intersect::{Backend, Precision};
-use crate::measure::bench::{self, BenchOptions, Samples, Setup};
+use crate::measure::bench::{self, BenchOptions, Samples};
 use crate::write;
 
 /// The longest side of a quick picture in pixels.
@@ -30,12 +29,9 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
     let files = files.map(|name| out.join(name));
     std::fs::create_dir_all(out).map_err(|e| Error::io("create", out, &e))?;
     files.iter().try_for_each(|path| write::check_file(path))?;
-    // Warn of lost precision if any mode is subject to it.
+    // Warn of lost precision.
     if !input.quiet {
-        let has_f32_rays =
-            |setup: &Setup| setup.backend != Backend::Rust && setup.precision == Precision::Fast;
-        let has_f32_rays = options.setups.iter().any(has_f32_rays);
-        let warnings = messages::scene_warnings(&report, &scene, has_f32_rays);
+        let warnings = messages::scene_warnings(&report, &scene);
         warnings.iter().for_each(|w| messages::warning(w));
     }
 

@@ -13,12 +13,9 @@ pub fn error(error: &Error) {
     to_stderr(&format(error));
 }
 
-/// Returns the warnings of a load, and those about lost precision, with the flag that avoids these.
-pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec<String> {
-    let lost = scene::precision_warnings(scene, f32_rays).into_iter().map(|warning| {
-        let certified = "; --precision certified has no such limit";
-        warning.message + if warning.is_of_fast_only { certified } else { "" }
-    });
+/// Returns the warnings of a load, and those about lost precision.
+pub fn scene_warnings(report: &LoadReport, scene: &Scene) -> Vec<String> {
+    let lost = scene::precision_warnings(scene).into_iter().map(|warning| warning.message);
     report.warnings.iter().cloned().chain(lost).collect()
 }
 
@@ -141,22 +138,6 @@ fn flag(remedy: Remedy) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Instance, MaterialId, Mesh, Sphere};
-    use glam::{DAffine3, DVec3};
-
-    #[test]
-    fn warnings_of_fast_precision_name_the_flag_that_avoids_them() {
-        let mut scene = Scene::default();
-        let mesh = scene.add_mesh(Mesh {
-            positions: vec![[0.0; 3], [0.0, 1e-4, 0.0], [0.0, 0.0, 1e-4]].into(),
-            triangles: vec![[0, 1, 2]],
-            ..Mesh::default()
-        });
-        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
-        scene.spheres.push(Sphere::new(DVec3::ZERO, 0.5, MaterialId(0)));
-        let found = scene_warnings(&LoadReport::default(), &scene, true);
-        assert!(found.len() == 1 && found[0].contains("--precision certified"), "{found:?}");
-    }
     use std::path::Path;
 
     #[test]

@@ -13,7 +13,6 @@ use crate::cli::{messages, output, paths};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
-use crate::intersect::{Backend, Precision};
 use crate::load::add_ground;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
 use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
@@ -59,8 +58,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     let totals = writer.into_totals()?;
 
     // Report warnings, the summary and the statistics.
-    let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
-    let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
+    let mut warnings = messages::scene_warnings(&report, &first);
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(image_warning(&first, &options, &totals));
     let total = start.elapsed();

@@ -1,20 +1,43 @@
 //! The order of the hits of one ray, which decides between hits at the same distance.
 //!
-//! Hits are ordered by distance, and only at the same distance by the id of the primitive. In
-//! precision `certified` distances that round alike are compared exactly.
-
-use std::cmp::Ordering;
+//! Hits are ordered by distance, and only at the same distance by the id of the primitive. Where
+//! rounding may decide, distances are compared exactly: in precision `certified` those that round
+//! alike, in `fast` those of flat surfaces that are nearly alike. So of faces that coincide both precisions
+//! show the same one.
 
 use crate::geometry::exact_order::{CrossedSurface, compare};
 use crate::geometry::{Geometry, Hit, PrimitiveId, Side};
 use crate::intersect::Precision;
 use crate::intersect::primitive::{ORIGIN_T, RayTests, SphereDeparture};
 
+/// The relative difference of two distances below which the rounding of `fast` may have reversed them.
+/// Far more than a plane or a triangle that is not flat is off by.
+pub(super) const NEAR_TIE: f64 = 1.0 / (1u64 << 32) as f64;
+
 impl RayTests<'_> {
     /// True if hit `a` of the ray comes before its hit `b`.
     #[inline(always)]
     pub fn is_before(&self, a: &Hit, b: &Hit) -> bool {
-        if a.t != b.t { a.t < b.t } else { self.breaks_tie(a, b.id) }
+        if self.may_tie(a.t, b.t) { self.breaks_tie(a, b) } else { a.t < b.t }
+    }
+
+    /// True if the exact distances may be in another order than these, or equal.
+    #[inline(always)]
+    fn may_tie(&self, a: f64, b: f64) -> bool {
+        match self.precision {
+            Precision::Fast => (a - b).abs() <= NEAR_TIE * b,
+            Precision::Certified => a == b,
+        }
+    }
+
+    /// True if only the exact distances tell the order of two primitives that may tie at `t`.
+    fn needs_exact_order(&self, t: f64, a: PrimitiveId, b: PrimitiveId) -> bool {
+        match self.precision {
+            // What `fast` finds on a sphere the exact line may miss.
+            Precision::Fast => [a, b].iter().all(|id| id.geometry != Geometry::Spheres),
+            // Hits at the very origin have no crossings.
+            Precision::Certified => t != ORIGIN_T,
+        }
     }
 
     /// Replaces `best` by `candidate`, another hit of the ray, if that comes first.
@@ -30,12 +53,12 @@ impl RayTests<'_> {
     #[inline(always)]
     pub fn has_passed(&self, t: f64, id: PrimitiveId, far: bool) -> bool {
         let Some(continuation) = self.ray.continuation else { return false };
-        if t != continuation.t {
+        if !self.may_tie(t, continuation.t) {
             return t < continuation.t;
         }
         let crossed = continuation.crossed;
-        if self.precision == Precision::Fast || t == ORIGIN_T {
-            return id <= crossed.id;
+        if !self.needs_exact_order(t, id, crossed.id) {
+            return t.total_cmp(&continuation.t).then(id.cmp(&crossed.id)).is_le();
         }
         // A sphere that the ray left was crossed at its far root.
         let last = self.surface(crossed.id, crossed.side == Side::Front);
@@ -43,19 +66,17 @@ impl RayTests<'_> {
         order.then(id.cmp(&crossed.id)).is_le()
     }
 
-    /// True if the hit on `a` comes before that on `b`, at distances that round alike.
+    /// True if hit `a` comes before hit `b`, at distances that may tie.
     #[cold]
     #[inline(never)]
-    fn breaks_tie(&self, a: &Hit, b: PrimitiveId) -> bool {
-        let order = match self.precision {
-            Precision::Certified if a.t != ORIGIN_T => {
-                let [first, second] = [a.id, b].map(|id| self.surface(id, self.hits_far_root(id)));
-                compare(&first, &second, self.ray.origin, self.ray.direction)
-            }
-            // Hits at the very origin have no crossings.
-            _ => Ordering::Equal,
+    fn breaks_tie(&self, a: &Hit, b: &Hit) -> bool {
+        let order = if self.needs_exact_order(a.t, a.id, b.id) {
+            let [first, second] = [a.id, b.id].map(|id| self.surface(id, self.hits_far_root(id)));
+            compare(&first, &second, self.ray.origin, self.ray.direction)
+        } else {
+            a.t.total_cmp(&b.t)
         };
-        order.then(a.id.cmp(&b)).is_lt()
+        order.then(a.id.cmp(&b.id)).is_lt()
     }
 
     /// True if the hit of a ray on a primitive is that at the far root of a sphere, also when the near

@@ -2,8 +2,8 @@
 //! every intersector; only truly equal distances go to the lowest id.
 
 use envers::{
-    Backend, BruteForce, Bvh, Camera, Hit, Instance, Intersector, Material, MaterialId, Mesh,
-    Plane, Precision, Projection, Ray, Renderer, Scene, Sphere,
+    Backend, BruteForce, Bvh, Camera, Coherence, Geometry, Hit, Instance, Intersector, Material,
+    MaterialId, Mesh, Plane, Precision, Projection, Ray, Renderer, Scene, Sphere,
 };
 use envers_testing::Random;
 use glam::{DAffine3, DVec3, Vec3};
@@ -133,6 +133,59 @@ fn clear_shells_let_through_what_their_number_says_from_any_distance() {
                 assert!(seen.len() > 300);
                 assert!(seen.iter().all(|&x| x == 0.5f32.powi(12)), "{distance}: {seen:?}");
             }
+        }
+    }
+}
+
+/// Two slanted squares in one plane of x and z, with other diagonals, and that plane itself, if `plane`.
+fn coinciding_faces(plane: bool) -> Scene {
+    let mut scene = Scene::default();
+    let material = scene.add_material(Material::default());
+    if plane {
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::new(1.0, 0.0, -1.0), material));
+    }
+    for triangles in [[[0, 1, 2], [0, 2, 3]], [[3, 1, 0], [2, 1, 3]]] {
+        let positions = vec![[-1., -1., -1.], [-1., 1., -1.], [1., 1., 1.], [1., -1., 1.]];
+        let mesh = Mesh { positions, triangles: triangles.to_vec(), ..Mesh::default() };
+        let mesh = scene.add_mesh(mesh);
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));
+    }
+    scene
+}
+
+/// Rays from all around to points of the squares.
+fn rays_to_faces() -> Vec<Ray> {
+    let mut random = Random(3);
+    (0..20_000)
+        .map(|_| {
+            let (origin, at) = (random.cube(5.0), random.cube(0.99));
+            Ray::new(origin, DVec3::new(at.x, at.y, at.x) - origin)
+        })
+        .collect()
+}
+
+/// The shapes that rays hit, and how many miss.
+fn shapes(intersector: &dyn Intersector, rays: &[Ray]) -> (Vec<Option<Geometry>>, usize) {
+    let mut hits = vec![None; rays.len()];
+    intersector.closest(rays, Coherence::Incoherent, &mut hits);
+    let misses = hits.iter().filter(|hit| hit.is_none()).count();
+    (hits.into_iter().map(|hit| hit.map(|hit| hit.id.geometry)).collect(), misses)
+}
+
+#[test]
+fn fast_shows_of_faces_that_coincide_the_one_that_certified_shows() {
+    let rays = rays_to_faces();
+    for plane in [false, true] {
+        let scene = coinciding_faces(plane);
+        let (expected, misses) = shapes(&Bvh::build(&scene, Precision::Certified), &rays);
+        assert_eq!(misses, 0);
+        let found = shapes(&Bvh::build(&scene, Precision::Fast), &rays).0;
+        assert!(found == expected, "BVH, with a plane: {plane}");
+        // Which of two triangles Embree finds, f32 decides.
+        #[cfg(feature = "embree")]
+        if plane {
+            let embree = envers::Embree::build(&scene, Precision::Fast, 1).unwrap();
+            assert!(shapes(&embree, &rays).0 == expected, "Embree");
         }
     }
 }

@@ -18,6 +18,7 @@ use crate::intersect::brute_force::is_extreme;
 use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::object_space::{ObjectSpace, world_bounds};
+use crate::intersect::order::NEAR_TIE;
 use crate::intersect::primitive::{Primitives, RayTests};
 use crate::intersect::{BruteForce, Coherence, Intersector, Precision, trace_each};
 use crate::scene::{Mesh, Scene, Sphere};
@@ -173,7 +174,8 @@ impl Intersector for Bvh<'_> {
             let (mut best, mut limit) = (None, ray.tmax);
             self.visit(&tests, &mut limit, |hit, limit| {
                 tests.keep_closest(&mut best, hit);
-                *limit = limit.min(hit.t);
+                // What `fast` rounds up must be found, too, where faces coincide.
+                *limit = limit.min(hit.t * (1.0 + NEAR_TIE));
                 false
             });
             tests.merge_planes(&mut best);

@@ -25,6 +25,7 @@ mod scene_builder;
 #[cfg(test)]
 mod tests;
 mod tlas;
+mod user_meshes;
 
 use std::sync::Arc;
 

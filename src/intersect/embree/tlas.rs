@@ -12,11 +12,14 @@ use crate::geometry::Bounds;
 use crate::intersect::Precision;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::build_stats::BuildStats;
-use crate::intersect::embree::certified::{self, CertifiedSphere};
+use crate::intersect::embree::certified::{CertifiedSphere, CertifiedTriangle};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::fast::{self, FastSpheres, SphereTable};
+use crate::intersect::embree::fast::{
+    self, FastSpheres, FastTriangle, SphereTable, unresolved_meshes,
+};
 use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, check_abi, update_geometry};
 use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder};
+use crate::intersect::embree::user_meshes::{self, UserMeshes};
 use crate::intersect::frame_diff::FrameDiff;
 use crate::scene::{Mesh, Scene};
 
@@ -28,15 +31,13 @@ pub struct Tlas {
     /// The geometry of the spheres, and the table that its callbacks read; dropped after the scene that
     /// calls them.
     spheres: Option<(u32, Box<SphereTable>)>,
-    meshes: Meshes,
+    /// Embree's own triangles, in precision `fast`.
+    own_meshes: fast::Meshes,
+    user_meshes: UserMeshes,
+    /// True for each mesh that is user geometry.
+    is_user_mesh: Vec<bool>,
     /// The meshes whose indices Embree goes on reading; dropped after the scene.
     _meshes: Vec<Arc<Mesh>>,
-}
-
-/// The geometries of the meshes, in either precision.
-enum Meshes {
-    Fast(fast::Meshes),
-    Certified(certified::Meshes),
 }
 
 impl Tlas {
@@ -60,16 +61,17 @@ impl Tlas {
         cache: Option<&mut FrameCache>,
     ) -> Result<Self> {
         let SceneBuilder { scene, space, device, .. } = builder;
-        let meshes = match precision {
-            Precision::Fast => {
-                let cache = cache.map(|cache| &mut cache.fast);
-                Meshes::Fast(fast::Meshes::attach(&builder, cache)?)
-            }
-            Precision::Certified => {
-                let cache = cache.map(|cache| &mut cache.certified);
-                Meshes::Certified(certified::Meshes::attach(&builder, cache)?)
-            }
+        let is_user_mesh = are_user_meshes(scene, &space, precision);
+        let is_own_mesh: Vec<bool> = is_user_mesh.iter().map(|is_user| !is_user).collect();
+        let (own_cache, user_cache) =
+            cache.map(|cache| (&mut cache.own_meshes, &mut cache.user_meshes)).unzip();
+        // Embree's own first, so that their ids are indices.
+        let own_meshes = fast::Meshes::attach(&builder, own_cache, &is_own_mesh)?;
+        let attach = match precision {
+            Precision::Fast => UserMeshes::attach::<FastTriangle>,
+            Precision::Certified => UserMeshes::attach::<CertifiedTriangle>,
         };
+        let user_meshes = attach(&builder, user_cache, &is_user_mesh)?;
         let mut spheres = None;
         if !scene.spheres.is_empty() {
             let table = SphereTable::new(scene, space);
@@ -80,31 +82,43 @@ impl Tlas {
             spheres = Some((id, table));
         }
         let _meshes = scene.meshes.clone();
-        Ok(Self { precision, space, scene: builder.top.commit(device)?, spheres, meshes, _meshes })
+        let scene = builder.top.commit(device)?;
+        Ok(Self {
+            precision,
+            space,
+            scene,
+            spheres,
+            own_meshes,
+            user_meshes,
+            is_user_mesh,
+            _meshes,
+        })
     }
 
     /// The instance of each geometry of Embree's own; empty in precision `certified`.
     pub fn instance_of(&self) -> &[u32] {
-        match &self.meshes {
-            Meshes::Fast(meshes) => &meshes.instance_of,
-            Meshes::Certified(_) => &[],
-        }
+        &self.own_meshes.instance_of
     }
 
     /// The number of geometries of spheres, and of instances whose meshes are in object space.
     pub fn stats(&self) -> BuildStats {
         BuildStats {
             sphere_geometries: u64::from(self.spheres.is_some()),
-            object_space_instances: match &self.meshes {
-                Meshes::Fast(meshes) => meshes.instance_count,
-                Meshes::Certified(meshes) => meshes.instance_count(),
-            },
+            object_space_instances: self.own_meshes.instance_count
+                + self.user_meshes.instance_count(),
             ..BuildStats::default()
         }
     }
 
-    /// Moves what `diff` names to where another frame has it, whose f32 space has the same coordinates.
-    /// If anything moved, the scene is committed again, which builds no mesh.
+    /// True if it can be updated to a frame of the same things whose f32 space is `space`: the f32
+    /// copies are the same, and of the same kind.
+    fn can_update(&self, scene: &Scene, space: &F32Space) -> bool {
+        self.space.has_same_coordinates(space)
+            && self.is_user_mesh == are_user_meshes(scene, space, self.precision)
+    }
+
+    /// Moves what `diff` names to where another frame has it, as [`Tlas::can_update`] allows. If
+    /// anything moved, the scene is committed again, which builds no mesh.
     ///
     /// # Errors
     /// When Embree runs out of memory; then it is of no further use.
@@ -124,12 +138,18 @@ impl Tlas {
         }
         let (top, moved) = (&mut self.scene, &diff.instances);
         if !moved.is_empty() {
-            match &mut self.meshes {
-                Meshes::Fast(meshes) => meshes.update(top, scene, &space, mesh_bounds, moved),
-                Meshes::Certified(meshes) => meshes.update(top, scene, mesh_bounds, moved),
-            }
+            self.own_meshes.update(top, scene, &space, mesh_bounds, moved);
+            self.user_meshes.update(top, scene, mesh_bounds, moved);
         }
         if *diff == FrameDiff::default() { Ok(()) } else { top.recommit() }
+    }
+}
+
+/// Returns for each mesh whether it is user geometry: in precision `certified` all are.
+fn are_user_meshes(scene: &Scene, space: &F32Space, precision: Precision) -> Vec<bool> {
+    match precision {
+        Precision::Fast => unresolved_meshes(scene, space),
+        Precision::Certified => vec![true; scene.meshes.len()],
     }
 }
 
@@ -154,8 +174,8 @@ fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
 pub struct FrameCache {
     /// The box in which most of the animation lies, or an empty one.
     animation_bounds: Bounds,
-    fast: BlasCache<fast::Blas>,
-    certified: BlasCache<certified::Blas>,
+    own_meshes: BlasCache<fast::Blas>,
+    user_meshes: BlasCache<user_meshes::Blas>,
     /// The TLAS of the last frame.
     tlas: Option<Arc<Tlas>>,
     /// The number of TLASes that were built.
@@ -169,8 +189,8 @@ impl FrameCache {
     pub fn new(animation_bounds: Bounds) -> Self {
         Self {
             animation_bounds,
-            fast: BlasCache::default(),
-            certified: BlasCache::default(),
+            own_meshes: BlasCache::default(),
+            user_meshes: BlasCache::default(),
             tlas: None,
             tlas_count: 0,
             device: None,
@@ -179,7 +199,7 @@ impl FrameCache {
 
     /// The numbers of meshes and TLASes that were built.
     pub fn stats(&self) -> BuildStats {
-        let meshes_built = self.fast.built() + self.certified.built();
+        let meshes_built = self.own_meshes.built() + self.user_meshes.built();
         BuildStats { meshes_built, tlas_built: self.tlas_count, ..BuildStats::default() }
     }
 
@@ -200,7 +220,7 @@ impl FrameCache {
         let mut last = self.tlas.take();
         // An intersector that still traces the last frame holds it, too: then it must not change.
         if let (Some(tlas), Some(diff)) = (last.as_mut().and_then(Arc::get_mut), diff)
-            && tlas.space.has_same_coordinates(&space)
+            && tlas.can_update(scene, &space)
         {
             tlas.update(scene, space, mesh_bounds, diff)?;
         } else {

@@ -74,7 +74,8 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
     let direction = view_direction(scene, bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
     let mut camera = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens).ok()?;
-    if !(bounds.max_abs() <= MAX_COORDINATE) {
+    let extent = bounds.max_abs();
+    if !extent.is_finite() || extent > MAX_COORDINATE {
         return None;
     }
     // The position, as near as all of the model is within the edges of the image.

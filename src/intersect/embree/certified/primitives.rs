@@ -4,20 +4,15 @@
 //! The tests change nothing of Embree's own ray but `tfar`: they lower it, with slack, so that what
 //! lies behind is skipped.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use crate::geometry::incidence::are_on_one_side;
-use crate::geometry::{Bounds, Estimate, PrimitiveId, sphere, triangle};
-use crate::intersect::embree::f32_space::F32Space;
+use crate::geometry::{Estimate, PrimitiveId, sphere, triangle};
 use crate::intersect::embree::fast::{SphereEntry, SphereTable};
-use crate::intersect::embree::ffi::{
-    CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
-};
+use crate::intersect::embree::ffi::{CallbackPacket, UserPrimitive, UserPrimitives};
 use crate::intersect::embree::packet::QueryContext;
+use crate::intersect::embree::user_meshes::TriangleTable;
 use crate::intersect::ray_ends::{RayEnds, SphereDeparture};
-use crate::scene::{Instance, Mesh, Scene};
 
 /// A primitive as the callbacks of precision `certified` test it.
 pub struct CertifiedPrimitive<S> {
@@ -147,47 +142,6 @@ impl Shape for CertifiedSphere {
     }
 }
 
-/// The triangles of a mesh as user data. The vertices themselves are baked from the scene when a
-/// triangle is tested.
-pub struct TriangleTable {
-    mesh: Arc<Mesh>,
-    mesh_index: u32,
-    /// The instance that lies in world space and its index, or none for a mesh in object space, whose
-    /// instance is in the query context.
-    instance: Option<(u32, Instance)>,
-    space: F32Space,
-}
-
-impl TriangleTable {
-    /// Makes the table of an instance, in world space; on the heap since Embree keeps its address.
-    pub fn in_world_space(scene: &Scene, index: u32, space: F32Space) -> Box<Self> {
-        let instance = scene.instances[index as usize].clone();
-        let table = Self::in_object_space(scene, instance.mesh.0, space);
-        Box::new(Self { instance: Some((index, instance)), ..*table })
-    }
-
-    /// Makes the table of a mesh, in object space; on the heap since Embree keeps its address.
-    pub fn in_object_space(scene: &Scene, mesh_index: u32, space: F32Space) -> Box<Self> {
-        let mesh = scene.meshes[mesh_index as usize].clone();
-        Box::new(Self { mesh, mesh_index, instance: None, space })
-    }
-}
-
-impl PrimitiveTable for TriangleTable {
-    fn len(&self) -> usize {
-        self.mesh.triangles.len()
-    }
-
-    fn bounds(&self, index: u32) -> (Bounds, &F32Space) {
-        let vertices = self.mesh.triangle_vertices(index);
-        let vertices = match &self.instance {
-            Some((_, instance)) => vertices.map(|p| instance.to_world(p)),
-            None => vertices,
-        };
-        (Bounds::from_points(vertices), &self.space)
-    }
-}
-
 /// A triangle, tested with a bound.
 pub struct CertifiedTriangle {
     id: PrimitiveId,
@@ -204,14 +158,13 @@ impl UserPrimitives for CertifiedTriangle {
         index: u32,
         context: &QueryContext<'_, W>,
     ) -> CertifiedPrimitive<Self> {
-        let instance = table.instance.as_ref().map_or(context.instance, |(index, _)| *index);
-        let id = PrimitiveId::triangle(table.mesh_index, index, instance);
+        let id = table.id(index, context);
         let scene = context.scene;
         CertifiedPrimitive {
             id,
             shape: Self { id, vertices: scene.triangle_vertices(id) },
             blocks_light: scene.blocks_light(id),
-            is_masked: context.query.is_masked(instance),
+            is_masked: context.query.is_masked(id.instance),
         }
     }
 }

@@ -43,7 +43,7 @@ pub struct Meshes {
 }
 
 impl Meshes {
-    /// Attaches every instance: the mesh of a single instance as triangles in world space, and the
+    /// Attaches every instance of the meshes that are `included`: the mesh of a single instance as triangles in world space, and the
     /// others as instances. Where the builder says that all are instanced, all are. Embree goes on reading
     /// the meshes.
     ///
@@ -52,11 +52,14 @@ impl Meshes {
     pub fn attach(
         builder: &SceneBuilder<'_>,
         mut cache: Option<&mut BlasCache<Blas>>,
+        included: &[bool],
     ) -> Result<Self> {
         let SceneBuilder { scene, device, quality, space, .. } = *builder;
         // Build the BLAS of each mesh that has one.
         let counts = builder.instance_counts();
-        let is_visible = |mesh: usize| counts[mesh] > 0 && !scene.meshes[mesh].triangles.is_empty();
+        let is_visible = |mesh: usize| {
+            included[mesh] && counts[mesh] > 0 && !scene.meshes[mesh].triangles.is_empty()
+        };
         let in_world_space = |mesh: usize| counts[mesh] == 1 && !builder.all_instanced;
         let has_blas: Vec<bool> =
             (0..counts.len()).map(|mesh| is_visible(mesh) && !in_world_space(mesh)).collect();

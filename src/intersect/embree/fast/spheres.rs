@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::geometry::{Bounds, Hit, PrimitiveId, sphere};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{
-    CallbackPacket, PrimitiveTable, UserPrimitive, UserPrimitives,
+    CallbackPacket, INVALID, PrimitiveTable, UserPrimitive, UserPrimitives,
 };
 use crate::intersect::embree::packet::QueryContext;
 use crate::intersect::ray_ends::{RayEnds, SphereDeparture};
@@ -93,6 +93,7 @@ impl UserPrimitive for FastSphere<'_> {
             if closer {
                 context.hits.t[i] = ts[i];
                 context.hits.primitive[i] = self.index;
+                context.hits.instance[i] = INVALID;
             }
             let end = context.rays.interval.f32_t(i, ts[i]);
             if closer && end < tfar[i] {
@@ -107,6 +108,7 @@ impl UserPrimitive for FastSphere<'_> {
         if self.is_closer(context, lane, t) {
             context.hits.t[lane] = t;
             context.hits.primitive[lane] = self.index;
+            context.hits.instance[lane] = INVALID;
         }
     }
 
@@ -168,7 +170,9 @@ impl FastSphere<'_> {
     #[inline(always)]
     fn is_closer<const W: usize>(&self, context: &QueryContext<'_, W>, i: usize, t: f64) -> bool {
         let QueryContext { hits, rays, .. } = context;
-        let is_first = t < hits.t[i] || (t == hits.t[i] && self.index < hits.primitive[i]);
+        // A sphere comes before a triangle.
+        let is_less = (self.index < hits.primitive[i]) | (hits.instance[i] != INVALID);
+        let is_first = t < hits.t[i] || (t == hits.t[i] && is_less);
         is_first && t < rays.tmax[i]
     }
 

@@ -35,14 +35,15 @@ impl Approach {
             if distance <= MAX_ORIGIN_DISTANCE * space.extent {
                 return Self::Near { t, point: from };
             }
-            // Negated for what is not a number.
-            if !(distance <= MAX_APPROACH * space.extent) {
+            let is_reached = distance <= MAX_APPROACH * space.extent;
+            if !is_reached {
                 return Self::Lost;
             }
             // Go to the box. How far that is, f64 tells to within 2⁻⁴⁵ of the way; so repeat it.
             let rounding = 64.0 * f64::EPSILON * distance;
             let (start, end) = bounds.padded(space.margin() + rounding).crossing(from, direction);
-            if !(start <= end && t + start > 0.0) {
+            let enters = start <= end && t + start > 0.0;
+            if !enters {
                 return Self::Passes;
             }
             for axis in 0..3 {

@@ -116,18 +116,24 @@ impl<const W: usize> PacketHits<W> {
         self.instance[i] = if is_sphere { INVALID } else { id.instance };
     }
 
+    /// True if the hit of ray `i` so far is on a sphere.
+    #[inline(always)]
+    fn is_sphere(&self, i: usize) -> bool {
+        (self.primitive[i] != INVALID) & (self.instance[i] == INVALID)
+    }
+
     /// Merges the spheres that the callbacks of precision `fast` found into the hits on triangles,
     /// from lane `first` on.
     #[inline(always)]
     pub fn merge_spheres_into(&self, hits: &mut Hit16, first: usize) {
         let mut any = false;
         for i in 0..W {
-            any |= self.primitive[i] != INVALID;
+            any |= self.is_sphere(i);
         }
         if any {
             let mut ts = [f64::NAN; W];
             for i in 0..W {
-                ts[i] = if self.primitive[i] == INVALID { f64::NAN } else { self.t[i] };
+                ts[i] = if self.is_sphere(i) { self.t[i] } else { f64::NAN };
             }
             hits.merge_closer(PrimitiveId16::SPHERES, &self.primitive, &ts, first);
         }
@@ -178,7 +184,8 @@ pub struct QueryContext<'a, const W: usize> {
     pub are_shadow_rays: bool,
     /// The directions toward the viewers of shadow rays.
     viewer: [[f64; W]; 3],
-    /// The hits that the callbacks found: in precision `fast` spheres, in `certified` everything.
+    /// The hits that the callbacks found: in precision `fast` spheres and what f32 does not resolve, in
+    /// `certified` everything.
     pub hits: PacketHits<W>,
     /// The ends of the f32 rays, before anything was hit.
     pub f32_tmax: [f32; W],

@@ -7,6 +7,7 @@ use crate::geometry::plane::certified::{certainly_misses, round};
 use crate::geometry::{Hit, Hit16, PrimitiveId, PrimitiveId16, plane};
 use crate::intersect::Precision;
 use crate::intersect::embree::packet::QueryContext;
+use crate::intersect::order::NEAR_TIE;
 use crate::scene::Plane;
 
 /// Merges the planes into the hits of a packet; see
@@ -27,7 +28,8 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
                 for i in 0..W {
                     let (origin, direction) = rays.origin_and_direction(i);
                     ts[i] = plane::quotient(point, normal, origin, direction);
-                    open[i] = (ts[i] > 0.0) & (ts[i] <= limits[i]) & (ts[i] < rays.tmax[i]);
+                    let limit = limits[i] + NEAR_TIE * limits[i];
+                    open[i] = (ts[i] > 0.0) & (ts[i] <= limit) & (ts[i] < rays.tmax[i]);
                 }
             }
             Precision::Certified => {
@@ -48,14 +50,17 @@ pub fn merge_planes<const W: usize>(context: &QueryContext<'_, W>, hits: &mut Hi
         }
         // Merge what a formula for the whole packet decides.
         if query.precision == Precision::Fast && !departures.any_continuation {
-            // A ray that left a surface near the plane may have been spawned in it.
+            // A ray that left a surface near the plane may have been spawned in it, and a face may
+            // coincide with the plane.
             for i in 0..W {
                 let height = normal.dot(rays.origin_and_direction(i).0 - point).abs();
                 // Negated for what is not a number.
                 let is_apart = height > departures.tolerance;
                 let may_start_on = departures.any & !is_apart;
-                ts[i] = if open[i] & !may_start_on { ts[i] } else { f64::NAN };
-                open[i] &= may_start_on;
+                let may_tie = (ts[i] - limits[i]).abs() < NEAR_TIE * limits[i];
+                let is_plain = !(may_start_on | may_tie);
+                ts[i] = if open[i] & is_plain { ts[i] } else { f64::NAN };
+                open[i] &= !is_plain;
             }
             hits.merge_closer(PrimitiveId16::PLANES, &[index; W], &ts, first);
         } else if !departures.any {

@@ -2,7 +2,7 @@
 
 use crate::geometry::{Hit16, HitBatch, RayBatch};
 use crate::intersect::embree::certified::round_hits;
-use crate::intersect::embree::fast::refine;
+use crate::intersect::embree::fast::{merge_triangles, refine};
 use crate::intersect::embree::ffi::{Filter, INVALID, Kernel, LaneMask, RayHitRecord, queries};
 use crate::intersect::embree::packet::{Packet, QueryContext, QueryScene, planes};
 use crate::intersect::{Coherence, Precision};
@@ -63,6 +63,7 @@ fn closest_hits<'a, const W: usize>(
                 return false;
             }
             context.hits.merge_spheres_into(hits, first);
+            merge_triangles(context, hits);
         }
         Precision::Certified => round_hits(context, hits),
     }

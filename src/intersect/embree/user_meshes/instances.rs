@@ -1,4 +1,4 @@
-//! Meshes in object space, for precision `certified`: an instance is a user primitive that takes the
+//! Meshes in object space: an instance is a user primitive that takes the
 //! exact ray into the object space in f64, and traces the BLAS of the mesh with the f32 copy made
 //! there. (Embree's own instances transform the f32 ray, in f32.)
 //!
@@ -12,7 +12,6 @@ use glam::DVec3;
 
 use crate::error::Result;
 use crate::geometry::{Bounds, PrimitiveId};
-use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::ffi::{
     CallbackPacket, CommittedScene, LaneMask, PrimitiveTable, RayHitRecord, UserPrimitive,
@@ -20,6 +19,7 @@ use crate::intersect::embree::ffi::{
 };
 use crate::intersect::embree::packet::{Approach, PacketRays, QueryContext};
 use crate::intersect::embree::scene_builder::SceneBuilder;
+use crate::intersect::embree::user_meshes::triangle_table::TriangleTable;
 use crate::intersect::object_space::ObjectSpace;
 use crate::scene::Instance;
 
@@ -33,15 +33,18 @@ pub struct Blas {
 }
 
 impl Blas {
-    /// Builds the BLAS of the mesh with this index.
+    /// Builds the BLAS of the mesh with this index, whose triangles are tested as `P`.
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn new(builder: &SceneBuilder<'_>, mesh: usize) -> Result<Self> {
+    pub fn new<P>(builder: &SceneBuilder<'_>, mesh: usize) -> Result<Self>
+    where
+        P: UserPrimitives<Table = TriangleTable>,
+    {
         let SceneBuilder { device, quality, .. } = builder;
         let space = F32Space::from_bounds(builder.mesh_bounds[mesh]);
         let table = TriangleTable::in_object_space(builder.scene, mesh as u32, space);
-        let geometry = new_geometry::<CertifiedTriangle>(device, *quality, &table)?;
+        let geometry = new_geometry::<P>(device, *quality, &table)?;
         let scene = CommittedScene::new(device, *quality, RTCSceneFlags::NONE, &geometry)?;
         Ok(Self { scene, space, _table: table })
     }

@@ -1,19 +1,21 @@
-//! The meshes of precision `certified`: user geometry, in world space or in object space.
+//! The meshes as user geometry, in world space or in object space.
 
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::BlasCache;
-use crate::intersect::embree::certified::instances::{Blas, InstanceTable};
-use crate::intersect::embree::certified::primitives::{CertifiedTriangle, TriangleTable};
 use crate::intersect::embree::f32_space::F32Space;
-use crate::intersect::embree::ffi::{CommittedScene, PrimitiveTable, update_geometry};
+use crate::intersect::embree::ffi::{
+    CommittedScene, PrimitiveTable, UserPrimitives, update_geometry,
+};
 use crate::intersect::embree::scene_builder::SceneBuilder;
+use crate::intersect::embree::user_meshes::instances::{Blas, InstanceTable};
+use crate::intersect::embree::user_meshes::triangle_table::TriangleTable;
 use crate::intersect::object_space::world_bounds;
 use crate::scene::{Mesh, Scene};
 
 /// The user data of the meshes' geometries, whose addresses Embree keeps.
 #[derive(Default)]
-pub struct Meshes {
+pub struct UserMeshes {
     #[expect(clippy::vec_box, reason = "Embree keeps their addresses")]
     triangles: Vec<Box<TriangleTable>>,
     /// The geometry of the instances, and their table.
@@ -24,17 +26,22 @@ pub struct Meshes {
 /// make their boxes overlap.
 const SMALL: f64 = 1e-4;
 
-impl Meshes {
-    /// Attaches every instance: the mesh of a single instance in world space, unless it is small; and
-    /// the others in object space. Where the builder says that all are instanced, all are in object space.
+impl UserMeshes {
+    /// Attaches every instance of the meshes that are `included`, with triangles that are tested as `P`:
+    /// the mesh of a single instance in world space, unless it is small; and the others in object space. Where the builder says that all are instanced, all are in object space.
     ///
     /// # Errors
     /// When Embree runs out of memory.
-    pub fn attach(
+    pub fn attach<P>(
         builder: &SceneBuilder<'_>,
         mut cache: Option<&mut BlasCache<Blas>>,
-    ) -> Result<Self> {
+        included: &[bool],
+    ) -> Result<Self>
+    where
+        P: UserPrimitives<Table = TriangleTable>,
+    {
         let SceneBuilder { scene, mesh_bounds, space, .. } = *builder;
+        let is_visible = |mesh: usize| included[mesh] && !scene.meshes[mesh].triangles.is_empty();
         // Decide which meshes have a BLAS.
         let instance_counts = builder.instance_counts();
         let bounds: Vec<Bounds> = scene
@@ -49,10 +56,10 @@ impl Meshes {
             let in_world_space = !builder.all_instanced
                 && instance_counts[index] == 1
                 && !is_small(mesh, bounds, &space);
-            has_blas[index] = !(mesh.triangles.is_empty() || in_world_space);
+            has_blas[index] = is_visible(index) && !in_world_space;
         }
         // Build those, and attach the meshes that have none.
-        let build = |mesh| Blas::new(builder, mesh);
+        let build = |mesh| Blas::new::<P>(builder, mesh);
         let blas = BlasCache::get_or_build(cache.as_deref_mut(), scene, &has_blas, build)?;
         let mut meshes = Self::default();
         let mut instances = Box::new(InstanceTable::new(space));
@@ -60,9 +67,9 @@ impl Meshes {
             let mesh = instance.mesh.0 as usize;
             if let Some(blas) = &blas[mesh] {
                 instances.push(index, instance, bounds, blas.clone());
-            } else if !scene.meshes[mesh].triangles.is_empty() {
+            } else if is_visible(mesh) {
                 let table = TriangleTable::in_world_space(scene, index, space);
-                builder.attach_user_geometry::<CertifiedTriangle>(&table)?;
+                builder.attach_user_geometry::<P>(&table)?;
                 meshes.triangles.push(table);
                 cache.iter_mut().for_each(|cache| cache.count_uncached());
             }
