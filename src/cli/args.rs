@@ -163,6 +163,12 @@ Goals:
   G5  thin triangles at grazing angles are hit at the right distance
   G6  no surface shadows itself
   G7  scale, threads and tiles do not change an image
+  G8  surfaces a few ulp apart are hit in their order
+  G9  a lamp on a surface lights what it sees
+  G10 no light leaves a closed mesh
+  G11 nothing passes through flat caps, or planes given by far points
+  G12 hits do not change with the scale of the scene
+  G13 millimetres are hit exactly at map coordinates
 
 Examples:
   envers stress --quick

@@ -67,10 +67,10 @@ pub fn size(text: &str) -> Result<[u32; 2], String> {
     Ok(size)
 }
 
-/// Parses the name of a goal, `G1` to `G7`.
+/// Parses the name of a goal, `G1` to `G13`.
 pub fn goal(text: &str) -> Result<Goal, String> {
     let is_named = |goal: &Goal| goal.name().eq_ignore_ascii_case(text.trim());
-    Goal::ALL.into_iter().find(is_named).ok_or("expected a goal, G1 to G7".to_owned())
+    Goal::ALL.into_iter().find(is_named).ok_or("expected a goal, G1 to G13".to_owned())
 }
 
 /// Parses a time of an animation in seconds.

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use crate::film::Pixel;
 use crate::geometry::{LANES, Lanes, PrimitiveId16};
-use crate::integrator::radiance::{RadianceSum16, sum_lane};
+use crate::integrator::radiance::{Radiance16, lane};
 use crate::integrator::simd;
 use crate::integrator::wave::Wave;
 use crate::scene::Scene;
@@ -109,8 +109,8 @@ impl PixelRecords {
     }
 
     /// Compares the radiance of a sample of each pixel with that of the first, or records it.
-    pub fn compare_radiance(&mut self, samples: &[RadianceSum16], threshold: f32) {
-        let sample_root = |i: usize| root(sum_lane(&samples[i / LANES], i % LANES).as_vec3());
+    pub fn compare_radiance(&mut self, samples: &[Radiance16], threshold: f32) {
+        let sample_root = |i: usize| root(lane(&samples[i / LANES], i % LANES));
         if !self.has_samples {
             self.roots.extend((0..self.records.len()).map(sample_root));
             self.has_samples = true;

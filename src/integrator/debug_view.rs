@@ -4,16 +4,17 @@ use glam::Vec3;
 
 use crate::film::View;
 use crate::geometry::{Geometry, Hit, LANES, Ray};
-use crate::integrator::radiance::{RadianceSum16, set_sum_lane};
+use crate::integrator::radiance::{DARK, Radiance16, set_lane};
 use crate::integrator::wave::Wave;
 use crate::scene::Scene;
 use crate::surface::Surface;
 
 /// Sets the pixels of a tile to the values of a debug view.
-pub(super) fn set_pixels(scene: &Scene, view: View, wave: &Wave, pixels: &mut [RadianceSum16]) {
+pub(super) fn set_pixels(scene: &Scene, view: View, wave: &Wave, pixels: &mut Vec<Radiance16>) {
+    pixels.resize(wave.rays.blocks().len(), DARK);
     for i in 0..wave.rays.len() {
         let value = pixel_value(scene, view, &wave.rays.ray(i), wave.hits.get(i).as_ref());
-        set_sum_lane(&mut pixels[i / LANES], i % LANES, value.as_dvec3());
+        set_lane(&mut pixels[i / LANES], i % LANES, value);
     }
 }
 

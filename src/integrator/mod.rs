@@ -13,6 +13,7 @@ mod direct_lighting;
 mod material_cache;
 mod nested_dielectrics;
 mod null_interfaces;
+mod pixel_sums;
 mod radiance;
 #[cfg(test)]
 mod reciprocity;

@@ -9,7 +9,7 @@ use glam::Vec3;
 
 use crate::geometry::{HitBatch, RayBatch};
 use crate::integrator::nested_dielectrics::InterfaceMedia;
-use crate::integrator::radiance::{DARK, RadianceSum16};
+use crate::integrator::radiance::{DARK, Radiance16};
 use crate::integrator::surface_evaluation::shading_params_at;
 use crate::integrator::wave::Wave;
 use crate::integrator::{Counts, Integrator};
@@ -48,7 +48,7 @@ pub(super) fn is_null_interface(
 pub(super) fn begin_paths(
     integrator: &Integrator<'_>,
     wave: &mut Wave,
-    samples: &mut Vec<RadianceSum16>,
+    samples: &mut Vec<Radiance16>,
 ) {
     wave.paths = (0..wave.rays.len()).map(|i| wave.path(i, integrator)).collect();
     samples.clear();

@@ -73,7 +73,7 @@ impl ShadowQueue {
             if transmittance != DVec3::ZERO {
                 let pending = &self.pending[ray / LANES];
                 let light = lane(&pending.radiance, ray % LANES).as_dvec3() * transmittance;
-                radiance.add(pending.block, ray % LANES, light);
+                radiance.add(pending.block, ray % LANES, light.as_vec3());
             }
         }
     }

@@ -6,7 +6,7 @@ use glam::Vec3;
 use crate::geometry::{Hit, Hit16, LANES, Lanes, PrimitiveId16, Ray};
 use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::material_cache::scattered_reflectance;
-use crate::integrator::radiance::{RadianceSum16, WaveRadiance, set_lane, set_sum_lane};
+use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
 use crate::integrator::wave::Wave;
 use crate::integrator::{Integrator, ShadingFeatures, simd};
 use crate::scene::ShadingParams;
@@ -129,7 +129,7 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
         lit.surface.set::<SMOOTH_NORMALS>(scene, &wave.rays, block, hits);
         // Rays that hit nothing see the background.
         for channel in 0..3 {
-            radiance.blocks[block][channel] = [f64::from(background[channel]); LANES];
+            radiance.blocks[block][channel] = [background[channel]; LANES];
         }
         if !lit.surface.has_hits() {
             continue;
@@ -156,7 +156,7 @@ fn evaluate_uniform_block(
     integrator: &Integrator<'_>,
     hits: &Hit16,
     lit: &mut LitSurface16,
-    radiance: &mut RadianceSum16,
+    radiance: &mut Radiance16,
 ) -> bool {
     let first = lit.surface.material[0];
     let mut is_uniform = true;
@@ -185,7 +185,7 @@ fn evaluate_uniform_block(
     lit.has_highlights = material.has_highlight;
     lit.common_exponent = shading::integer_exponent(shininess);
     for channel in 0..3 {
-        radiance[channel] = [f64::from(material.params.emission[channel]); LANES];
+        radiance[channel] = [material.params.emission[channel]; LANES];
     }
     true
 }
@@ -237,7 +237,7 @@ fn evaluate_block<const TEXTURES: bool>(
         }
         // The surface emits, scatters light, and may send light on.
         let Reflectance { diffuse, specular, shininess } = reflectance;
-        set_sum_lane(&mut radiance.blocks[lit.block], i, params.emission.as_dvec3());
+        set_lane(&mut radiance.blocks[lit.block], i, params.emission);
         lit.scatters[i] = diffuse != Vec3::ZERO || specular != Vec3::ZERO;
         set_lane(&mut lit.diffuse, i, diffuse);
         set_lane(&mut lit.specular, i, specular);

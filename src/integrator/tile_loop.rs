@@ -1,11 +1,10 @@
 //! The loop of the integrator: the way of a tile from its camera rays to its pixels.
 
 use crate::film::{Pixel, View};
-use crate::geometry::{HitBatch, LANES, RayBatch};
+use crate::geometry::{HitBatch, RayBatch};
 use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
-use crate::integrator::radiance::{
-    DARK, GROUP, Radiance16, RadianceSum16, WaveRadiance, mean, set_sum_lane, sum_lane, sum_of_mean,
-};
+use crate::integrator::pixel_sums::PixelSums;
+use crate::integrator::radiance::{GROUP, Radiance16, WaveRadiance};
 use crate::integrator::sample_pattern::SamplePattern;
 use crate::integrator::shadow_rays::ShadowQueue;
 use crate::integrator::surface_evaluation::WaveSurfaces;
@@ -13,8 +12,8 @@ use crate::integrator::tiling::Tile;
 use crate::integrator::transmissive_shadows::TransmissiveShadows;
 use crate::integrator::wave::{Wave, WaveQueue};
 use crate::integrator::{
-    Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, radiance,
-    secondary_rays, surface_evaluation, transmissive_shadows,
+    Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, secondary_rays,
+    surface_evaluation, transmissive_shadows,
 };
 use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
@@ -31,11 +30,9 @@ pub struct Scratch {
     radiance: WaveRadiance,
     shadows: ShadowMemory,
     /// One sample of each pixel of the tile.
-    samples: Vec<RadianceSum16>,
-    /// The sums of the samples that are not in `sums` yet.
-    group: Vec<Radiance16>,
+    samples: Vec<Radiance16>,
     /// The sums of their samples.
-    sums: Vec<RadianceSum16>,
+    sums: PixelSums,
     records: PixelRecords,
 }
 
@@ -84,7 +81,6 @@ impl Integrator<'_> {
             // The first samples of each pixel of a tile.
             scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
             scratch.sums.clear();
-            scratch.sums.resize(scratch.tile.pixels.len(), DARK);
             scratch.records.clear();
             for step in 0..=self.samples.first {
                 self.trace_step(step, scratch, &mut counts);
@@ -92,7 +88,7 @@ impl Integrator<'_> {
             // Their means, and, where more may follow, their records.
             let Scratch { tile, sums, records: tile_records, .. } = &*scratch;
             let samples = self.samples.steps[self.samples.first];
-            radiance::write_pixels(self.arch, tile, sums, samples, pixels, width);
+            sums.write(self.arch, tile, samples, pixels, width);
             if self.is_adaptive() {
                 let mut read = tile_records.records.iter();
                 for run in &tile.runs {
@@ -111,24 +107,23 @@ impl Integrator<'_> {
         // Wherever a step may be the last of a pass, a regular picture, too, goes on from what a film
         // stores: so the two are equal to the bit.
         if taken > 0 {
-            radiance::round_to_means(&mut scratch.sums, taken);
+            scratch.sums.round_means(self.arch, taken);
         }
         // Four at a time, and one by one what is left.
         let (groups, rest) = self.samples.offsets[taken..steps[step]].as_chunks::<GROUP>();
         let groups = groups.iter().map(|group| &group[..]).chain(rest.chunks(1));
         for group in groups {
+            scratch.sums.begin_group(self.arch);
             for position in group {
                 self.trace_sample(*position, scratch, counts);
             }
-            radiance::add_group(self.arch, &mut scratch.group, &mut scratch.sums);
         }
     }
 
     /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to the
     /// sums of its group.
     fn trace_sample(&self, position: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { tile, waves, surfaces, radiance, samples, group, sums, records, .. } =
-            scratch;
+        let Scratch { tile, waves, surfaces, radiance, samples, sums, records, .. } = scratch;
         // Camera rays, one through each pixel.
         let mut wave = &mut waves.current;
         wave.paths.clear();
@@ -139,7 +134,7 @@ impl Integrator<'_> {
         counts.hits += wave.hits.count() as u64;
         // Debug views show the hits themselves.
         if self.view != View::Beauty {
-            debug_view::set_pixels(self.scene, self.view, wave, sums);
+            debug_view::set_pixels(self.scene, self.view, wave, &mut sums.group);
             return;
         }
         // Adaptive sampling compares what the samples of a pixel hit.
@@ -179,10 +174,10 @@ impl Integrator<'_> {
         // Sums of samples.
         if self.samples.offsets.len() == 1 && !self.features.secondary_rays {
             // The only sample is the sum; what is NaN becomes black in the end.
-            std::mem::swap(sums, samples);
+            std::mem::swap(&mut sums.group, samples);
             return;
         }
-        radiance::add_samples(self.arch, samples, group, sums, &mut counts.not_finite.sum);
+        sums.add(self.arch, samples, &mut counts.not_finite.sum);
     }
 
     /// Adds the light of each source that the surfaces of the current wave reflect.
@@ -195,7 +190,10 @@ impl Integrator<'_> {
         counts: &mut Counts,
     ) {
         let ShadowMemory { shadows, glass } = memory;
-        for light in &self.scene.lights {
+        for (i, light) in self.scene.lights.iter().enumerate() {
+            if i > 0 && i % GROUP == 0 {
+                radiance.begin_group(self.arch);
+            }
             if light.kind == LightKind::Ambient {
                 direct_lighting::add_ambient(light, surfaces, self.features.textures, radiance);
                 continue;
@@ -214,6 +212,7 @@ impl Integrator<'_> {
             // The contributions that arrive.
             shadows.add_light(self.arch, radiance);
         }
+        radiance.add_groups();
     }
 
     /// Finds the closest hits of rays.
@@ -261,12 +260,9 @@ impl Integrator<'_> {
                 tile.set_pixels(
                     group.iter().map(|p| [p.index % width, first_row + p.index / width]),
                 );
-                sums.clear();
-                sums.resize(group.len().div_ceil(LANES), DARK);
+                sums.set_means(group.iter().map(|p| pixels[p.index]), steps[step - 1]);
                 records.clear();
-                for (i, &ActivePixel { index, record }) in group.iter().enumerate() {
-                    let sum = pixels[index].map(|mean| sum_of_mean(mean, steps[step - 1]));
-                    set_sum_lane(&mut sums[i / LANES], i % LANES, sum.into());
+                for &ActivePixel { index, record } in group {
                     records.push(record, pixels[index].into());
                 }
                 // The samples of this step.
@@ -275,8 +271,7 @@ impl Integrator<'_> {
                 let read = group.iter().zip(&scratch.records.records);
                 for (i, (&ActivePixel { index, .. }, &record)) in read.enumerate() {
                     let goes_on = record.disagrees && step + 1 < steps.len();
-                    let sum = sum_lane(&scratch.sums[i / LANES], i % LANES);
-                    pixels[index] = sum.to_array().map(|sum| mean(sum, steps[step]));
+                    pixels[index] = scratch.sums.mean(i, steps[step]);
                     if goes_on {
                         next_active.push(ActivePixel { index, record });
                     }

@@ -58,6 +58,36 @@ fn pictures_do_not_depend_on_scale_threads_and_tiles() {
 }
 
 #[test]
+fn surfaces_ulps_apart_are_hit_in_their_order() {
+    passes(Goal::Order, 100);
+}
+
+#[test]
+fn lamps_on_surfaces_light_what_they_see() {
+    passes(Goal::LampOnSurface, 300);
+}
+
+#[test]
+fn closed_meshes_keep_their_light_in() {
+    passes(Goal::Enclosure, 300);
+}
+
+#[test]
+fn nothing_passes_through_flat_caps_and_far_planes() {
+    passes(Goal::FlatCaps, 300);
+}
+
+#[test]
+fn hits_do_not_depend_on_scale() {
+    passes(Goal::Scale, 300);
+}
+
+#[test]
+fn millimetres_are_hit_at_map_coordinates() {
+    passes(Goal::FarDetail, 200);
+}
+
+#[test]
 fn seed_decides_the_rows() {
     let rows = |seed| {
         let goals = vec![Goal::Tangency];

@@ -133,10 +133,10 @@ impl ExactHit {
     }
 }
 
-/// True if the ray's line may pass the box before `ray.tmax`. The box is enlarged by 1e-9 of the
-/// coordinates, ten million times the rounding error of these few operations.
+/// True if the ray's line may pass the box before `ray.tmax`. The box is enlarged by 1e-12 of the
+/// coordinates, thousands of times the rounding error of these few operations.
 fn passes_near(bounds: &Bounds, ray: &Ray) -> bool {
-    let margin = 1e-9 * (bounds.max_abs() + ray.origin.abs().max_element());
+    let margin = 1e-12 * (bounds.max_abs() + ray.origin.abs().max_element());
     let (lower, upper) = (bounds.lower - margin - ray.origin, bounds.upper + margin - ray.origin);
     let (mut enter, mut leave) = (0.0f64, ray.tmax);
     for axis in 0..3 {

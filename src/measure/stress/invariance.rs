@@ -6,8 +6,10 @@ use std::ops::RangeInclusive;
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::CaseStats;
+use super::backends::BACKENDS;
 use super::case::{Case, RaySampler};
-use super::meshes::{BACKENDS, icosphere, torus};
+use super::meshes::{icosphere, torus};
+use super::scale::scale_geometry;
 use crate::error::Result;
 use crate::integrator::Tiling;
 use crate::intersect::{Backend, Precision};
@@ -165,20 +167,10 @@ fn scene(side: u32) -> Scene {
 fn scaled(scene: &Scene, k: i32) -> Scene {
     let by = f64::powi(2.0, k);
     let mut scene = scene.clone();
-    // Spheres, and planes with their checkerboards.
-    for sphere in &mut scene.spheres {
-        sphere.center *= by;
-        sphere.radius *= by;
-    }
-    for plane in &mut scene.planes {
-        plane.point *= by;
-        if let Some(checker) = &mut plane.checker {
-            checker.size *= by;
-        }
-    }
-    for instance in &mut scene.instances {
-        instance.transform.matrix3 *= by;
-        instance.transform.translation *= by;
+    // Geometry, with the checkerboards of planes.
+    scale_geometry(&mut scene, by);
+    for checker in scene.planes.iter_mut().filter_map(|plane| plane.checker.as_mut()) {
+        checker.size *= by;
     }
     // Absorption is per unit of length, and light falls off with the square of the distance.
     for material in &mut scene.materials {

@@ -1,27 +1,10 @@
-//! Closed meshes, and the intersectors that are tested.
+//! Closed meshes.
 
 use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::error::Result;
-use crate::intersect::{Backend, Intersector, Precision};
-use crate::scene::{Mesh, Scene};
-
-/// The backends of this build, and their names in the report.
-pub const BACKENDS: &[(Backend, &str)] = &[
-    #[cfg(feature = "embree")]
-    (Backend::Embree, "embree"),
-    (Backend::Rust, "bvh"),
-];
-
-/// Builds the intersectors of this build for a scene.
-pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn Intersector + '_>>> {
-    BACKENDS.iter().map(|(backend, _)| backend.build(scene, precision, 1)).collect()
-}
-
-/// The names of all backends of this build.
-pub const INTERSECTORS: &str = if cfg!(feature = "embree") { "embree and bvh" } else { "bvh" };
+use crate::scene::Mesh;
 
 /// Returns a mesh of vertices rounded to f32.
 fn mesh(name: &str, positions: &[DVec3], triangles: Vec<[u32; 3]>) -> Mesh {
@@ -125,13 +108,37 @@ pub fn torus(around: u32, across: u32) -> Mesh {
     mesh("torus", &positions, triangles)
 }
 
+/// Returns an upright prism of radius and half height 1, whose base has `sides` corners.
+pub fn prism(sides: u32) -> Mesh {
+    // The middle of each end, and its corners.
+    let mut positions = vec![DVec3::NEG_Y, DVec3::Y];
+    let mut triangles = Vec::new();
+    for i in 0..sides {
+        let (sin, cos) = (f64::from(i) / f64::from(sides) * std::f64::consts::TAU).sin_cos();
+        positions.extend([-1.0, 1.0].map(|y| DVec3::new(cos, y, sin)));
+        let corner = |i: u32| 2 + i % sides * 2;
+        let [a, b, c, d] = [corner(i), corner(i + 1), corner(i + 1) + 1, corner(i) + 1];
+        triangles.extend([[0, a, b], [1, c, d], [a, c, b], [a, d, c]]);
+    }
+    mesh("prism", &positions, triangles)
+}
+
+/// Returns a pyramid over the square from −1 to 1 in the ground, whose apex is this high.
+pub fn pyramid(height: f64) -> Mesh {
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let mut positions: Vec<DVec3> = corners.map(|(x, z)| DVec3::new(x, 0.0, z)).into();
+    positions.push(DVec3::Y * height);
+    let sides = (0..4).map(|i| [i, 4, (i + 1) % 4]);
+    mesh("pyramid", &positions, sides.chain([[0, 1, 2], [0, 2, 3]]).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn meshes_are_closed() {
-        for mesh in [icosphere(2), cube(4), torus(24, 12)] {
+        for mesh in [icosphere(2), cube(4), torus(24, 12), prism(7), pyramid(1e-9)] {
             let mut edges = HashMap::new();
             for t in &mesh.triangles {
                 for (a, b) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {

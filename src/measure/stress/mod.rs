@@ -5,14 +5,21 @@
 //! Random numbers are determined by seed, goal, case and ray, so that a run can be repeated on any
 //! number of threads.
 
+mod backends;
 mod case;
+mod enclosure;
+mod far_detail;
+mod flat_caps;
 mod grazing;
 mod invariance;
+mod lamp_on_surface;
 mod meshes;
+mod order;
 mod plot;
 mod random;
 mod report;
 mod resume;
+mod scale;
 mod self_shadow;
 mod sphere_distance;
 mod tangency;
@@ -48,11 +55,23 @@ pub enum Goal {
     SelfShadow,
     /// G7: scale, threads and tiles do not change a picture.
     Invariance,
+    /// G8: surfaces a few ulp apart are hit in their order.
+    Order,
+    /// G9: a lamp on a surface lights what it sees.
+    LampOnSurface,
+    /// G10: no light leaves a closed mesh.
+    Enclosure,
+    /// G11: nothing passes through flat caps, or through planes given by far points.
+    FlatCaps,
+    /// G12: hits do not change with the scale of the scene.
+    Scale,
+    /// G13: fine details far from the origin of coordinates are hit exactly.
+    FarDetail,
 }
 
 impl Goal {
-    /// All goals, from G1 to G7.
-    pub const ALL: [Goal; 7] = [
+    /// All goals, from G1 to G13.
+    pub const ALL: [Goal; 13] = [
         Goal::SphereDistance,
         Goal::Tangency,
         Goal::Traversal,
@@ -60,11 +79,18 @@ impl Goal {
         Goal::Grazing,
         Goal::SelfShadow,
         Goal::Invariance,
+        Goal::Order,
+        Goal::LampOnSurface,
+        Goal::Enclosure,
+        Goal::FlatCaps,
+        Goal::Scale,
+        Goal::FarDetail,
     ];
 
-    /// Returns the name, `G1` to `G7`.
+    /// Returns the name, `G1` to `G13`.
     pub const fn name(self) -> &'static str {
-        ["G1", "G2", "G3", "G4", "G5", "G6", "G7"][self as usize]
+        ["G1", "G2", "G3", "G4", "G5", "G6", "G7", "G8", "G9", "G10", "G11", "G12", "G13"]
+            [self as usize]
     }
 
     fn cases(self, method: Method) -> Vec<Case> {
@@ -76,6 +102,12 @@ impl Goal {
             Goal::Grazing => grazing::cases(),
             Goal::SelfShadow => self_shadow::cases(),
             Goal::Invariance => invariance::cases(),
+            Goal::Order => order::cases(),
+            Goal::LampOnSurface => lamp_on_surface::cases(),
+            Goal::Enclosure => enclosure::cases(),
+            Goal::FlatCaps => flat_caps::cases(),
+            Goal::Scale => scale::cases(),
+            Goal::FarDetail => far_detail::cases(),
         }
     }
 }

@@ -36,7 +36,7 @@ pub struct CaseStats {
 /// The results of a case: a row of the report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The goal, `G1` to `G7`.
+    /// The goal, `G1` to `G13`.
     pub goal: String,
     /// The name of the case.
     #[serde(rename = "cell")]

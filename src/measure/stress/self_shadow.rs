@@ -3,8 +3,8 @@
 
 use glam::{DVec3, Vec3};
 
+use super::backends::{INTERSECTORS, intersectors};
 use super::case::{Case, RaySampler};
-use super::meshes::{INTERSECTORS, intersectors};
 use super::{CaseStats, random::Random};
 use crate::error::Result;
 use crate::geometry::Ray;
@@ -55,7 +55,7 @@ fn scene(spheres: &[(DVec3, f64)]) -> Scene {
 }
 
 /// Returns the light of a source at a finite distance, given as a vector toward it.
-fn incident_light(toward: DVec3) -> IncidentLight {
+pub fn incident_light(toward: DVec3) -> IncidentLight {
     IncidentLight { toward, is_bounded: true, intensity: Vec3::ONE }
 }
 

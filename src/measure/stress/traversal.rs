@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::meshes::{INTERSECTORS, icosphere, intersectors, torus};
+use super::backends::{INTERSECTORS, intersectors};
+use super::meshes::{icosphere, torus};
 use super::{case::Case, random::Random};
 use crate::geometry::Ray;
 use crate::intersect::{BruteForce, Coherence::Incoherent, Precision};

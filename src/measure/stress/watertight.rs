@@ -2,7 +2,8 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::meshes::{INTERSECTORS, cube, icosphere, intersectors, torus};
+use super::backends::{INTERSECTORS, intersectors};
+use super::meshes::{cube, icosphere, torus};
 use super::{CaseStats, case::Case, random::Random};
 use crate::geometry::{Hit, PrimitiveId, Ray};
 use crate::intersect::{BruteForce, Coherence, Precision};
