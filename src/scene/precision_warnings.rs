@@ -147,7 +147,10 @@ mod tests {
     #[test]
     fn a_mesh_far_from_its_own_origin_is_lost_in_its_file() {
         let found = precision_warnings(&scene(0.1, 1e6, DAffine3::IDENTITY));
-        assert!(found.len() == 1 && found[0].message.contains("f32, in which the file"), "{found:?}");
+        assert!(
+            found.len() == 1 && found[0].message.contains("f32, in which the file"),
+            "{found:?}"
+        );
         assert_eq!(precision_warnings(&scene(0.1, 1e5, DAffine3::IDENTITY)), []);
     }
 

@@ -145,7 +145,7 @@ fn coinciding_faces(plane: bool) -> Scene {
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::new(1.0, 0.0, -1.0), material));
     }
     for triangles in [[[0, 1, 2], [0, 2, 3]], [[3, 1, 0], [2, 1, 3]]] {
-        let positions = vec![[-1., -1., -1.], [-1., 1., -1.], [1., 1., 1.], [1., -1., 1.]];
+        let positions = vec![[-1., -1., -1.], [-1., 1., -1.], [1., 1., 1.], [1., -1., 1.]].into();
         let mesh = Mesh { positions, triangles: triangles.to_vec(), ..Mesh::default() };
         let mesh = scene.add_mesh(mesh);
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, material));

@@ -159,7 +159,7 @@ fn scene(mesh: Mesh, placement: Placement, random: &mut Random) -> Scene {
 
 /// Returns the least height of a mesh.
 fn lowest(mesh: &Mesh) -> f64 {
-    mesh.positions.iter().map(|p| f64::from(p[1])).fold(f64::INFINITY, f64::min)
+    mesh.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min)
 }
 
 /// The triangles at which rays are aimed; of those for feet, the first edge is one.

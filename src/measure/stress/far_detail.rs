@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::{PrimitiveId, Ray};
 use crate::intersect::{Backend, Coherence::Incoherent};
 use crate::measure::{oracle::Oracle, trace::closest};
-use crate::scene::{Instance, Material, Mesh, Scene};
+use crate::scene::{Instance, Material, MaterialId, Mesh, Scene};
 
 /// Where the meshes lie, in metres: in a zone of UTM, and in earth-centred coordinates (ECEF).
 const PLACES: [(&str, DVec3); 2] = [
@@ -57,23 +57,12 @@ fn scene(at: DVec3, random: &mut Random) -> Scene {
     for mesh in [torus(24, 12), icosphere(2), cube(6)] {
         let offset = random.in_ball() * (2.0 * SIZE);
         let turned = DAffine3::from_quat(random.rotation());
-        let positions = mesh.positions.iter().map(|p| {
-            let p = DVec3::from(p.map(f64::from));
-            turned.transform_point3(p * SIZE) + offset
-        });
-        let positions: Vec<DVec3> = positions.collect();
-        place(&mut scene, mesh, &positions, at);
+        // In f64, as a surveyed file has them.
+        let positions = mesh.positions.map(|_, p| turned.transform_point3(p * SIZE) + offset + at);
+        let mesh = scene.add_mesh(Mesh { positions, ..mesh });
+        scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
     }
     scene
-}
-
-/// Adds a mesh with vertices at these positions relative to a point: its own vertices are in f32 and
-/// relative, and a transform in f64 takes them there.
-fn place(scene: &mut Scene, mesh: Mesh, positions: &[DVec3], at: DVec3) {
-    let positions = positions.iter().map(|p| p.as_vec3().to_array()).collect();
-    let mesh = scene.add_mesh(Mesh { positions, ..mesh });
-    let transform = DAffine3::from_translation(at);
-    scene.instances.push(Instance::new(mesh, transform, crate::scene::MaterialId(0)));
 }
 
 /// Returns a ray at a vertex, an edge or any point of a triangle.

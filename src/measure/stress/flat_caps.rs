@@ -93,12 +93,9 @@ fn check_beside_cap(height: f64, backend: Backend, sampler: &RaySampler) -> Resu
         let off = random.power_of_ten(NEAREST[0], NEAREST[1]);
         let x = random.range(-0.9, 0.9);
         // The cap's own height there.
-        let top = scene.meshes[0].positions[4][1];
-        let (sign, y) = if random.coin() {
-            (1.0, -off)
-        } else {
-            (-1.0, f64::from(top) * (1.0 - x.abs()) + off)
-        };
+        let top = scene.meshes[0].positions.at(4).y;
+        let (sign, y) =
+            if random.coin() { (1.0, -off) } else { (-1.0, top * (1.0 - x.abs()) + off) };
         from_wall(DVec3::new(x, y, 0.0), beyond(sign, random))
     };
     Ok(sampler.for_each_batch(ray, |rays, stats| count_hits(&intersectors, &oracle, rays, stats)))

@@ -76,7 +76,7 @@ fn pairs(kind: Kind, random: &mut Random) -> (Scene, Vec<DVec3>) {
     let mut scene = Scene::default();
     let material = scene.add_material(Material::default());
     let triangle = scene.add_mesh(Mesh {
-        positions: vec![[0.0, -2.0, -2.0], [0.0, 4.0, -2.0], [0.0, -2.0, 4.0]],
+        positions: vec![[0.0, -2.0, -2.0], [0.0, 4.0, -2.0], [0.0, -2.0, 4.0]].into(),
         triangles: vec![[0, 1, 2]],
         ..Mesh::default()
     });

@@ -72,7 +72,8 @@ mod tests {
     /// Whether f32 leaves a mesh of two triangles, this wide and long, in a scene of size 1.
     fn is_unresolved(width: f32, length: f32) -> bool {
         let mut scene = Scene::default();
-        let positions = vec![[0.; 3], [length, 0., 0.], [0., width, 0.], [length, width, 0.]].into();
+        let positions =
+            vec![[0.; 3], [length, 0., 0.], [0., width, 0.], [length, width, 0.]].into();
         let triangles = vec![[0, 1, 2], [1, 3, 2]];
         let mesh = scene.add_mesh(Mesh { positions, triangles, ..Mesh::default() });
         scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
