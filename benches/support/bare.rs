@@ -224,6 +224,7 @@ impl Bare {
     }
 
     /// Traces single rays; returns the primitives that they hit.
+    #[allow(dead_code)] // Not every bench asks for primitives.
     pub fn primitives(&self, rays: &[Packet<1>]) -> Vec<Option<u32>> {
         let mut context = Context([u32::MAX; 16]);
         let mut args = sys::RTCIntersectArguments {
