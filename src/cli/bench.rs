@@ -4,7 +4,8 @@ use std::process::ExitCode;
 
 use crate::cli::{args::Bench, flag_values::SampleRange, messages, output, scene_args::SceneInput};
 use crate::error::{Error, Result};
-use crate::measure::bench::{self, BenchOptions, Samples};
+use crate::intersect::{Backend, Precision};
+use crate::measure::bench::{self, BenchOptions, Samples, Setup};
 use crate::write;
 
 /// The longest side of a quick picture in pixels.
@@ -29,9 +30,12 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
     let files = files.map(|name| out.join(name));
     std::fs::create_dir_all(out).map_err(|e| Error::io("create", out, &e))?;
     files.iter().try_for_each(|path| write::check_file(path))?;
-    // Warn of lost precision.
+    // Warn of lost precision, and of meshes that coincide if any mode has f32 rays.
     if !input.quiet {
-        let warnings = messages::scene_warnings(&report, &scene);
+        let has_f32_rays =
+            |setup: &Setup| setup.backend != Backend::Rust && setup.precision == Precision::Fast;
+        let has_f32_rays = options.setups.iter().any(has_f32_rays);
+        let warnings = messages::scene_warnings(&report, &scene, has_f32_rays);
         warnings.iter().for_each(|w| messages::warning(w));
     }
 

@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::cli::load_report::{self, LoadSummary};
 use crate::cli::{args::Info, messages, output, paths, render_stats::Geometry};
 use crate::error::Result;
+use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
 use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
@@ -119,6 +120,7 @@ impl Summary {
     fn new(scene: &Scene, report: &LoadReport, animation: Option<AnimationSummary>) -> Self {
         let bounds = scene.bounds();
         // The default of `render`: precision fast, on Embree if it is built in.
+        let has_f32_rays = Backend::default() != Backend::Rust;
         let features = SceneFeatures::from_scene(scene);
         // The names of kinds, and those that the objects have in their files.
         let lights = scene.lights.iter().map(|l| messages::labelled(light_kind(&l.kind), &l.name));
@@ -141,7 +143,7 @@ impl Summary {
             skipped: features.skipped().map(|(feature, why)| (feature.name(), why)).collect(),
             report: report.into(),
             faces: report.to_string(),
-            warnings: messages::scene_warnings(report, scene),
+            warnings: messages::scene_warnings(report, scene, has_f32_rays),
         }
     }
 }

@@ -13,10 +13,15 @@ pub fn error(error: &Error) {
     to_stderr(&format(error));
 }
 
-/// Returns the warnings of a load, and those about lost precision.
-pub fn scene_warnings(report: &LoadReport, scene: &Scene) -> Vec<String> {
+/// Returns the warnings of a load, those about lost precision and, with `f32_rays` (as on Embree in precision
+/// `fast`), that about meshes which coincide.
+pub fn scene_warnings(report: &LoadReport, scene: &Scene, f32_rays: bool) -> Vec<String> {
     let lost = scene::precision_warnings(scene).into_iter().map(|warning| warning.message);
-    report.warnings.iter().cloned().chain(lost).collect()
+    let coincident = f32_rays.then(|| scene::coincident_meshes(scene)).flatten().map(|pair| {
+        pair + ": which of them is seen, precision fast on Embree decides ray by ray; \
+                --precision certified shows the first"
+    });
+    report.warnings.iter().cloned().chain(lost).chain(coincident).collect()
 }
 
 /// Returns a kind of object or its index, followed by its name if it has one.

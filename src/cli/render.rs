@@ -13,6 +13,7 @@ use crate::cli::{messages, output, paths};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::NotFinite;
+use crate::intersect::{Backend, Precision};
 use crate::load::add_ground;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
 use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
@@ -36,7 +37,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     let load = start.elapsed();
 
-    // Render the frames, and write each when it is done.
+    // Warn of what the picture may suffer from.
     let options = RenderOptions {
         backend: arguments.backend.unwrap_or_default(),
         precision: arguments.trace.precision,
@@ -46,6 +47,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
         view: arguments.view,
         ..RenderOptions::default()
     };
+    let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
+    let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
+    if !input.quiet {
+        warnings.iter().for_each(|w| messages::warning(w));
+    }
+
+    // Render the frames, and write each when it is done.
     let bar = messages::progress_bar(input.quiet);
     let mut writer = FrameWriter::new(&plan, &scene, &options, arguments.half)?;
     let times: Vec<f64> = plan.frames.iter().map(|frame| frame.time).collect();
@@ -57,13 +65,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     bar.finish_and_clear();
     let totals = writer.into_totals()?;
 
-    // Report warnings, the summary and the statistics.
-    let mut warnings = messages::scene_warnings(&report, &first);
+    // Report what the frames brought to light, the summary and the statistics.
+    let before = warnings.len();
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(image_warning(&first, &options, &totals));
     let total = start.elapsed();
     if !input.quiet {
-        warnings.iter().for_each(|w| messages::warning(w));
+        warnings.iter().skip(before).for_each(|w| messages::warning(w));
         if output::stdout_is_free(arguments.stats.as_ref()) {
             output::print(&plan.summary(total.as_secs_f64()))?;
         }

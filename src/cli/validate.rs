@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::{args::Validate, check_status, messages, output, paths, scene_args::SceneInput};
 use crate::error::Result;
+use crate::intersect::Precision;
 use crate::measure::{self, Validation};
 
 /// The result of a validation: `validate --json`.
@@ -35,7 +36,7 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     // Warn of what the comparison may find for reasons of precision.
     paths::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = arguments.trace.precision;
-    let warnings = messages::scene_warnings(&report, &scene);
+    let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
     if !input.quiet {
         warnings.iter().for_each(|w| messages::warning(w));
     }

@@ -19,6 +19,7 @@
 pub mod animation;
 mod camera;
 pub(crate) mod check;
+mod coincidence;
 mod coverage;
 mod features;
 mod film_settings;
@@ -40,6 +41,7 @@ pub(crate) mod watertight;
 
 pub(crate) use camera::RayGenerator;
 pub use camera::{Camera, Projection};
+pub(crate) use coincidence::coincident_meshes;
 pub use coverage::{AlphaMode, Coverage};
 pub use features::{Feature, SceneFeatures};
 pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
