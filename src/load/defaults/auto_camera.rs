@@ -48,9 +48,8 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
     let Ok(mut camera) = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens) else {
         return Ok(());
     };
-    // The same where it is too large for any camera.
     let extent = bounds.max_abs();
-    if extent > MAX_COORDINATE {
+    if !extent.is_finite() {
         return Ok(());
     }
     // The position, as near as all of the model is within the edges of the image.
@@ -64,7 +63,8 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
         extents(scene, &bounds, normals)
     };
     camera.position = framing_position(extents, bounds.center(), &camera, tangents);
-    if camera.position.abs().max_element() > MAX_COORDINATE {
+    // What is itself too large `Scene::check` refuses.
+    if extent <= MAX_COORDINATE && camera.position.abs().max_element() > MAX_COORDINATE {
         return Err(Error::input(format!(
             "the scene reaches out to {extent:e}: a camera that sees all of it would stand beyond the \
              {MAX_COORDINATE:e} supported; scale the scene down, or give it a camera of its own"
@@ -229,6 +229,15 @@ mod tests {
         assert!(filled(&mut point).iter().all(|x| x.abs() < FILL_RATIO));
         let mut origin = mesh(&[[0., 0., 0.]]);
         assert!(filled(&mut origin).iter().all(|x| x.abs() < FILL_RATIO));
+    }
+
+    #[test]
+    fn a_scene_too_large_to_be_framed_is_refused_by_its_own_size() {
+        let mut scene = mesh(&BOX);
+        scene.instances[0].transform = DAffine3::from_scale(DVec3::splat(3e14));
+        let error = add_camera(&mut scene).unwrap_err().to_string();
+        assert!(error.contains("the scene reaches out to 9e14"), "{error}");
+        assert_eq!(scene.cameras, []);
     }
 
     #[test]
