@@ -48,8 +48,10 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
         surroundings.have_within(scene, camera.position).then_some(camera)
     });
     let camera = within.or_else(|| framing_camera(scene));
-    if camera.as_ref().is_some_and(|c| c.position.abs().max_element() > MAX_COORDINATE) {
-        let extent = scene.bounds_over_time().max_abs();
+    // What is itself too large `Scene::check` refuses.
+    let extent = scene.bounds_over_time().max_abs();
+    let is_too_far = |c: &Camera| c.position.abs().max_element() > MAX_COORDINATE;
+    if extent <= MAX_COORDINATE && camera.as_ref().is_some_and(is_too_far) {
         return Err(Error::input(format!(
             "the scene reaches out to {extent:e}: a camera that sees all of it would stand beyond the \
              {MAX_COORDINATE:e} supported; scale the scene down, or give it a camera of its own"
@@ -59,7 +61,7 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
     Ok(())
 }
 
-/// Returns the camera that frames a scene; none if that is not finite or too large for any camera.
+/// Returns the camera that frames a scene; none if that is not finite.
 fn framing_camera(scene: &Scene) -> Option<Camera> {
     // The box to be framed, which must have a size.
     let mut bounds = scene.bounds_over_time();
@@ -76,8 +78,7 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
     let direction = view_direction(scene, bounds.size());
     let lens = Projection::FovY(2.0 * HALF_FOV);
     let mut camera = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens).ok()?;
-    let extent = bounds.max_abs();
-    if !extent.is_finite() || extent > MAX_COORDINATE {
+    if !bounds.max_abs().is_finite() {
         return None;
     }
     // The position, as near as all of the model is within the edges of the image.
@@ -229,7 +230,7 @@ mod tests {
             for transform in [
                 DAffine3::IDENTITY,
                 DAffine3::from_scale(DVec3::splat(1e-20)),
-                DAffine3::from_scale(DVec3::splat(1e13)),
+                DAffine3::from_scale(DVec3::splat(1e20)),
                 DAffine3::from_translation(DVec3::new(1e4, -1e5, 3e4)),
             ] {
                 let mut scene = mesh(&BOX);
@@ -284,6 +285,15 @@ mod tests {
             add_camera(&mut scene).unwrap();
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
         }
+    }
+
+    #[test]
+    fn a_scene_too_large_to_be_framed_is_refused_by_its_own_size() {
+        let mut scene = mesh(&BOX);
+        scene.instances[0].transform = DAffine3::from_scale(DVec3::splat(3e14));
+        let error = add_camera(&mut scene).unwrap_err().to_string();
+        assert!(error.contains("the scene reaches out to 9e14"), "{error}");
+        assert_eq!(scene.cameras, []);
     }
 
     #[test]
