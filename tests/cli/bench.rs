@@ -174,7 +174,8 @@ fn bench_counts_hits_that_are_not_the_certified_ones() {
                  [[model]]\nfile = \"floor.obj\"\n\
                  [[model]]\nfile = \"floor.obj\"\nrotate = [0, 33, 0]\n";
     folder.write("floors.toml", scene);
-    folder.run("bench floors.toml --out out --quick --runs 1 --size 100x50").good();
+    let run = folder.run("bench floors.toml --out out --quick --runs 1 --size 100x50");
+    assert!(run.status == Some(0) && run.stderr.contains("coincide"), "{}", run.stderr);
     let report = json(&folder);
     let wrong = |setup: [&str; 2]| {
         let row = report_rows(&report)

@@ -84,7 +84,10 @@ impl OutOfSight {
             format!("[[plane]]\npoint = {plane:?}\nnormal = {normal:?}\ncasts_shadow = false\n");
         match work {
             Feature::Spheres => sphere,
-            Feature::Instances => model("needless.obj") + &model("needless.obj"),
+            // One across the other.
+            Feature::Instances => {
+                model("needless.obj") + &model("needless.obj") + "rotate = [50, 50, 0]\n"
+            }
             Feature::Planes => plane,
             Feature::Pictures | Feature::Uv => made_of("diffuse_map = \"wood.png\""),
             Feature::Mipmaps => made_of("diffuse_map = \"wood.png\"\nfilter = \"mipmap\""),

@@ -105,7 +105,8 @@ fn spheres_are_there_for_spheres_alone() {
 
 #[test]
 fn instances_are_there_for_meshes_that_stand_twice() {
-    assert_done(&bare_and("[[model]]\nfile = \"triangle.obj\""), &["instances"]);
+    let second = "[[model]]\nfile = \"triangle.obj\"\ntranslate = [0, 0, -1]";
+    assert_done(&bare_and(second), &["instances"]);
 }
 
 #[test]

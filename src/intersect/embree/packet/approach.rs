@@ -92,7 +92,7 @@ mod tests {
         fn the_point_lies_on_the_ray_to_within_half_a_rounding_of_f32(
             middle in prop::array::uniform3(-1.0..1.0f64),
             offset in -9..7i32,
-            target in prop::array::uniform3(-0.5..0.5f64),
+            target in prop::array::uniform3(-0.25..0.25f64),
             from in prop::array::uniform3(-1.0..1.0f64),
             away in 28..100i32,
             length in -400..400i32,
@@ -102,8 +102,8 @@ mod tests {
             let origin = space.center + DVec3::from(from).normalize() * f64::from(away).exp2();
             let direction = (space.center + DVec3::from(target) - origin) * f64::from(length).exp2();
             let Approach::Near { t, point } = Approach::new(origin, direction, &space) else {
-                // A direction of 53 bits does not aim better than this.
-                prop_assert!(away > 50, "2^{} away", away);
+                // A direction of 53 bits aims to within 2⁻⁵³ of the way: beyond this it may miss the box.
+                prop_assert!(away > 48, "2^{} away", away);
                 return Ok(());
             };
             prop_assert!(t > 0.0 && point.abs().max_element() <= 4.0 * space.extent);
