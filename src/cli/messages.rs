@@ -41,16 +41,19 @@ const MAX_LINE: usize = 2000;
 /// an untrusted file can be of any length, and contain codes that move the cursor, begin a line that
 /// looks like another message, hide text or reverse its direction.
 pub fn line(text: &str) -> String {
-    let escaped = |text: &str| -> String {
-        let escape =
-            |c| if is_visible(c) { String::from(c) } else { c.escape_unicode().to_string() };
-        text.chars().map(escape).collect()
+    let escape = |c| if is_visible(c) { String::from(c) } else { c.escape_unicode().to_string() };
+    let escaped = |text: &str| text.chars().map(escape).collect::<String>();
+    // Of a text that is too long once it is escaped, the beginning and the end.
+    let first_beyond = |chars: &mut dyn Iterator<Item = (usize, char)>, limit: usize| {
+        let mut length = 0;
+        chars.find(|&(_, c)| {
+            length += if is_visible(c) { 1 } else { escape(c).len() };
+            length > limit
+        })
     };
-    // Of a text that is too long, the beginning and the end.
-    let [begin, end] = [MAX_LINE * 3 / 4, MAX_LINE / 4];
-    let head = text.char_indices().nth(begin).map(|(at, _)| at);
-    let tail = text.char_indices().rev().nth(end).map(|(at, _)| at);
-    match head.zip(tail) {
+    let head = first_beyond(&mut text.char_indices(), MAX_LINE * 3 / 4).map(|(at, _)| at);
+    let tail = first_beyond(&mut text.char_indices().rev(), MAX_LINE / 4);
+    match head.zip(tail.map(|(at, c)| at + c.len_utf8())) {
         Some((head, tail)) if head < tail => {
             format!("{} … {}", escaped(&text[..head]), escaped(&text[tail..]))
         }
@@ -159,6 +162,7 @@ mod tests {
     fn long_lines_are_cut_in_their_middle() {
         let cut = line(&format!("begin {} end", "x".repeat(1 << 20)));
         assert!(cut.starts_with("begin x") && cut.ends_with("x end") && cut.chars().count() < 2100);
+        assert!(line(&"\u{200b}".repeat(1 << 20)).len() < 2100, "escapes count by their length");
         let whole = "é".repeat(MAX_LINE);
         assert_eq!(line(&whole), whole);
     }

@@ -3,11 +3,8 @@
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::Positions;
+use super::positions::{GRAIN, Positions};
 use crate::geometry::Bounds;
-
-/// The grain size of parallel loops over vertices or triangles: the least number for one thread.
-pub(crate) const GRAIN: usize = 1 << 14;
 
 /// The index of a mesh in `Scene::meshes`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -50,10 +50,10 @@ pub use image::Image;
 pub use light::IncidentLight;
 pub use light::{Falloff, Light, LightKind, Shadow};
 pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShininessMap};
-pub(crate) use mesh::GRAIN;
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
 pub(crate) use metallic_roughness::{mirror_share, shininess};
+pub(crate) use positions::GRAIN;
 pub use positions::Positions;
 pub use precision_warnings::{PrecisionWarning, precision_warnings};
 #[doc(hidden)]

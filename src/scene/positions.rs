@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::GRAIN;
+/// The grain size of parallel loops over vertices or triangles: the least number for one thread.
+pub(crate) const GRAIN: usize = 1 << 14;
 
 /// The positions of a mesh's vertices, in f32 or in f64.
 ///

@@ -171,8 +171,7 @@ struct Targets {
 impl Targets {
     fn new(mesh: &Mesh, target: Target) -> Self {
         let ground = lowest(mesh);
-        let all = (0..mesh.triangles.len() as u32)
-            .map(|t| mesh.triangle_vertices(t).map(|p| DVec3::from(p.map(f64::from))));
+        let all = (0..mesh.triangles.len() as u32).map(|t| mesh.triangle_vertices(t));
         let triangles = match target {
             // Those that stand on an edge.
             Target::Feet => all

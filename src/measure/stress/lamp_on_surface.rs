@@ -123,8 +123,7 @@ impl Lamps {
             Place::Face | Place::Edge | Place::Vertex => {
                 let mesh = &self.scene.meshes[0];
                 let triangle = random.below(mesh.triangles.len()) as u32;
-                let corners = mesh.triangle_vertices(triangle).map(|p| p.map(f64::from).into());
-                let [a, b, c]: [DVec3; 3] = corners;
+                let [a, b, c] = mesh.triangle_vertices(triangle);
                 // Weights that are multiples of 1/16.
                 let first = 1 + random.below(14);
                 let second = 1 + random.below(15 - first);
