@@ -41,24 +41,33 @@ const MAX_LINE: usize = 2000;
 /// an untrusted file can be of any length, and contain codes that move the cursor, begin a line that
 /// looks like another message, hide text or reverse its direction.
 pub fn line(text: &str) -> String {
-    let escape = |c| if is_visible(c) { String::from(c) } else { c.escape_unicode().to_string() };
     let escaped = |text: &str| text.chars().map(escape).collect::<String>();
     // Of a text that is too long once it is escaped, the beginning and the end.
-    let first_beyond = |chars: &mut dyn Iterator<Item = (usize, char)>, limit: usize| {
-        let mut length = 0;
-        chars.find(|&(_, c)| {
-            length += if is_visible(c) { 1 } else { escape(c).len() };
-            length > limit
-        })
-    };
-    let head = first_beyond(&mut text.char_indices(), MAX_LINE * 3 / 4).map(|(at, _)| at);
-    let tail = first_beyond(&mut text.char_indices().rev(), MAX_LINE / 4);
+    let head = first_beyond(text.char_indices(), MAX_LINE * 3 / 4).map(|(at, _)| at);
+    let tail = first_beyond(text.char_indices().rev(), MAX_LINE / 4);
     match head.zip(tail.map(|(at, c)| at + c.len_utf8())) {
         Some((head, tail)) if head < tail => {
             format!("{} … {}", escaped(&text[..head]), escaped(&text[tail..]))
         }
         _ => escaped(text),
     }
+}
+
+/// Returns the first character, with its position, that does not fit into `limit` printed ones.
+fn first_beyond(
+    mut chars: impl Iterator<Item = (usize, char)>,
+    limit: usize,
+) -> Option<(usize, char)> {
+    let mut length = 0;
+    chars.find(|&(_, c)| {
+        length += if is_visible(c) { 1 } else { escape(c).len() };
+        length > limit
+    })
+}
+
+/// Returns a character as it is printed.
+fn escape(c: char) -> String {
+    if is_visible(c) { String::from(c) } else { c.escape_unicode().to_string() }
 }
 
 /// True if a character can be seen, or is a space or a tab.

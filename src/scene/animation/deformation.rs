@@ -102,7 +102,12 @@ impl Deformation {
             // Not finite where the space is flat, and its instances invisible.
             let space = skin.space.world_transform(worlds).inverse();
             let bound_to_world = |joint: &Joint| joint.world_transform(worlds) * joint.inverse_bind;
-            skin.joints.iter().map(|joint| space * bound_to_world(joint)).collect()
+            // Joints that no vertex names, which may be many, are not posed.
+            let is_named = skin.influences.named_joints(skin.joints.len());
+            let posed = skin.joints.iter().zip(is_named).map(|(joint, is_named)| {
+                if is_named { space * bound_to_world(joint) } else { DAffine3::IDENTITY }
+            });
+            posed.collect()
         });
         Pose { weights, joints }
     }
@@ -154,6 +159,17 @@ impl Influences {
     pub(crate) fn count_out_of_range(&self, count: usize) -> u64 {
         let named = self.joints.iter().zip(&self.weights);
         named.filter(|(joint, w)| **w != 0.0 && usize::from(**joint) >= count).count() as u64
+    }
+
+    /// Tells for each of the first `count` joints whether a vertex names it.
+    fn named_joints(&self, count: usize) -> Vec<bool> {
+        let mut is_named = vec![false; count];
+        for &joint in &self.joints {
+            if let Some(is_named) = is_named.get_mut(usize::from(joint)) {
+                *is_named = true;
+            }
+        }
+        is_named
     }
 
     /// Reduces the influences to those of some vertices, in the order given.
