@@ -39,7 +39,7 @@ fn obj(millimetres: &[[i64; 3]], offset: [i64; 3], triangles: &[[u32; 3]]) -> Sc
 fn wheel(offset: [i64; 3]) -> Scene {
     const STEPS: u32 = 90;
     let rim = |i: u32| {
-        let radius = if i % 2 == 0 { 1000.0 } else { 999.0 };
+        let radius = if i.is_multiple_of(2) { 1000.0 } else { 999.0 };
         let angle = f64::from(i) * std::f64::consts::TAU / f64::from(STEPS);
         [radius * angle.cos(), radius * angle.sin()].map(|x| x.round() as i64)
     };
