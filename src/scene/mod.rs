@@ -41,7 +41,7 @@ pub(crate) mod watertight;
 
 pub(crate) use camera::RayGenerator;
 pub use camera::{Camera, Projection};
-pub(crate) use coincidence::coincident_meshes;
+pub use coincidence::coincident_meshes;
 pub use coverage::{AlphaMode, Coverage};
 pub use features::{Feature, SceneFeatures};
 pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
