@@ -12,7 +12,7 @@ use num_bigint::BigInt;
 use crate::geometry::integer::{Scale, cross, dot, minus, sign};
 
 /// The surface that a line crosses, and which of its crossings is meant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CrossedSurface {
     /// A sphere, crossed at its first root above 0, or with `far` at the far one.
     Sphere {
@@ -44,6 +44,10 @@ pub fn compare(
     origin: DVec3,
     direction: DVec3,
 ) -> Ordering {
+    // Copies at one place are crossed at the same point.
+    if first == second {
+        return Ordering::Equal;
+    }
     // On one scale for all lengths the distances are numbers in one unit.
     let lengths = origin.to_array().into_iter().chain(first.lengths()).chain(second.lengths());
     let lengths = Scale::common(lengths);
