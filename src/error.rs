@@ -118,7 +118,7 @@ struct ErrorDetails {
     path: Option<PathBuf>,
     place: Option<Location>,
     message: String,
-    /// What the message announces, line by line.
+    /// The lines of the list that the message announces.
     list: Vec<String>,
     help: Option<String>,
     remedy: Option<Remedy>,

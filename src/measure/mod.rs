@@ -14,7 +14,7 @@ pub mod stress;
 mod trace;
 mod validate;
 
-pub use decimals::{DecimalAnswer, Decimals};
+pub use decimals::DecimalAnswer;
 pub use mismatch::{MismatchCause, MismatchClassifier};
 pub use picture::{Comparison, Picture, compare_pictures};
 pub use replay::{Answer, LightOcclusion, Replay, ReplayedHit, ray_from_text, ray_to_text, replay};

@@ -11,7 +11,7 @@ use crate::geometry::{Geometry, Hit, Ray};
 #[cfg(feature = "embree")]
 use crate::intersect::Backend;
 use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
-use crate::measure::decimals::{DecimalAnswer, Decimals};
+use crate::measure::decimals::{DecimalAnswer, answer_by_decimals};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
@@ -137,7 +137,7 @@ fn replay_with(
         }
     });
     let decimals = reference.zip(file);
-    let decimals = decimals.map(|(hit, file)| Decimals::read(file).answer(scene, ray, &hit));
+    let decimals = decimals.map(|(hit, file)| answer_by_decimals(file, scene, ray, &hit));
     Replay { ray: ray_to_text(ray), answers: answers.collect(), decimals }
 }
 

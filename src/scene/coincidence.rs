@@ -12,15 +12,18 @@ const MAX_COMPARED: usize = 256;
 /// The number of triangles by which two instances are compared.
 const MAX_TRIANGLES: usize = 1024;
 
-/// Finds two instances that coincide, and says which; none if there seem to be none. They have the same
-/// vertices, or are flat along the same axis, at the same coordinate, and a triangle of one reaches into one
-/// of the other.
+/// Returns a sentence about two instances that coincide; none if there seem to be none. Instances
+/// coincide that have the same vertices, or that are flat along the same axis, at the same coordinate, if
+/// a triangle of one reaches into one of the other.
 ///
-/// Where triangles coincide, precision `fast` on Embree decides ray by ray which of them is hit.
+/// Triangles that coincide are those between which precision `fast` on Embree chooses ray by ray.
 ///
 /// # Panics
 /// When the scene is not valid.
 pub fn coincident_meshes(scene: &Scene) -> Option<String> {
+    if scene.instances.len() < 2 {
+        return None;
+    }
     let mesh_bounds = scene.mesh_bounds();
     let instances = (0..).zip(&scene.instances).map(|(i, instance)| {
         let mesh = instance.mesh.0 as usize;
@@ -92,8 +95,8 @@ fn overlap(scene: &Scene, placed: &[Placed], axis: usize) -> Option<[u32; 2]> {
     })
 }
 
-/// True if a triangle of `a` reaches into one of `b`, in a plane with axes u and v: its middle or a point near
-/// a corner lies within.
+/// True if a triangle of `a` reaches into one of `b`, in a plane with axes u and v: its middle or a
+/// point near a corner lies within.
 fn reaches_into(scene: &Scene, a: &Placed, b: &Placed, [u, v]: [usize; 2]) -> bool {
     let flat = |p: DVec3| DVec2::new(p[u], p[v]);
     let others: Vec<[DVec2; 3]> = triangles(scene, b).map(|t| t.map(flat)).collect();

@@ -122,12 +122,10 @@ fn certified_hits_of_surveyed_meshes_are_those_of_the_oracle() {
                 let differing = found.iter().zip(&expected).position(|(a, b)| key(a) != key(b));
                 assert_eq!(differing, None, "{name}");
             } else {
-                let differing = found
-                    .iter()
-                    .zip(&expected)
-                    .filter(|(a, b)| a.map(|hit| hit.id) != b.map(|hit| hit.id));
-                // Only rays through vertices and edges may differ.
-                assert!(differing.count() < rays.len() / 3, "{name}");
+                // Only rays through vertices and edges may differ: of three one is aimed at a face.
+                let id = |hit: Option<Hit>| hit.map(|hit| hit.id);
+                let mut at_faces = (2..rays.len()).step_by(3);
+                assert_eq!(at_faces.find(|&i| id(found[i]) != id(expected[i])), None, "{name}");
             }
         }
     }

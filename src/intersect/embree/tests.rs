@@ -166,9 +166,9 @@ fn fast_traces_rays_from_any_distance() {
         let mut hits = vec![None; rays.len()];
         embree.closest(&rays, Coherence::Coherent, &mut hits);
         let found = hits.into_iter().flatten().count();
-        // From 1e15 away the f64 of `fast` has lost the spheres.
-        let lost = if distance < 1e15 { 10 } else { expected };
-        assert!(found.abs_diff(expected) <= lost, "{found} {expected} from {distance:e}");
+        // From 1e15 away the f64 of `fast` has lost the spheres; there only the work is counted.
+        let is_lost = distance >= 1e15;
+        assert!(is_lost || found.abs_diff(expected) <= 10, "{found} {expected} from {distance:e}");
         assert_eq!(packet::BRUTE_FORCED.get(), 0, "from {distance:e}");
     }
 }

@@ -40,12 +40,18 @@ impl Transform {
     }
 }
 
-/// Returns the positions of an OBJ file, with the weight of those that have one divided out; what is no
-/// position is passed over.
-pub fn obj_positions(text: &str) -> impl Iterator<Item = Vector> {
+/// Returns the positions of an OBJ file that are near some `vertices`, with the weight of those that have
+/// one divided out; what is no position is passed over.
+pub fn obj_positions(text: &str, vertices: &[DVec3]) -> impl Iterator<Item = Vector> {
     text.lines().filter_map(|line| {
-        let mut words = line.split_ascii_whitespace();
-        if words.next() != Some("v") {
+        let words = line.trim_start().strip_prefix('v')?.split_ascii_whitespace();
+        // Nearly all positions are others, which a first reading in f64 tells.
+        let rough: Vec<f64> = words.clone().map_while(|word| word.parse().ok()).collect();
+        let [x, y, z] = *rough.first_chunk()?;
+        let weight = if rough.len() == 4 { rough[3] } else { 1.0 };
+        let rough = DVec3::new(x, y, z) / weight;
+        let is_near = |p: &DVec3| (rough - *p).abs().max_element() <= 1e-9 * p.abs().max_element();
+        if !vertices.iter().any(is_near) {
             return None;
         }
         let numbers: Vec<RBig> = words.map_while(decimal).collect();

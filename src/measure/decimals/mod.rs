@@ -39,8 +39,26 @@ pub enum DecimalAnswer {
     Unknown(String),
 }
 
-/// The decimals of the files of a scene.
-pub struct Decimals {
+/// Returns the answer for a ray and its hit in a scene by the decimals of the file that the scene was
+/// loaded from, and of the models that this names.
+///
+/// # Panics
+/// When the hit is not one of a primitive of the scene.
+pub fn answer_by_decimals(path: &Path, scene: &Scene, ray: &Ray, hit: &Hit) -> DecimalAnswer {
+    // Only the vertices of the triangle that was hit are looked for: models are large.
+    let vertices = match hit.id.geometry {
+        Geometry::Mesh(_) => {
+            let instance = &scene.instances[hit.id.instance as usize];
+            let mesh = &scene.meshes[instance.mesh.0 as usize];
+            mesh.triangle_vertices(hit.id.primitive).to_vec()
+        }
+        _ => Vec::new(),
+    };
+    Decimals::read(path, &vertices).answer(scene, ray, hit)
+}
+
+/// The decimals of the files of a scene, as far as a hit needs them.
+struct Decimals {
     /// The positions of OBJ files, by the f64 numbers that they are rounded to.
     positions: HashMap<[u64; 3], Vector>,
     /// The transforms that instances may have.
@@ -49,8 +67,9 @@ pub struct Decimals {
 }
 
 impl Decimals {
-    /// Reads the decimals of the file that a scene was loaded from, and of the models that it names.
-    pub fn read(path: &Path) -> Self {
+    /// Reads the decimals of the file that a scene was loaded from, and of the models that it names; of
+    /// positions those of some `vertices`.
+    fn read(path: &Path, vertices: &[DVec3]) -> Self {
         let mut decimals =
             Self { positions: HashMap::new(), transforms: vec![], scene: SceneDecimals::default() };
         match extension(path).as_str() {
@@ -59,19 +78,19 @@ impl Decimals {
                 decimals.scene = files::scene_decimals(&text).unwrap_or_default();
                 let folder = path.parent().unwrap_or(Path::new(""));
                 for (file, transform) in std::mem::take(&mut decimals.scene.models) {
-                    decimals.add_model(&folder.join(file), &transform);
+                    decimals.add_model(&folder.join(file), &transform, vertices);
                 }
             }
-            _ => decimals.add_model(path, &Transform::identity()),
+            _ => decimals.add_model(path, &Transform::identity(), vertices),
         }
         decimals
     }
 
     /// Adds the positions and the transforms of a model that stands at `place`.
-    fn add_model(&mut self, path: &Path, place: &Transform) {
+    fn add_model(&mut self, path: &Path, place: &Transform, vertices: &[DVec3]) {
         let Ok(bytes) = std::fs::read(path) else { return };
         if extension(path) == "obj" {
-            for position in files::obj_positions(&String::from_utf8_lossy(&bytes)) {
+            for position in files::obj_positions(&String::from_utf8_lossy(&bytes), vertices) {
                 let key = key(DVec3::from_array([0, 1, 2].map(|i| nearest(&position[i]))));
                 self.positions.insert(key, position);
             }
@@ -83,10 +102,7 @@ impl Decimals {
     }
 
     /// Returns the answer for a ray and its hit in the scene.
-    ///
-    /// # Panics
-    /// When the hit is not one of a primitive of the scene.
-    pub fn answer(&self, scene: &Scene, ray: &Ray, hit: &Hit) -> DecimalAnswer {
+    fn answer(&self, scene: &Scene, ray: &Ray, hit: &Hit) -> DecimalAnswer {
         let distance = match hit.id.geometry {
             Geometry::Spheres => self.sphere(scene, ray, hit),
             Geometry::Planes => self.plane(scene, ray, hit),

@@ -33,7 +33,7 @@ enum Target {
 /// The place of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Placement {
-    /// As it is: its coordinates have few bits.
+    /// The mesh as it is: its coordinates have few bits.
     Straight,
     /// Turned about the vertical, and moved this far.
     Turned(f64),

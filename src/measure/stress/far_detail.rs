@@ -13,7 +13,7 @@ use crate::intersect::{Backend, Coherence::Incoherent};
 use crate::measure::{oracle::Oracle, trace::closest};
 use crate::scene::{Instance, Material, MaterialId, Mesh, Scene};
 
-/// Where the meshes lie, in metres: in a zone of UTM, and in earth-centred coordinates (ECEF).
+/// The centres of the meshes, in metres: in a zone of UTM, and in earth-centred coordinates (ECEF).
 const PLACES: [(&str, DVec3); 2] = [
     ("UTM", DVec3::new(500_000.123, 5_000_000.456, 120.789)),
     ("ECEF", DVec3::new(4_201_000.123, 168_000.456, 4_780_000.789)),

@@ -48,7 +48,7 @@ struct Case {
     expect: Expect,
 }
 
-/// What is done with a file.
+/// The command that a file is given to.
 #[derive(Clone, Copy)]
 enum Command {
     Info,

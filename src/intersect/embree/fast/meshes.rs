@@ -43,9 +43,9 @@ pub struct Meshes {
 }
 
 impl Meshes {
-    /// Attaches every instance of the meshes that are `included`: the mesh of a single instance as triangles in world space, and the
-    /// others as instances. Where the builder says that all are instanced, all are. Embree goes on reading
-    /// the meshes.
+    /// Attaches every instance of the meshes that are `included`: the mesh of a single instance as
+    /// triangles in world space, and the others as instances. Where the builder says that all are
+    /// instanced, all are. Embree goes on reading the meshes.
     ///
     /// # Errors
     /// When Embree runs out of memory.

@@ -34,7 +34,7 @@ pub fn unresolved_meshes(scene: &Scene, space: &F32Space) -> Vec<bool> {
     unresolved
 }
 
-/// What a mesh's triangles are like, by some of them.
+/// The detail of a mesh and whether it has needles, by a sample of its triangles.
 struct Shape {
     /// The square root of their mean area.
     detail: f64,
@@ -69,7 +69,7 @@ mod tests {
     use crate::scene::{Instance, MaterialId};
     use glam::DAffine3;
 
-    /// Whether f32 leaves a mesh of two triangles, this wide and long, in a scene of size 1.
+    /// Tells whether a mesh of two triangles, this wide and long, is unresolved in a scene of size 1.
     fn is_unresolved(width: f32, length: f32) -> bool {
         let mut scene = Scene::default();
         let positions =

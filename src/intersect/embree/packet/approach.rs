@@ -8,7 +8,7 @@ use crate::geometry::Bounds;
 use crate::geometry::double_double::{DoubleDouble, difference};
 use crate::intersect::embree::f32_space::{F32Space, MAX_APPROACH, MAX_ORIGIN_DISTANCE};
 
-/// Where a ray comes near the box of an f32 space.
+/// The result of following a ray to the box of an f32 space.
 pub enum Approach {
     /// At this t, at a point that is given from the centre of the space.
     Near { t: f64, point: DVec3 },

@@ -1,6 +1,5 @@
-//! Meshes in object space: an instance is a user primitive that takes the
-//! exact ray into the object space in f64, and traces the BLAS of the mesh with the f32 copy made
-//! there. (Embree's own instances transform the f32 ray, in f32.)
+//! Meshes in object space: an instance is a user primitive that takes the exact ray into the object
+//! space in f64, and traces the BLAS of the mesh with the f32 copy made there. (Embree's own instances transform the f32 ray, in f32.)
 //!
 //! A mesh is in object space when it has several instances, and when it is so small in the scene that
 //! the scene's padding would drown its triangles.

@@ -28,7 +28,8 @@ const SMALL: f64 = 1e-4;
 
 impl UserMeshes {
     /// Attaches every instance of the meshes that are `included`, with triangles that are tested as `P`:
-    /// the mesh of a single instance in world space, unless it is small; and the others in object space. Where the builder says that all are instanced, all are in object space.
+    /// the mesh of a single instance in world space, unless it is small; and the others in object
+    /// space. Where the builder says that all are instanced, all are in object space.
     ///
     /// # Errors
     /// When Embree runs out of memory.

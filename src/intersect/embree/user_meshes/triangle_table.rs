@@ -32,9 +32,7 @@ impl TriangleTable {
         let mesh = scene.meshes[mesh_index as usize].clone();
         Box::new(Self { mesh, mesh_index, instance: None, space })
     }
-}
 
-impl TriangleTable {
     /// The id of the triangle with this index.
     #[inline(always)]
     pub fn id<const W: usize>(&self, index: u32, context: &QueryContext<'_, W>) -> PrimitiveId {

@@ -103,7 +103,7 @@ pub fn collect_nodes<'a>(
         }
 
         // The transforms of the node.
-        let transform = &document.transforms[index];
+        let transform = lookup(&document.transforms.nodes, index, "node", &path)?;
         let local = local_transform(transform, &path, diagnostics)?;
         let to_world = parent.to_world * local;
         if !to_world.is_finite() {

@@ -34,17 +34,11 @@ impl NodeTransform {
     }
 }
 
-/// Reads the transforms of all nodes of a JSON text that the types of the `gltf` crate accept.
-///
-/// # Errors
-/// When the text is no JSON, or a transform is none.
-pub fn read(bytes: &[u8]) -> serde_json::Result<Vec<NodeTransform>> {
-    #[derive(Deserialize)]
-    struct Root {
-        #[serde(default)]
-        nodes: Vec<NodeTransform>,
-    }
-    serde_json::from_slice(bytes).map(|root: Root| root.nodes)
+/// The transforms of all nodes of a file whose JSON the types of the `gltf` crate accept.
+#[derive(Debug, Deserialize)]
+pub struct NodeTransforms {
+    #[serde(default)]
+    pub nodes: Vec<NodeTransform>,
 }
 
 #[cfg(test)]
@@ -54,7 +48,7 @@ mod tests {
     #[test]
     fn a_transform_keeps_the_digits_of_f64() {
         let file = br#"{"nodes":[{"name":"a"},{"translation":[5412345.75,0.1,-1e200]}]}"#;
-        let transforms = read(file).unwrap();
+        let transforms = serde_json::from_slice::<NodeTransforms>(file).unwrap().nodes;
         assert_eq!(transforms[0].translation, None);
         assert_eq!(transforms[1].translation, Some([5412345.75, 0.1, -1e200]));
     }

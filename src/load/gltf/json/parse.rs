@@ -2,10 +2,11 @@
 //! a file for no reason, and stricter where they let pass what would mean something else.
 
 use gltf::json::{self, Value};
+use serde::Deserialize;
 
 use super::super::container::wrong_version;
 use super::super::validate;
-use super::node_transforms::{self, NodeTransform};
+use super::node_transforms::NodeTransforms;
 use super::{JsonPath, error_at, large_indices, list};
 use crate::error::{Error, Location, Result};
 
@@ -37,7 +38,7 @@ pub struct Document {
     /// The crate's types.
     pub root: json::Root,
     /// The transforms of the nodes, in f64.
-    pub transforms: Vec<NodeTransform>,
+    pub transforms: NodeTransforms,
     /// The values as they are in the file, unless they are too large to be validated.
     pub value: Option<Value>,
 }
@@ -56,11 +57,12 @@ pub fn parse(bytes: &[u8]) -> Result<Document> {
     if root.asset.version.split('.').next() != Some("2") {
         return Err(unsupported_version(&root.asset.version));
     }
-    let transforms = node_transforms::read(bytes).map_err(|e| syntax_error(bytes, &e))?;
     if estimated_memory(bytes) > MAX_VALIDATED_MEMORY {
+        let transforms = serde_json::from_slice(bytes).map_err(|e| syntax_error(bytes, &e))?;
         return Ok(Document { root, transforms, value: None });
     }
-    let value = json::deserialize::from_slice(bytes).map_err(|e| syntax_error(bytes, &e))?;
+    let value: Value = json::deserialize::from_slice(bytes).map_err(|e| syntax_error(bytes, &e))?;
+    let transforms = NodeTransforms::deserialize(&value).map_err(|e| syntax_error(bytes, &e))?;
     // A visit to all values takes time, and only a number of ten digits can be too large.
     let mut digits = 0;
     let is_tenth_digit = |b: &u8| {
@@ -221,6 +223,15 @@ mod tests {
             "samplers":[{"input":0,"output":1,"interpolation":0}]}]}"#;
         let sampler = &parse(file).unwrap().root.animations[0].samplers[0];
         assert!(matches!(sampler.interpolation, json::validation::Checked::Invalid));
+    }
+
+    #[test]
+    fn transforms_are_those_of_the_key_that_counts_where_keys_stand_twice() {
+        let file = br#"{"asset":{"version":"2.0"},"nodes":[],
+            "nodes":[{"translation":[1,0,0],"translation":[0.1,0,0]}]}"#;
+        let Document { root, transforms, .. } = parse(file).unwrap();
+        assert_eq!((root.nodes.len(), transforms.nodes.len()), (1, 1));
+        assert_eq!(transforms.nodes[0].translation, Some([0.1, 0.0, 0.0]));
     }
 
     #[test]
