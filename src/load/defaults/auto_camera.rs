@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use super::extents::{box_extent, extents};
 use super::surroundings;
+use super::view_direction::view_direction;
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, triangle};
+use crate::geometry::Bounds;
 use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Camera, Projection, Scene};
 
@@ -14,25 +15,14 @@ use crate::scene::{Camera, Projection, Scene};
 const HALF_FOV: f64 = 17.5 * std::f64::consts::PI / 180.0;
 /// The share of the image, from its middle to its edge, that the model fills.
 const FILL_RATIO: f64 = 0.88;
-/// The direction from the model to the camera: to the right, from above, and mostly from the front,
-/// where +Z is the front and +Y is up, as in glTF.
-const VIEW_DIRECTION: DVec3 = DVec3::new(0.55, 0.45, 1.0);
 /// The least size of what is framed, as a share of how far it is from the origin: what is smaller is a
 /// point in f64.
 const MIN_SIZE: f64 = 1e-12;
 /// The least size of the box around a point.
 const POINT_SIZE: f64 = 1e-6;
-/// The ratio of thickness to length below which a model counts as flat.
-const FLATNESS: f64 = 0.02;
 /// The least distance of the model from the plane of the eye, as a share of its size: a tip that points at
 /// the eye would reach it.
 const CLEARANCE: f64 = 0.1;
-/// The share of a model's area that its view shows, below which it is seen from another side: its faces
-/// are then seen on their edges.
-const MIN_VISIBLE: f64 = 0.05;
-/// The greatest number of triangles of a mesh, and of instances, by which a view is judged.
-const SAMPLE: usize = 1024;
-
 /// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
 /// model fits, in the middle of the image. What encloses the model, as a sky does, is not framed if the
 /// camera is within it.
@@ -103,59 +93,6 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
     Some(camera)
 }
 
-/// Returns the direction from a model of a size to the camera: flat models are seen from their broad
-/// side, whatever way they are turned.
-fn view_direction(scene: &Scene, size: DVec3) -> DVec3 {
-    let usual = usual_direction(size);
-    let DVec3 { x, y, z } = VIEW_DIRECTION;
-    let others = [[-x, y, z], [z, y, x], [-z, y, x], [x, z, y]];
-    let others = others.map(|other| DVec3::from(other).normalize());
-    let shares = visible_shares(scene, [usual, others[0], others[1], others[2], others[3]]);
-    if shares[0] >= MIN_VISIBLE {
-        return usual;
-    }
-    let best = others.into_iter().zip(&shares[1..]).max_by(|a, b| a.1.total_cmp(b.1));
-    best.filter(|(_, share)| **share > shares[0]).map_or(usual, |(direction, _)| direction)
-}
-
-/// Returns the share of the area of a model's faces that each view shows; 1 if it has none.
-fn visible_shares<const N: usize>(scene: &Scene, directions: [DVec3; N]) -> [f64; N] {
-    let (mut total, mut shown) = (0.0, [0.0; N]);
-    let mut add = |area: f64, projected: [f64; N]| {
-        total += area;
-        shown = std::array::from_fn(|k| shown[k] + projected[k]);
-    };
-    // Some of many triangles and instances tell enough.
-    for instance in scene.instances.iter().step_by(scene.instances.len() / SAMPLE + 1) {
-        let Some(mesh) = scene.meshes.get(instance.mesh.0 as usize) else { continue };
-        let count = mesh.triangles.len();
-        for i in (0..count).step_by(count / SAMPLE + 1) {
-            let corners = mesh.triangle_vertices(i as u32).map(|p| instance.to_world(p));
-            let normal = triangle::area_normal(corners);
-            add(normal.length(), directions.map(|direction| normal.dot(direction).abs()));
-        }
-    }
-    // A sphere shows a quarter of its area, and hides as much that faces away.
-    for sphere in scene.spheres.iter().step_by(scene.spheres.len() / SAMPLE + 1) {
-        let area = sphere.radius * sphere.radius;
-        add(area, [area / 2.0; N]);
-    }
-    if total > 0.0 && total.is_finite() { shown.map(|shown| shown / total) } else { [1.0; N] }
-}
-
-/// Returns the direction from a model of a size to the camera, by its box alone.
-fn usual_direction(size: DVec3) -> DVec3 {
-    let flat = size.cmplt(DVec3::splat(FLATNESS * size.max_element()));
-    match [flat.x, flat.y, flat.z] {
-        // A card that stands sideways.
-        [true, false, false] => DVec3::new(VIEW_DIRECTION.z, VIEW_DIRECTION.y, VIEW_DIRECTION.x),
-        // A floor.
-        [false, true, false] => DVec3::new(VIEW_DIRECTION.x, VIEW_DIRECTION.z, VIEW_DIRECTION.z),
-        _ => VIEW_DIRECTION,
-    }
-    .normalize()
-}
-
 /// Returns the normals, of any length, of the planes that the eye and the right, left, upper and lower
 /// edge of the image span; `tangents` are those of half the angles to the side and up.
 fn edge_normals(camera: &Camera, [side, up]: [f64; 2]) -> [DVec3; 4] {
@@ -187,6 +124,7 @@ fn framing_position(
 
 #[cfg(test)]
 mod tests {
+    use super::super::view_direction::{MIN_VISIBLE, VIEW_DIRECTION, visible_shares};
     use super::*;
     use crate::scene::{Instance, MaterialId, Mesh, Sphere};
     use glam::DAffine3;

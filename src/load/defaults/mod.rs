@@ -9,6 +9,7 @@ pub mod ground;
 mod mipmaps;
 mod surroundings;
 mod tangents;
+mod view_direction;
 
 use crate::scene::Scene;
 
