@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::diagnostics::Diagnostics;
 use super::report::DropReason;
-use crate::scene::{GRAIN, Mesh};
+use crate::scene::{GRAIN, Mesh, Positions};
 
 /// Drops triangles that are not valid, and repairs normals, texture coordinates, colours and
 /// tangents, so that the mesh is valid.
@@ -32,7 +32,10 @@ pub fn repair(mesh: &mut Mesh, diagnostics: &mut Diagnostics, path: &str) {
     }
 
     // Triangles with two corners at one position.
-    let dropped = drop_degenerate(mesh);
+    let dropped = match &mesh.positions {
+        Positions::F32(positions) => drop_degenerate(positions, &mut mesh.triangles),
+        Positions::F64(positions) => drop_degenerate(positions, &mut mesh.triangles),
+    };
     diagnostics.drop(DropReason::Degenerate, dropped, place);
 
     // Attributes.
@@ -72,19 +75,19 @@ fn retain(triangles: &mut Vec<[u32; 3]>, is_retained: impl Fn(&[u32; 3]) -> bool
 
 /// Drops triangles with two corners at one position, and returns their number. Those whose corners
 /// are only collinear remain: they close the seams between large faces and several small ones.
-fn drop_degenerate(mesh: &mut Mesh) -> u64 {
-    let mut triangles = std::mem::take(&mut mesh.triangles);
+fn drop_degenerate<T: Copy + PartialEq + Sync>(
+    positions: &[[T; 3]],
+    triangles: &mut Vec<[u32; 3]>,
+) -> u64 {
     let is_degenerate = |t: &[u32; 3]| {
-        let [a, b, c] = mesh.corners(t);
+        let [a, b, c] = t.map(|i| positions[i as usize]);
         (a == b) | (b == c) | (c == a)
     };
     // Nearly always there are none, which is found in parallel.
-    let mut dropped = 0;
-    if triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
-        dropped = retain(&mut triangles, |t| !is_degenerate(t));
+    if !triangles.par_chunks(GRAIN).any(|t| t.iter().any(is_degenerate)) {
+        return 0;
     }
-    mesh.triangles = triangles;
-    dropped
+    retain(triangles, |t| !is_degenerate(t))
 }
 
 /// Replaces texture coordinates that are not finite with 0, and returns their number.

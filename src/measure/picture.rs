@@ -61,7 +61,10 @@ impl Picture {
         let damaged = |e: &dyn std::fmt::Display| {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
-        match Format::from_path(path)? {
+        // Only the kinds that are written can be compared, so the same names count; the advice differs.
+        let format = Format::from_path(path)
+            .map_err(|_| Error::input("only PNG and EXR pictures can be compared").at(path))?;
+        match format {
             Format::Gif | Format::Apng => Err(Error::input("animated pictures cannot be compared")
                 .at(path)
                 .help("compare their frames: render them as `-o frame-####.png`")),

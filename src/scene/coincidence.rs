@@ -35,7 +35,10 @@ pub fn coincident_meshes(scene: &Scene) -> Option<String> {
         .or_else(|| (0..3).find_map(|axis| overlap(scene, &placed, axis)))?;
     let name = |i: u32| {
         let mesh = scene.instances[i as usize].mesh.0 as usize;
-        format!("{i} (mesh `{}`)", scene.meshes[mesh].name)
+        match &*scene.meshes[mesh].name {
+            "" => i.to_string(),
+            name => format!("{i} (mesh `{name}`)"),
+        }
     };
     let [first, second] = [pair[0].min(pair[1]), pair[0].max(pair[1])].map(name);
     Some(format!("instances {first} and {second} coincide"))

@@ -186,8 +186,7 @@ impl<'a> ChunkParser<'a> {
                 let color = self.total.has_colors.then(|| self.paint.color(vertex));
                 let rewrite = |out: &mut String| vertex_data::rewrite(kind, rest, color, out);
                 if !self.parsed.vertices.add_rewritten(rewrite)? {
-                    let reason =
-                        "{} lines of vertex data have a number that is broken or not finite";
+                    let reason = "{} lines of vertex data have a number that is broken, not finite or beyond 3.4e38";
                     diagnostics.add(reason, 1, place);
                 }
             }

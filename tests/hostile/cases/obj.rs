@@ -40,7 +40,7 @@ const LINES: &[(&str, Expect)] = &[
     ("v 1e400 0 0\nf 1 2 4", Expect::Any),
     ("v 3e38 3e38 3e38\nf 1 2 4", Error("")),
     ("v 1e-400 0 0\nf 1 2 4", Expect::Any),
-    ("v 0x10 0 0", Warning("broken or not finite")),
+    ("v 0x10 0 0", Warning("broken, not finite or beyond")),
     ("v 1,5 0 0", Error("hostile.obj:4")),
     ("v 1 2 3 0\nf 1 2 4", Expect::Any),
     ("v 1 2 3 nan\nf 1 2 4", Expect::Any),
