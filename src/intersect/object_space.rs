@@ -55,6 +55,12 @@ impl ObjectSpace {
         let terms = self.inverse_norm * origin.abs().max_element() + self.max_coordinate;
         64.0 * f64::EPSILON * self.condition * terms
     }
+
+    /// The greatest length in object space of what is `length` long in the world.
+    #[inline(always)]
+    pub fn max_object_length(&self, length: f64) -> f64 {
+        self.inverse_norm * length
+    }
 }
 
 /// The sum of the columns' lengths, which bounds the operator norm.

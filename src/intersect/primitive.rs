@@ -7,11 +7,11 @@ use glam::DVec3;
 
 use crate::geometry::triangle::TriangleHit;
 use crate::geometry::{
-    Continuation, Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle,
+    Bounds, Continuation, Geometry, Hit, PrimitiveId, Ray, Side, plane, sphere, triangle,
 };
 use crate::intersect::Precision;
-use crate::intersect::ray_ends::RayEnds;
 pub use crate::intersect::ray_ends::SphereDeparture;
+use crate::intersect::ray_ends::{RayEnds, max_corner_distance};
 use crate::scene::Scene;
 
 /// The primitives of a scene, with the precision in which they are tested.
@@ -104,6 +104,15 @@ impl RayTests<'_> {
         }
         is_blocked = is_blocked && self.ends.is_blocked_by_triangle(id, vertices);
         self.between_ends(id, is_blocked, hit)
+    }
+
+    /// The greatest distance from the ray's line at which a triangle within `bounds` may be hit.
+    #[inline]
+    pub(super) fn corner_distance(&self, bounds: Bounds) -> f64 {
+        if self.ray.shadow.is_none() || !self.is_certified() {
+            return 0.0;
+        }
+        max_corner_distance(self.ends.departure_size().max(bounds.max_abs()))
     }
 
     /// The hit on any primitive.

@@ -47,6 +47,14 @@ use crate::scene::{Scene, Sphere};
 
 /// The distance from a surface up to which a point lies on it to within rounding, in units of ε S.
 const ROUNDING: f64 = 32.0;
+/// The distance up to which a triangle counts as part of the corner that a shadow ray starts from, in
+/// units of that of rounding.
+///
+/// The faces at a vertex must be judged together. A point somewhat farther from the vertex than rounding
+/// lies on the planes of some faces and not on those of others; if each is judged by itself, a ray may
+/// pass under one and over the next. How many directions do so falls with the distance from the vertex, and
+/// a hit at a vertex is rarely computed farther from it than the rounding.
+const CORNER_REACH: f64 = 16.0;
 
 /// The way in which a ray leaves a sphere, if it does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,7 +134,7 @@ impl<'a> RayEnds<'a> {
     #[inline]
     pub fn is_blocked_by_sphere(&self, index: u32) -> bool {
         let Sphere { center, radius, .. } = self.scene.spheres[index as usize];
-        self.corner(PrimitiveId::sphere(index)).is_some_and(|corner| {
+        self.corner(PrimitiveId::sphere(index), 1.0).is_some_and(|corner| {
             near_sphere(center, radius, corner.point, corner.distance)
                 && corner.sphere_separates(center)
         })
@@ -136,7 +144,7 @@ impl<'a> RayEnds<'a> {
     #[inline]
     pub fn is_blocked_by_plane(&self, index: u32) -> bool {
         let plane = &self.scene.planes[index as usize];
-        self.corner(PrimitiveId::plane(index)).is_some_and(|corner| {
+        self.corner(PrimitiveId::plane(index), 1.0).is_some_and(|corner| {
             near_plane(plane.point, plane.normal, corner.point, corner.distance)
                 && corner.plane_separates(plane.normal)
         })
@@ -145,19 +153,20 @@ impl<'a> RayEnds<'a> {
     /// True if the triangle `id` with these vertices blocks a shadow ray at its origin.
     #[cold]
     pub fn is_blocked_by_triangle(&self, id: PrimitiveId, vertices: [DVec3; 3]) -> bool {
-        self.corner(id).is_some_and(|corner| {
+        self.corner(id, CORNER_REACH).is_some_and(|corner| {
             near_triangle_plane(vertices, corner.point, corner.distance)
                 && corner.triangle_separates(vertices)
         })
     }
 
-    /// The corner at the origin of a shadow ray, for a primitive other than the one that it left.
+    /// The corner at the origin of a shadow ray, for a primitive other than the one that it left, on which
+    /// points lie up to `reach` times the distance of rounding.
     #[inline(always)]
-    fn corner(&self, id: PrimitiveId) -> Option<Corner> {
+    fn corner(&self, id: PrimitiveId, reach: f64) -> Option<Corner> {
         let Ray { origin: point, direction, departure, shadow, .. } = *self.ray;
         let viewer = shadow?.viewer;
         let is_other = departure.is_some_and(|departure| departure.id != id);
-        is_other.then(|| Corner { point, viewer, direction, distance: self.distance(id) })
+        is_other.then(|| Corner { point, viewer, direction, distance: reach * self.distance(id) })
     }
 
     /// True if the surface that was hit is one on which a shadow ray ends, since the light lies on it:
@@ -214,6 +223,12 @@ impl<'a> RayEnds<'a> {
 pub(in crate::intersect) fn max_tolerance(max_coordinate: f64) -> f64 {
     // Twice, for what the sums that lead to `max_coordinate` and to the comparison round.
     2.0 * tolerance(max_coordinate)
+}
+
+/// The greatest distance from the line of a shadow ray at which a surface may block it at its origin, where
+/// all coordinates are at most `max_coordinate`.
+pub(in crate::intersect) fn max_corner_distance(max_coordinate: f64) -> f64 {
+    2.0 * CORNER_REACH * tolerance(max_coordinate)
 }
 
 /// The largest absolute coordinate of any surface of the scene, whose finite surfaces lie within

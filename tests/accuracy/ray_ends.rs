@@ -183,6 +183,97 @@ fn a_closed_mesh_separates_a_lamp_within_from_points_on_its_corners_without() {
     }
 }
 
+/// A torus of radii 0.75 and 0.25 about the y axis, with faces that point outward.
+fn torus() -> Mesh {
+    const AROUND: u32 = 16;
+    const ACROSS: u32 = 8;
+    let angle = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::TAU;
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for (i, j) in (0..AROUND).flat_map(|i| (0..ACROSS).map(move |j| (i, j))) {
+        let ((sin, cos), (up, out)) = (angle(i, AROUND).sin_cos(), angle(j, ACROSS).sin_cos());
+        let r = 0.75 + 0.25 * out;
+        positions.push(DVec3::new(r * cos, 0.25 * up, r * sin).as_vec3().to_array());
+        let at = |i: u32, j: u32| i % AROUND * ACROSS + j % ACROSS;
+        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    Mesh { positions: positions.into(), triangles, ..Mesh::default() }
+}
+
+/// A torus that stands on a plane.
+fn torus_on_plane() -> Scene {
+    let mut scene = Scene::default();
+    scene.add_material(Material::default());
+    scene.planes.push(Plane::new(DVec3::Y * -0.25, DVec3::Y, MaterialId(0)));
+    let mesh = scene.add_mesh(torus());
+    scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
+    scene
+}
+
+/// Asserts that each of these shadow rays is occluded, whoever is asked.
+fn assert_all_occluded(scene: &Scene, rays: &[Ray]) {
+    for (name, intersector) in certified(scene) {
+        let mut occluded = vec![false; rays.len()];
+        intersector.occluded(rays, Coherence::Incoherent, &mut occluded);
+        let lit = occluded.iter().position(|occluded| !occluded);
+        assert_eq!(lit.map(|i| &rays[i]), None, "{name}");
+    }
+}
+
+#[test]
+fn a_point_just_farther_from_a_vertex_than_rounding_is_judged_with_all_faces_there() {
+    // On the plane of one face at the vertex to within rounding, and not on that of the next: this ray
+    // passed under the one and over the other.
+    let ray = Ray {
+        tmax: 1.0,
+        departure: Some(Departure { id: PrimitiveId::triangle(0, 25, 0), side: Side::Front }),
+        shadow: Some(ShadowEnds {
+            viewer: DVec3::new(-1.956197426472513, 2.646606774109698, 0.9849874633304176),
+        }),
+        ..Ray::new(
+            DVec3::new(0.35355338454247115, -8.043181690947037e-15, 0.3535533845424622),
+            DVec3::new(-0.45902560266130954, 0.0483978287974809, 0.44122442558844754),
+        )
+    };
+    assert_all_occluded(&torus_on_plane(), &[ray]);
+}
+
+#[test]
+fn no_light_from_within_a_torus_reaches_points_near_its_vertices() {
+    let scene = torus_on_plane();
+    let mesh = &scene.meshes[0];
+    let eyes = certified(&scene).remove(0).1;
+    let mut random = Random(23);
+    let mut rays = Vec::new();
+    while rays.len() < 6_000 {
+        // A ray from outside to near a vertex, and a lamp in the body of the torus.
+        let triangle = random.below(mesh.triangles.len()) as u32;
+        let [a, b, c] = mesh.triangle_vertices(triangle);
+        let near = 2f64.powi(-38 - random.below(16) as i32);
+        let target = a + ((b - a) * random.unit() + (c - a) * random.unit()) * near;
+        let eye =
+            DVec3::new(random.range(-3.0, 3.0), random.range(0.3, 3.0), random.range(-3.0, 3.0));
+        let angle = random.below(16) as f64 / 16.0 * std::f64::consts::TAU;
+        let out = 0.75 + random.range(-0.1, 0.1);
+        let lamp = DVec3::new(out * angle.cos(), random.range(-0.1, 0.1), out * angle.sin());
+        let seen = Ray::new(eye, target - eye);
+        let mut hits = [None];
+        eyes.closest(&[seen], Coherence::Incoherent, &mut hits);
+        let Some(hit) = hits[0] else { continue };
+        let surface = Surface::new(&scene, &seen, &hit);
+        let toward = lamp - surface.position;
+        if surface.facing_normal().dot(toward) > 0.0 {
+            rays.push(Ray {
+                tmax: 1.0,
+                departure: Some(Departure { id: hit.id, side: surface.side }),
+                shadow: Some(ShadowEnds { viewer: -seen.direction }),
+                ..Ray::new(surface.position, toward)
+            });
+        }
+    }
+    assert_all_occluded(&scene, &rays);
+}
+
 #[test]
 fn shadow_rays_and_others_may_be_asked_for_together() {
     let mut scene = Scene::default();

@@ -116,11 +116,15 @@ impl<'s> Bvh<'s> {
         if done {
             return;
         }
+        // A triangle may block a shadow ray at its origin from beside the ray's line.
+        let beside = tests.corner_distance(self.instances.tree.bounds());
+        let world_ray = TraversalRay::new(ray.origin, ray.direction, beside);
         self.instances.tree.traverse(&world_ray, limit, |instance, limit| {
             let mesh = self.primitives.scene.instances[instance as usize].mesh.0;
             let space = &self.instances.object_spaces[instance as usize];
             let (origin, direction) = space.object_ray(ray.origin, ray.direction);
-            let object_ray = TraversalRay::new(origin, direction, space.error(ray.origin));
+            let error = space.error(ray.origin) + space.max_object_length(beside);
+            let object_ray = TraversalRay::new(origin, direction, error);
             self.meshes[mesh as usize].0.traverse(&object_ray, limit, |triangle, limit| {
                 let id = PrimitiveId::triangle(mesh, triangle, instance);
                 tests.triangle(id, *limit).is_some_and(|hit| visit(hit, limit))

@@ -41,7 +41,9 @@ pub fn start(scene: &Scene, id: PrimitiveId, ray: &Ray) -> Start {
 /// from its viewer at the ray's origin.
 pub fn blocks_origin(scene: &Scene, id: PrimitiveId, ray: &Ray) -> bool {
     let (Some(ends), Some(from)) = (ray.shadow, ray.departure) else { return false };
-    let contact = Contact::new(scene, id, ray.origin, origin_slack(scene, id, ray));
+    // The faces at a vertex are judged together, also from somewhat farther off than rounding.
+    let reach = if matches!(id.geometry, Geometry::Mesh(_)) { 16.0 } else { 1.0 };
+    let contact = Contact::new(scene, id, ray.origin, reach * origin_slack(scene, id, ray));
     from.id != id && contact.is_on_surface() && contact.separates(ends.viewer, ray.direction)
 }
 

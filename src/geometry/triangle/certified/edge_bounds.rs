@@ -88,13 +88,13 @@ impl EdgeBounds {
         !(above & below)
     }
 
-    /// True if the line's origin may lie in the triangle's plane to within 2⁻⁴⁷ of the largest coordinate of
+    /// True if the line's origin may lie in the triangle's plane to within 2⁻⁴³ of the largest coordinate of
     /// the triangle and of `others`, which is at least that of the origin; false only where it certainly
     /// does not.
     #[inline(always)]
     pub fn may_start_in_plane(&self, others: f64) -> bool {
         // The vertices are at most s farther out than the origin, and the normal 2 √3 w long.
-        let distance = 256.0 * U * (others + self.size);
+        let distance = 4096.0 * U * (others + self.size);
         // Negated for what is not a number.
         let apart = self.numerator.abs() > self.numerator_error + 4.0 * self.area * distance;
         !apart

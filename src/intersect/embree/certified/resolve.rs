@@ -106,7 +106,8 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
     ) -> Option<Estimates<W>> {
         // A shadow ray may be blocked by what it starts on, beside its line.
-        let distance = if self.are_shadow_rays { self.departures.tolerance } else { 0.0 };
+        let corner_distance = self.departures.corner_distance;
+        let distance = if self.are_shadow_rays { corner_distance } else { 0.0 };
         let mut any = false;
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
@@ -143,8 +144,9 @@ impl<const W: usize> QueryContext<'_, W> {
                 // A directional light is nowhere.
                 let is_bounded = self.rays.tmax[i] < f64::INFINITY;
                 estimates.may_end[i] = is_bounded & primitive.shape.may_contain(end, tolerance);
+                let is_at_corner = primitive.shape.may_contain(origin, corner_distance);
                 let may_separate = primitive.shape.may_separate(origin, self.viewer(i), direction);
-                estimates.may_block[i] = estimates.may_start[i] & may_separate;
+                estimates.may_block[i] = is_at_corner & may_separate;
             }
         }
         Some(estimates)

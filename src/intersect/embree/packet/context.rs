@@ -8,7 +8,7 @@ use crate::intersect::embree::ffi::{CommittedScene, INVALID, RayHitRecord};
 use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::packet::rays::{PacketRays, TracedLanes};
 use crate::intersect::primitive::Primitives;
-use crate::intersect::ray_ends::max_tolerance;
+use crate::intersect::ray_ends::{max_corner_distance, max_tolerance};
 use crate::intersect::{BruteForce, Precision};
 use crate::scene::Scene;
 
@@ -152,6 +152,8 @@ pub struct PacketDepartures<const W: usize> {
     inward: [u32; W],
     /// The greatest distance from a surface at which a ray starts on it to within rounding.
     pub tolerance: f64,
+    /// The greatest distance from the line of a shadow ray at which a surface may block it at its origin.
+    pub corner_distance: f64,
 }
 
 impl<const W: usize> PacketDepartures<W> {
@@ -216,6 +218,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
                 outward: [INVALID; W],
                 inward: [INVALID; W],
                 tolerance: 0.0,
+                corner_distance: 0.0,
             },
             are_shadow_rays: batch.are_shadow_rays(),
             viewer: [[0.0; W]; 3],
@@ -250,6 +253,7 @@ impl<'a, const W: usize> QueryContext<'a, W> {
         if self.departures.any {
             let max_coordinate = self.rays.max_origin_coordinate().max(self.query.max_coordinate);
             self.departures.tolerance = max_tolerance(max_coordinate);
+            self.departures.corner_distance = max_corner_distance(max_coordinate);
             (self.departures.outward, self.departures.inward) = packet.departed_spheres();
         }
         lanes
