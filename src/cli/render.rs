@@ -12,7 +12,7 @@ use crate::cli::scene_args::SceneInput;
 use crate::cli::{messages, output, paths};
 use crate::error::{Error, Result};
 use crate::film::View;
-use crate::integrator::NotFinite;
+use crate::integrator::{MAX_LAYERS, NotFinite};
 use crate::intersect::{Backend, Precision};
 use crate::load::add_ground;
 use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
@@ -68,6 +68,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     // Report what the frames brought to light, the summary and the statistics.
     let before = warnings.len();
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
+    warnings.extend(layers_warning(totals.statistics.counts.beyond_layers));
     warnings.extend(image_warning(&first, &options, &totals));
     let total = start.elapsed();
     if !input.quiet {
@@ -293,6 +294,16 @@ fn not_finite_warnings(counts: &NotFinite) -> impl Iterator<Item = String> {
     let found = counts.filter(|(count, _)| *count > 0);
     found.map(|(count, cause)| {
         format!("{count} samples were left out of the image, because {cause}")
+    })
+}
+
+/// Returns a warning if rays were cut off behind too many layers.
+fn layers_warning(count: u64) -> Option<String> {
+    (count > 0).then(|| {
+        format!(
+            "{count} rays see black behind {MAX_LAYERS} transparent layers, one behind the other: no \
+             more are shown"
+        )
     })
 }
 

@@ -223,6 +223,7 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
         (Feature::Shadows.name(), rays.shadow),
         (Feature::Reflection.name(), rays.reflection),
         (Feature::Refraction.name(), rays.refraction),
+        (Feature::Culling.name(), done.culling),
         ("glass-in-shadows", done.glass),
         ("filters", done.filters),
         ("layers", images),

@@ -22,6 +22,9 @@ pub struct LoadArgs {
     /// Allow files to refer to files outside the folder of SCENE
     #[arg(long)]
     pub allow_outside: bool,
+    /// Show the back faces of one-sided glTF materials (`doubleSided` false), too
+    #[arg(long)]
+    pub double_sided: bool,
     /// Change a limit on what SCENE may use: bytes, json, nodes, depth, instances, vertices,
     /// triangles, deformed, elements, keys, pictures or pixels; can be given several times
     #[arg(long, value_name = "NAME=NUMBER")]
@@ -35,6 +38,7 @@ impl LoadArgs {
             size,
             variant: self.variant.clone(),
             allow_outside: self.allow_outside,
+            double_sided: self.double_sided,
             limits: limits(&self.limit),
         }
     }

@@ -50,6 +50,8 @@ pub struct FeatureCounts {
     pub planes: u64,
     /// Blocks of sixteen rays whose hits in Embree were tested by a filter.
     pub filters: u64,
+    /// Hits on one-sided surfaces, whose side was looked at.
+    pub culling: u64,
 }
 
 impl FeatureCounts {
@@ -74,6 +76,8 @@ pub struct Counts {
     pub work: FeatureCounts,
     /// The samples whose radiance was not finite and was left out.
     pub not_finite: NotFinite,
+    /// The rays that were cut off because they had gone straight through too many surfaces.
+    pub beyond_layers: u64,
 }
 
 /// The numbers of samples whose radiance was not finite, by its cause: each counts once, for the
@@ -128,6 +132,7 @@ impl std::ops::AddAssign for Counts {
         self.not_finite.light += other.not_finite.light;
         self.not_finite.surface += other.not_finite.surface;
         self.not_finite.sum += other.not_finite.sum;
+        self.beyond_layers += other.beyond_layers;
     }
 }
 
@@ -143,5 +148,6 @@ impl std::ops::AddAssign for FeatureCounts {
         self.glass += other.glass;
         self.planes += other.planes;
         self.filters += other.filters;
+        self.culling += other.culling;
     }
 }

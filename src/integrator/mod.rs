@@ -6,6 +6,7 @@
 //! shaded sixteen rays at a time.
 
 mod adaptive_sampling;
+mod back_faces;
 mod camera_rays;
 mod counts;
 mod debug_view;
@@ -36,6 +37,7 @@ use crate::intersect::Intersector;
 use crate::scene::{Camera, Feature, FilmSettings, Material, RayGenerator, Scene, SceneFeatures};
 use adaptive_sampling::ContrastRow;
 pub use adaptive_sampling::PixelRecord;
+use back_faces::BackFaces;
 pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
@@ -43,6 +45,7 @@ use sample_pattern::SamplePattern;
 #[cfg(all(feature = "measure", any(feature = "embree", test)))]
 pub use sample_pattern::sample_positions;
 pub use sample_pattern::sample_steps;
+pub use secondary_rays::MAX_LAYERS;
 use texture_lod::TextureLod;
 pub use tile_loop::{RefineStrip, Scratch};
 pub use tiling::Tiling;
@@ -63,6 +66,7 @@ pub struct Integrator<'a> {
     materials: MaterialCache,
     texture_lod: TextureLod,
     media: TransparentMedia,
+    back_faces: BackFaces,
     /// The instruction sets of the processor, for which inner loops are compiled.
     arch: pulp::Arch,
 }
@@ -75,9 +79,11 @@ struct ShadingFeatures {
     smooth_normals: bool,
     /// True if materials have highlights.
     highlights: bool,
+    /// True if light fades out toward the terminator of smooth meshes.
+    soft_terminator: bool,
     /// True if materials reflect as mirrors or transmit light.
     secondary_rays: bool,
-    /// True if materials transmit light.
+    /// True if light may pass a surface: materials transmit it, or are not there for it from behind.
     transmission: bool,
 }
 
@@ -147,12 +153,16 @@ impl<'a> Integrator<'a> {
                 textures: textures.into_iter().any(has),
                 smooth_normals: has(Feature::SmoothNormals),
                 highlights: has(Feature::Highlights),
+                soft_terminator: scene.film.soft_terminator
+                    && (has(Feature::SmoothNormals) || has(Feature::NormalMaps)),
                 secondary_rays: has(Feature::Reflection) || has(Feature::Refraction),
-                transmission: has(Feature::Refraction),
+                transmission: has(Feature::Refraction)
+                    || scene.materials_in_use().any(Material::passes_light_from_behind),
             },
             materials: MaterialCache::new(scene),
             texture_lod: TextureLod::new(has(Feature::Mipmaps), &camera, &film),
             media: TransparentMedia::new(scene, intersector, &camera),
+            back_faces: BackFaces::new(scene),
             camera,
             arch: pulp::Arch::new(),
         }

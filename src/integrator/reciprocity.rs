@@ -42,6 +42,7 @@ fn trace_path(
     let mut path = PathState {
         sample: 0,
         depth: 0,
+        layers: 0,
         throughput: DVec3::ONE,
         interior,
         cone: RayCone::default(),

@@ -13,6 +13,10 @@ use crate::shading::{DielectricInterface, reflect};
 /// least one.
 const NEGLIGIBLE: f64 = 1.0 / (1u128 << 127) as f64 / (1u128 << 127) as f64 / (1u64 << 26) as f64;
 
+/// The most surfaces that a path goes straight through, as through what alpha leaves uncovered; beyond
+/// these the colour is black.
+pub const MAX_LAYERS: u32 = 256;
+
 /// Spawns the rays that the mirrors and the glass of a wave send on, in the order in which they were
 /// hit.
 pub(super) fn spawn(
@@ -28,6 +32,10 @@ pub(super) fn spawn(
         let path = wave.path(i, integrator);
         let ray = wave.rays.ray(i);
         spawn_at_hit(integrator, &ray, &hit, specular, &path, |ray, is_refracted, path| {
+            if path.layers > MAX_LAYERS {
+                counts.beyond_layers += 1;
+                return;
+            }
             let count = &mut counts.rays;
             *(if is_refracted { &mut count.refraction } else { &mut count.reflection }) += 1;
             next.rays.push(ray);
@@ -47,9 +55,6 @@ pub(super) fn spawn_at_hit(
     mut emit: impl FnMut(&Ray, bool, PathState),
 ) {
     let (scene, surface) = (integrator.scene, &specular.surface);
-    if path.depth >= scene.film.max_depth {
-        return;
-    }
     // The directions, and the shares of the light.
     let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
     let scattered = scatter(integrator, specular, &media, ray.direction.normalize());
@@ -65,7 +70,15 @@ pub(super) fn spawn_at_hit(
         None => ray.continue_past(hit, opposite),
     };
     let length = hit.t * ray.direction.length();
+    // What is only left uncovered counts for itself, so that a tree of many leaves does not turn black.
+    let is_uncovered = scattered.is_uncovered;
     let mut emit = |ray: &Ray, share: DVec3, is_refracted: bool, interior| {
+        let is_layer = is_refracted && is_uncovered;
+        let (depth, layers) =
+            (path.depth + u32::from(!is_layer), path.layers + u32::from(is_layer));
+        if depth > scene.film.max_depth {
+            return;
+        }
         // A ray whose light would change no pixel is not traced.
         let throughput = path.throughput * share;
         if throughput.max_element() <= scene.film.cutoff.max(NEGLIGIBLE) {
@@ -77,8 +90,8 @@ pub(super) fn spawn_at_hit(
         } else {
             lod.spawned_cone(&path.cone, length, scene, surface, is_refracted)
         };
-        let (sample, depth) = (path.sample, path.depth + 1);
-        emit(ray, is_refracted, PathState { sample, depth, throughput, interior, cone });
+        let sample = path.sample;
+        emit(ray, is_refracted, PathState { sample, depth, layers, throughput, interior, cone });
     };
     emit(&reflected, scattered.reflected_share, false, media.incident);
     emit(&refracted, scattered.refracted_share, true, media.transmitted);
@@ -91,6 +104,11 @@ struct Scattered {
     refracted: Option<DVec3>,
     reflected_share: DVec3,
     refracted_share: DVec3,
+    /// True if light only goes on as if there were no surface: none is reflected or refracted. Where a
+    /// surface does both, paths fork, and their number must stay bounded.
+    is_uncovered: bool,
+    /// True under total reflection.
+    is_total: bool,
 }
 
 /// Scatters light that comes along `incoming`, of length 1.
@@ -118,15 +136,29 @@ fn scatter(
             refracted: if is_straight { None } else { interface.refract(incoming, normal) },
             reflected_share: params.reflect.as_dvec3() + transmit * interface.reflected,
             refracted_share: transmit * (1.0 - interface.reflected),
+            is_uncovered: is_straight && interface.reflected == 0.0 && params.reflect == Vec3::ZERO,
+            is_total: interface.reflected >= 1.0,
         }
     };
     let facing = surface.facing_normal();
     let shading = surface.normal * -surface.normal.dot(incoming).signum();
     let scattered = scatter_at(shading);
+    if shading == facing {
+        return scattered;
+    }
     // An interpolated normal may send light to the wrong side of the surface itself.
     let is_wrong_side = scattered.reflected.dot(facing) <= 0.0
         || scattered.refracted.is_some_and(|refracted| refracted.dot(facing) >= 0.0);
-    if is_wrong_side && shading != facing { scatter_at(facing) } else { scattered }
+    if is_wrong_side {
+        return scatter_at(facing);
+    }
+    // In a body of few faces, interpolated normals may reflect light totally at each of its hits, so that it
+    // never leaves: where the face lets it out, it goes.
+    if scattered.is_total {
+        let by_face = scatter_at(facing);
+        return if by_face.is_total { scattered } else { by_face };
+    }
+    scattered
 }
 
 #[cfg(test)]

@@ -12,8 +12,8 @@ use crate::integrator::tiling::Tile;
 use crate::integrator::transmissive_shadows::TransmissiveShadows;
 use crate::integrator::wave::{Wave, WaveQueue};
 use crate::integrator::{
-    Counts, Integrator, camera_rays, debug_view, direct_lighting, null_interfaces, secondary_rays,
-    surface_evaluation, transmissive_shadows,
+    Counts, Integrator, back_faces, camera_rays, debug_view, direct_lighting, null_interfaces,
+    secondary_rays, surface_evaluation, transmissive_shadows,
 };
 use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
@@ -215,7 +215,8 @@ impl Integrator<'_> {
         radiance.add_groups();
     }
 
-    /// Finds the closest hits of rays.
+    /// Finds the closest hits of rays that come from the camera, but for the back faces of one-sided
+    /// surfaces.
     pub(super) fn closest_hits(
         &self,
         rays: &RayBatch,
@@ -226,6 +227,9 @@ impl Integrator<'_> {
         self.intersector.closest_batch(rays, coherence, hits);
         let has_filter = self.intersector.uses_filter(Query::Closest, rays);
         counts.work.add_extra_tests(self.scene, has_filter, rays);
+        if !self.back_faces.is_empty() {
+            back_faces::pass_back_faces(self, rays, hits, counts);
+        }
     }
 
     /// Finds which shadow rays are occluded.

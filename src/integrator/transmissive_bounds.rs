@@ -18,8 +18,10 @@ pub(super) struct TransmissiveBounds {
 impl TransmissiveBounds {
     /// Returns the boxes of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let transmits =
-            |id: MaterialId| scene.materials.get(id.0 as usize).is_some_and(|m| m.may_transmit());
+        let transmits = |id: MaterialId| {
+            let material = scene.materials.get(id.0 as usize);
+            material.is_some_and(|m| m.may_transmit() || m.passes_light_from_behind())
+        };
         let spheres = scene.spheres.iter().filter(|s| transmits(s.material)).map(|s| s.bounds());
         let instances = scene
             .instances

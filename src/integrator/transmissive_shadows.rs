@@ -136,6 +136,11 @@ fn cross_surface(integrator: &Integrator<'_>, ray: &Ray, hit: &Hit, path: &mut S
         }
         return opposite;
     }
+    if material.passes_light_from_behind()
+        && integrator.back_faces.culled_side(hit.id) == Some(opposite)
+    {
+        return opposite;
+    }
     if !media.is_hidden {
         let cosine = surface.normal.dot(ray.direction).abs() / ray.direction.length();
         let interface = if material.thin {

@@ -26,8 +26,10 @@ pub(super) struct Wave {
 pub(super) struct PathState {
     /// The number, in the tile, of the sample that the path belongs to.
     pub sample: u32,
-    /// The number of surfaces that sent the light on.
+    /// The number of surfaces that reflected or refracted the light.
     pub depth: u32,
+    /// The number of surfaces that it went straight through, as through what alpha leaves uncovered.
+    pub layers: u32,
     /// The share that the light of the ray has in the sample.
     pub throughput: DVec3,
     /// The dielectrics that the ray is in.
@@ -59,7 +61,7 @@ impl Wave {
             ),
         };
         let cone = integrator.texture_lod.camera_cone(&ray);
-        PathState { sample: i as u32, depth: 0, throughput: DVec3::ONE, interior, cone }
+        PathState { sample: i as u32, depth: 0, layers: 0, throughput: DVec3::ONE, interior, cone }
     }
 
     fn clear(&mut self) {
@@ -135,6 +137,7 @@ mod tests {
         let path = |&sample: &u32| PathState {
             sample,
             depth: 1,
+            layers: 0,
             throughput: DVec3::ONE,
             interior: InteriorList::default(),
             cone: RayCone::default(),

@@ -51,6 +51,9 @@ pub struct LoadOptions {
     pub variant: Option<String>,
     /// True if files may name others that are neither beside nor below the file that is loaded.
     pub allow_outside: bool,
+    /// True if the viewer sees the back faces of one-sided materials, too, as path tracers show glTF
+    /// files; see [`Material::cull_back_faces`](crate::scene::Material::cull_back_faces).
+    pub double_sided: bool,
     /// The limits on what the load may read, unpack and build.
     pub limits: Limits,
 }
@@ -71,6 +74,12 @@ impl LoadOptions {
     /// Allows files to name others anywhere.
     pub fn allow_outside(mut self, allow: bool) -> Self {
         self.allow_outside = allow;
+        self
+    }
+
+    /// Shows the back faces of one-sided materials.
+    pub fn double_sided(mut self, double_sided: bool) -> Self {
+        self.double_sided = double_sided;
         self
     }
 
@@ -110,6 +119,9 @@ impl LoadOptions {
         }
         if let Some(size) = self.size {
             scene.film.size = size;
+        }
+        if self.double_sided {
+            scene.materials.iter_mut().for_each(|material| material.cull_back_faces = false);
         }
         // What stands at one place again and again would cost every ray that meets it.
         duplicates::remove_duplicates(&mut scene, &mut report);

@@ -40,11 +40,13 @@ pub enum Feature {
     Reflection,
     /// Refracted rays, and the dielectrics that they are in.
     Refraction,
+    /// Back-face culling, for which the side of every hit is looked at.
+    Culling,
 }
 
 impl Feature {
     /// All features, in the order of reports.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Spheres,
         Self::Instances,
         Self::Planes,
@@ -60,6 +62,7 @@ impl Feature {
         Self::Shadows,
         Self::Reflection,
         Self::Refraction,
+        Self::Culling,
     ];
 
     /// The name in reports.
@@ -86,6 +89,7 @@ impl Feature {
             Self::Shadows => ("shadows", "lights", "cast shadows"),
             Self::Reflection => ("reflection", "materials in use", "are mirrors or glass"),
             Self::Refraction => ("refraction", "materials in use", "let light through"),
+            Self::Culling => ("culling", "materials in use", "are one-sided"),
         }
     }
 }
@@ -148,6 +152,7 @@ impl SceneFeatures {
             Feature::Shadows => Usage::count(&scene.lights, Light::casts_shadow),
             Feature::Reflection => of_materials(&Material::spawns_rays),
             Feature::Refraction => of_materials(&Material::may_transmit),
+            Feature::Culling => of_materials(&|m| m.cull_back_faces),
         });
         Self { usage }
     }

@@ -102,6 +102,9 @@ pub struct FilmSettings {
     /// The throughput, in \[0, 1\], at or below which secondary rays are not traced. At 0 only those
     /// are left out that can add nothing.
     pub cutoff: f64,
+    /// True if light fades out toward the shadow terminator of smooth meshes, instead of ending at the
+    /// edges of their faces.
+    pub soft_terminator: bool,
 }
 
 impl Default for FilmSettings {
@@ -117,6 +120,7 @@ impl Default for FilmSettings {
             sample_position: SamplePosition::Center,
             max_depth: 8,
             cutoff: 0.0,
+            soft_terminator: true,
         }
     }
 }

@@ -50,6 +50,9 @@ pub struct Material {
     /// True if a sphere is lit on its inside too. Planes and meshes always are, on the side that the
     /// viewer sees.
     pub double_sided: bool,
+    /// True if the viewer does not see the back faces of a mesh, but what lies beyond them, as in glTF
+    /// unless a material is `doubleSided`. Shadows have both sides.
+    pub cull_back_faces: bool,
     /// The normal map.
     pub normal_map: Option<NormalMap>,
     /// The map of ambient occlusion.
@@ -146,6 +149,7 @@ impl Default for Material {
             thin: false,
             priority: 0,
             double_sided: false,
+            cull_back_faces: false,
             normal_map: None,
             occlusion_map: None,
             coverage: None,
@@ -252,6 +256,12 @@ impl Material {
             self.transmit == Vec3::ONE && self.emission == Vec3::ZERO
         };
         is_clear && self.ior == ior
+    }
+
+    /// True if light passes through it from behind, as the viewer does: an unlit surface is a backdrop,
+    /// such as a sky that surrounds a model, and keeps no light out.
+    pub fn passes_light_from_behind(&self) -> bool {
+        self.unlit && self.cull_back_faces
     }
 
     /// True if a mask cuts holes into it.

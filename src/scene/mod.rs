@@ -138,7 +138,8 @@ impl Scene {
     #[inline(always)]
     pub fn blocks_light(&self, id: PrimitiveId) -> bool {
         let material = || self.materials.get(self.material_of(id).0 as usize);
-        self.casts_shadow(id) && material().is_none_or(|m| !m.may_transmit())
+        let passes_none = |m: &Material| !m.may_transmit() && !m.passes_light_from_behind();
+        self.casts_shadow(id) && material().is_none_or(passes_none)
     }
 
     /// True if a primitive blocks all or some light.

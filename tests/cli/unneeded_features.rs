@@ -106,6 +106,7 @@ impl OutOfSight {
             }
             Feature::Reflection => made_of("reflect = 0.5"),
             Feature::Refraction => made_of("transmit = 0.5"),
+            Feature::Culling => model("one-sided.glb"),
         }
     }
 }
@@ -118,6 +119,9 @@ fn write_needless_files(folder: &Folder) {
     folder.write("needless.obj", triangle.clone() + "f 1/1 2/2 3/3\n");
     folder.write("smooth.obj", triangle + "f 1/1/1 2/2/2 3/3/3\n");
     folder.write("colored.obj", colored + "f 1 2 3\n");
+    let mut one_sided = envers_testing::Model::triangle();
+    one_sided.material(serde_json::json!({"doubleSided": false}));
+    folder.write("one-sided.glb", one_sided.glb());
     folder.write("holes.png", envers_testing::png(&[[255, 255, 255, 255], [255, 255, 255, 0]]));
     write_picture(folder);
 }

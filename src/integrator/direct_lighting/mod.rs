@@ -16,6 +16,7 @@ use crate::integrator::wave::Wave;
 use crate::integrator::{Counts, Integrator, simd};
 use crate::scene::Light;
 use crate::shading;
+use crate::surface::Surface16;
 use incident_light::IncidentLight16;
 
 /// The radiance due to incident light that is not finite. No finite factors make NaN.
@@ -54,23 +55,38 @@ pub(super) fn reflect(
     // The loop is compiled for what a scene has, and for each instruction set.
     let (lit, counts) = (surfaces.lit(), &mut counts.work);
     shadows.clear();
-    if integrator.features.highlights {
-        simd::dispatch(
-            integrator.arch,
-            #[inline(always)]
-            || reflect_blocks::<true>(light, wave, lit, radiance, shadows, counts),
-        );
-    } else {
-        simd::dispatch(
-            integrator.arch,
-            #[inline(always)]
-            || reflect_blocks::<false>(light, wave, lit, radiance, shadows, counts),
-        );
-    }
+    let has_soft_terminator = integrator.features.soft_terminator;
+    let reflect = match (integrator.features.highlights, has_soft_terminator) {
+        (false, false) => dispatch_blocks::<false, false>,
+        (false, true) => dispatch_blocks::<false, true>,
+        (true, false) => dispatch_blocks::<true, false>,
+        (true, true) => dispatch_blocks::<true, true>,
+    };
+    reflect(integrator.arch, light, wave, lit, radiance, shadows, counts);
+}
+
+fn dispatch_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
+    arch: pulp::Arch,
+    light: &Light,
+    wave: &Wave,
+    lit: &[LitSurface16],
+    radiance: &mut WaveRadiance,
+    shadows: &mut ShadowQueue,
+    counts: &mut FeatureCounts,
+) {
+    simd::dispatch(
+        arch,
+        #[inline(always)]
+        || {
+            reflect_blocks::<HIGHLIGHTS, SOFT_TERMINATOR>(
+                light, wave, lit, radiance, shadows, counts,
+            )
+        },
+    );
 }
 
 #[inline(always)]
-fn reflect_blocks<const HIGHLIGHTS: bool>(
+fn reflect_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
     light: &Light,
     wave: &Wave,
     lit_blocks: &[LitSurface16],
@@ -84,7 +100,8 @@ fn reflect_blocks<const HIGHLIGHTS: bool>(
         let hits = &wave.hits.blocks()[lit.block];
         // The light that arrives, and the share of it that goes to the viewer.
         incident.set(light, lit);
-        reflected.set::<HIGHLIGHTS>(lit, &incident, &wave.rays.blocks()[lit.block].direction, hits);
+        let directions = &wave.rays.blocks()[lit.block].direction;
+        reflected.set::<HIGHLIGHTS, SOFT_TERMINATOR>(lit, &incident, directions, hits);
         if !any(&reflected.faces_light) {
             continue;
         }
@@ -196,7 +213,7 @@ impl Reflected16 {
     /// (III.2, III.3; Bui Tuong Phong, *Illumination for Computer Generated Pictures*, 1975).
     /// A surface that faces away from the light reflects nothing.
     #[inline(always)]
-    fn set<const HIGHLIGHTS: bool>(
+    fn set<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
         &mut self,
         lit: &LitSurface16,
         incident: &IncidentLight16,
@@ -230,6 +247,10 @@ impl Reflected16 {
         }
         if HIGHLIGHTS && lit.has_highlights {
             self.add_highlights(lit, mirrored);
+        }
+        // Toward the terminator of a smooth mesh, light fades out.
+        if SOFT_TERMINATOR && surface.has_triangles {
+            self.fade_to_terminator(surface, &unit, hits);
         }
     }
 
@@ -290,6 +311,32 @@ impl Reflected16 {
                 let specular = lit.specular[channel][i];
                 let product = specular * highlight[i] as f32;
                 self.share[channel][i] += if specular == 0.0 { 0.0 } else { product };
+            }
+        }
+    }
+
+    /// Multiplies the shares on smooth meshes by the share of light that flat faces let through:
+    /// g + g² − g³ with g = min(1, (m·l) / ((n·l) (n·m))), where n is the shading normal, m the normal of
+    /// the face and l the direction of the light (Chiang, Li and Burley, *Taming the Shadow Terminator*,
+    /// SIGGRAPH Talks 2019). It is 0 where light grazes a face, as on those that are turned away; by n
+    /// alone the light would end at the edge of a face.
+    #[inline(always)]
+    fn fade_to_terminator(&mut self, surface: &Surface16, light: &[Lanes<f64>; 3], hits: &Hit16) {
+        let mut fade = [1.0; LANES];
+        for i in 0..LANES {
+            let light = DVec3::new(light[0][i], light[1][i], light[2][i]);
+            let (smooth, geometric) = (surface.normal(i), surface.geometric_normal(i));
+            let face = if surface.is_back[i] { -geometric } else { geometric };
+            // Only bent normals count; one that is bent by 90° leaves nothing to fade.
+            let along = smooth.dot(light) * smooth.dot(face);
+            let g = face.dot(light).max(0.0) / along;
+            let is_mesh = hits.id.geometry[i] >= PrimitiveId16::MESHES;
+            let fades = is_mesh & (smooth != face) & (along > 0.0) & (g < 1.0);
+            fade[i] = if fades { (g + g * g - g * g * g) as f32 } else { 1.0 };
+        }
+        for channel in &mut self.share {
+            for i in 0..LANES {
+                channel[i] *= fade[i];
             }
         }
     }

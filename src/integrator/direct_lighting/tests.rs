@@ -28,7 +28,7 @@ fn reflected(mut lit: LitSurface16, view: DVec3, light: DVec3) -> Vec3 {
     let mut reflected = Reflected16::default();
     let mut hits = crate::geometry::HitBatch::default();
     hits.reset_to_misses(LANES);
-    reflected.set::<true>(&lit, &incident, &lanes(view), &hits.blocks()[0]);
+    reflected.set::<true, true>(&lit, &incident, &lanes(view), &hits.blocks()[0]);
     if reflected.faces_light[0] { lane(&reflected.share, 0) } else { Vec3::ZERO }
 }
 
@@ -56,4 +56,40 @@ fn even_exponent_does_not_light_what_faces_away_from_the_mirror_direction() {
     let view = DVec3::new(1.0, -0.1, 0.0);
     let light = DVec3::new(-1.0, 0.05, 0.0);
     assert_eq!(reflected(glossy(0.0, 2.0), view, light), Vec3::ZERO);
+}
+
+/// What a white face along +y, whose shading normal is turned by `bend` toward +x, reflects of a light
+/// that is turned by `light` from +y toward +x.
+fn of_bent_face(bend: f64, light: f64) -> f32 {
+    let lanes = |v: DVec3| v.to_array().map(|x| [x; LANES]);
+    let at = |angle: f64| DVec3::new(angle.sin(), angle.cos(), 0.0);
+    let mut lit = matte();
+    lit.surface.normal = lanes(at(bend));
+    lit.surface.geometric_normal = lanes(DVec3::Y);
+    lit.surface.has_triangles = true;
+    let arrives = [true; LANES];
+    let incident = IncidentLight16 { toward: lanes(at(light)), arrives, ..Default::default() };
+    let mut hits = crate::geometry::HitBatch::default();
+    hits.resize(LANES)[0].id.geometry = [PrimitiveId16::MESHES; LANES];
+    let mut reflected = Reflected16::default();
+    reflected.set::<false, true>(&lit, &incident, &lanes(DVec3::NEG_Y), &hits.blocks()[0]);
+    if reflected.faces_light[0] { reflected.share[0][0] } else { 0.0 }
+}
+
+#[test]
+fn light_fades_out_toward_the_edge_of_a_face_and_is_whole_where_the_face_sees_it_well() {
+    // By g = (m·l) / ((n·l) (n·m)) = cos 80° / (cos 50° cos 30°), for a normal turned by 30°.
+    let [bend, light] = [30f64, 80.0].map(f64::to_radians);
+    let g = light.cos() / ((light - bend).cos() * bend.cos());
+    let expected = (light - bend).cos() * (g + g * g - g * g * g);
+    assert!((f64::from(of_bent_face(bend, light)) - expected).abs() < 1e-7);
+    // At the edge nothing is left; beside it, next to nothing.
+    assert!(of_bent_face(bend, 90f64.to_radians()) < 1e-15);
+    assert!(of_bent_face(bend, 89.9f64.to_radians()) < 0.01);
+    // Where the face is turned to the light more than its normal, and without a bend, nothing is lost.
+    assert_eq!(of_bent_face(bend, -30f64.to_radians()), 60f64.to_radians().cos() as f32);
+    for degrees in [1f64, 45.0, 89.0] {
+        let light = degrees.to_radians();
+        assert!((f64::from(of_bent_face(0.0, light)) - light.cos()).abs() < 1e-7);
+    }
 }

@@ -24,7 +24,8 @@ fn a_film_left_out_has_the_librarys_defaults() {
 fn every_key_of_the_film_is_read() {
     let film = seen(
         "[film]\nsize = [1000, 500]\nspp = 4\ntransfer = \"none\"\nbackground = \"#323232\"\n\
-         sample_position = \"corner\"\nexposure = -1.5\ntone = \"aces\"\nmax_depth = 16\ncutoff = 0.25\n",
+         sample_position = \"corner\"\nexposure = -1.5\ntone = \"aces\"\nmax_depth = 16\ncutoff = 0.25\n\
+         soft_terminator = false\n",
     )
     .film;
     let expected = FilmSettings {
@@ -38,6 +39,7 @@ fn every_key_of_the_film_is_read() {
         sample_position: SamplePosition::Corner,
         max_depth: 16,
         cutoff: 0.25,
+        soft_terminator: false,
     };
     assert_eq!(film, expected);
 }

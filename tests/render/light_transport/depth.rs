@@ -1,6 +1,7 @@
 //! The depth to which secondary rays are traced, and its cost.
 
 use envers::internals::{RayCounts, Tiling};
+use envers::scene::{AlphaMode, Coverage};
 use envers::{Material, Plane, RenderOptions, Renderer, Scene};
 use glam::{DVec3, Vec3};
 
@@ -104,4 +105,46 @@ fn the_picture_does_not_depend_on_tiles_where_waves_are_cut() {
     assert!(counts.rays.total() > 384 * 200, "{counts:?}");
     assert_eq!(whole, picture(3, 5).0);
     assert_eq!(whole, picture(1, 1).0);
+}
+
+/// `count` cards of this alpha, which glow by themselves, before white.
+fn cards(count: u32, alpha: f32, own: f32) -> Scene {
+    let mut scene = seen_from(DVec3::Z * 1000.0, DVec3::ZERO);
+    scene.film.background = Vec3::ONE;
+    let coverage = Some(Coverage { alpha, map: None, mode: AlphaMode::Blend });
+    let card = scene.add_material(Material { coverage, thin: true, ior: 1.0, ..glow(own) });
+    for i in 0..count {
+        scene.planes.push(Plane::new(DVec3::Z * f64::from(i), DVec3::Z, card));
+    }
+    scene
+}
+
+#[test]
+fn layers_cover_what_lies_behind_up_to_256_of_them_at_any_depth() {
+    for (count, alpha) in [(1, 0.3), (9, 0.1), (24, 0.1), (256, 0.01)] {
+        let mut scene = cards(count, alpha, 0.5);
+        for depth in [0, 8] {
+            scene.film.max_depth = depth;
+            let (pixel, counts) = rendered(&scene);
+            let left = (1.0 - f64::from(alpha)).powi(count as i32);
+            let near = (f64::from(pixel[0]) - (left + (1.0 - left) * 0.5)).abs() < 1e-5;
+            assert!(near, "{count} cards: {pixel:?}");
+            assert_eq!((counts.rays.refraction, counts.beyond_layers), (count.into(), 0));
+        }
+    }
+}
+
+#[test]
+fn behind_256_layers_it_is_black_and_counted() {
+    let (pixel, counts) = rendered(&cards(257, 0.01, 0.0));
+    assert_eq!((pixel, counts.beyond_layers), ([0.0; 3], 1));
+}
+
+#[test]
+fn layers_that_reflect_count_for_the_depth_so_that_paths_do_not_fork_without_end() {
+    let mut scene = cards(40, 0.5, 0.0);
+    scene.materials[0].reflect = Vec3::splat(0.5);
+    scene.film.max_depth = 6;
+    let rays = rendered(&scene).1.rays;
+    assert!(rays.total() <= 1 << 7, "{rays:?}");
 }

@@ -6,4 +6,6 @@ mod invisible_surfaces;
 mod mirrors;
 mod nested_dielectrics;
 mod one_pixel;
+mod one_sided;
 mod shadows;
+mod smooth_meshes;

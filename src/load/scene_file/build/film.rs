@@ -30,6 +30,7 @@ pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSetti
         sample_position: table.sample_position.unwrap_or(default.sample_position),
         max_depth: table.max_depth.map_or(default.max_depth, |depth| depth.0),
         cutoff: table.cutoff.map_or(default.cutoff, |share| share.0),
+        soft_terminator: table.soft_terminator.unwrap_or(default.soft_terminator),
     })
 }
 

@@ -77,6 +77,10 @@ pub struct FilmTable {
     /// add nothing.
     #[schemars(extend("default" = 0))]
     pub cutoff: Option<Share>,
+    /// True if light fades out toward the shadow terminator of smooth meshes, instead of ending at the
+    /// edges of their faces.
+    #[schemars(extend("default" = true))]
+    pub soft_terminator: Option<bool>,
 }
 
 /// A camera. It looks at `look_at` or along `direction`. One of `fov_y`, `fov_x`, `focal_px` and

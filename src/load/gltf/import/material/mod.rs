@@ -106,6 +106,9 @@ fn read(reader: &mut MaterialReader) -> Result<Material> {
         emission_and_relief(reader, &mut material)?;
     }
 
+    // One-sided surfaces are seen from their fronts only. A body of glass has an inside, too.
+    material.cull_back_faces = !source.double_sided && !material.may_transmit();
+
     // The alpha of the base covers the surface.
     let base = source.pbr_metallic_roughness.base_color_factor.0;
     let [.., alpha] = glossy.map_or(base, |glossy| glossy.diffuse_factor.0);
