@@ -94,7 +94,7 @@ def row(name, rays, OC, r):
 
 print("                        II.2 (b² − 4ac)            envers")
 print("     D/r   rays    wrong    of t      of r    wrong    of t      of r")
-row("III.1", tutorial(), (0, 0, 10), 1)
+row("II.3", tutorial(), (0, 0, 10), 1)
 for k in range(1, 11):
     row(f"1e{k}", telescope(k), (2 * 10**k, 3 * 10**k, 6 * 10**k), 7)
 # An eye 1.75 m above a planet of 6371 km: in quarters of a metre, where the squares of the lengths

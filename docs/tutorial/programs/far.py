@@ -1,4 +1,4 @@
-"""The sphere of III.2 through a telescope, as II.2's formula has it: 10⁶, 10⁷ and 10⁸ radii away.
+"""The sphere of part III through a telescope, by II.2's formula: 10⁶, 10⁷ and 10⁸ radii away.
 
 python3 far.py -o far.png
 """

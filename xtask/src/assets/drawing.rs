@@ -163,25 +163,44 @@ impl Drawing {
         self.curve(&[vertex + a, vertex + a + b, vertex + b], FINE);
     }
 
-    /// A label whose baseline begins, ends or has its middle at `at`. `→` before it makes it a
-    /// vector; what follows `_` is an index.
+    /// A length, with a stroke at each end and its name beside its middle.
+    pub fn measure(&mut self, from: DVec2, to: DVec2, label: &str, aside: DVec2) {
+        self.line(from, to, FINE);
+        let across = (to - from).normalize().perp() * 6.0;
+        for end in [from, to] {
+            self.line(end - across, end + across, FINE);
+        }
+        self.label((from + to) / 2.0 + aside, label, Anchor::Middle);
+    }
+
+    /// A label whose baseline begins, ends or has its middle at `at`. `→` before letters makes them
+    /// a vector; what follows `_` is an index.
     pub fn label(&mut self, at: DVec2, text: &str, anchor: Anchor) {
-        let name = text.trim_start_matches('→');
-        let (name, index) = name.split_once('_').unwrap_or((name, ""));
-        let (wide, narrow) = (width(name) * FONT, width(index) * SMALL);
-        let left = match anchor {
+        let (name, index) = text.split_once('_').unwrap_or((text, ""));
+        let runs = runs(name);
+        let wide = runs.iter().map(|(run, _)| width(run)).sum::<f64>() * FONT;
+        let narrow = width(index) * SMALL;
+        let mut left = match anchor {
             Anchor::Start => at.x,
             Anchor::Middle => at.x - (wide + narrow) / 2.0,
             Anchor::End => at.x - wide - narrow,
         };
-        // Set from their middles, so that the arrow stands above the letters in any font.
-        self.text(dvec2(left + wide / 2.0, at.y), FONT, name);
-        if !index.is_empty() {
-            self.text(dvec2(left + wide + narrow / 2.0, at.y + 5.0), SMALL, index);
+        let mut vectors = Vec::new();
+        // Set from their middles, so that the arrows stand above the letters in any font.
+        for (run, is_vector) in runs {
+            let wide = width(run) * FONT;
+            self.text(dvec2(left + wide / 2.0, at.y), FONT, run);
+            if is_vector {
+                vectors.push((left, left + wide + 3.0));
+            }
+            left += wide;
         }
-        if text.starts_with('→') {
+        if !index.is_empty() {
+            self.text(dvec2(left + narrow / 2.0, at.y + 5.0), SMALL, index);
+        }
+        for (tail, tip) in vectors {
             let pen = Pen { width: 1.2, ..INK };
-            let (tail, tip) = (dvec2(left, at.y - 18.0), dvec2(left + wide + 3.0, at.y - 18.0));
+            let (tail, tip) = (dvec2(tail, at.y - 18.0), dvec2(tip, at.y - 18.0));
             self.line(tail, tip, pen);
             self.curve(&[tip - dvec2(4.0, 3.0), tip, tip - dvec2(4.0, -3.0)], pen);
         }
@@ -211,6 +230,19 @@ impl Drawing {
 
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// Returns the parts of a label in order, and of each if it is a vector.
+fn runs(name: &str) -> Vec<(&str, bool)> {
+    let mut parts = name.split('→');
+    let mut runs = vec![(parts.next().unwrap_or_default(), false)];
+    for part in parts {
+        let (vector, rest) =
+            part.split_at(part.find(|c: char| !c.is_alphabetic()).unwrap_or(part.len()));
+        runs.extend([(vector, true), (rest, false)]);
+    }
+    runs.retain(|(run, _)| !run.is_empty());
+    runs
 }
 
 /// About how wide a text is, in units of its size.

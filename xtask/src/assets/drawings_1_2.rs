@@ -103,39 +103,41 @@ fn frame() -> Drawing {
     let at = |x: f64, y: f64, z: f64| {
         eye + dvec2(0.62, 0.42) * x + dvec2(0.0, 1.0) * y + dvec2(0.96, -0.1) * z
     };
-    d.arrow(eye, at(0.0, 0.0, 540.0), FINE);
-    d.arrow(eye, at(110.0, 0.0, 0.0), FINE);
-    d.arrow(eye, at(0.0, 120.0, 0.0), FINE);
     let (z, wide, high) = (200.0, 90.0, 60.0);
+    let (pixel, middle) = (at(45.0, -30.0, z), at(0.0, 0.0, z));
+    let (center, radius) = (at(80.0, -60.0, 400.0), 52.0);
+    let along = (pixel - eye).normalize();
+    let hit = intersect_circle(eye, along, center, radius).expect("ok: the drawing is made so");
+    // What the image hides in part.
+    d.arrow(eye, at(0.0, 0.0, 540.0), FINE);
+    d.circle(center, radius, BODY, INK);
+    d.line(pixel, hit, SIGHT);
     let corners = [(-wide, -high), (wide, -high), (wide, high), (-wide, high)];
     let image = corners.map(|(x, y)| at(x, y, z));
     d.polygon(&image, "#f4f6fc", INK);
-    for i in 1..6 {
-        let x = -wide + 2.0 * wide * f64::from(i) / 6.0;
-        d.line(at(x, -high, z), at(x, high, z), FINE);
-    }
     for i in 1..4 {
-        let y = -high + 2.0 * high * f64::from(i) / 4.0;
+        let [x, y] = [wide, high].map(|half| -half + 2.0 * half * f64::from(i) / 4.0);
+        d.line(at(x, -high, z), at(x, high, z), FINE);
         d.line(at(-wide, y, z), at(wide, y, z), FINE);
     }
-    let (center, radius) = (at(80.0, -60.0, 400.0), 52.0);
-    let pixel = at(30.0, -30.0, z);
-    let along = (pixel - eye).normalize();
-    let hit = intersect_circle(eye, along, center, radius).expect("ok: the drawing is made so");
-    d.circle(center, radius, BODY, INK);
+    // What is in front of it.
+    d.arrow(eye, at(110.0, 0.0, 0.0), FINE);
+    d.arrow(eye, at(0.0, 120.0, 0.0), FINE);
+    d.line(eye, middle, FINE);
     d.line(eye, pixel, SIGHT);
-    d.line(pixel, hit, SIGHT);
-    for point in [eye, pixel, hit, center, at(0.0, 0.0, z)] {
+    let below = at(0.0, 90.0, z);
+    d.line(at(0.0, high, z), below, DASHED);
+    d.measure(at(0.0, 90.0, 0.0), below, "D", dvec2(0.0, 24.0));
+    for point in [eye, pixel, hit, center, middle] {
         d.dot(point);
     }
     d.label(eye + dvec2(-10.0, 0.0), "O", End);
     d.label(at(0.0, 0.0, 540.0) + dvec2(4.0, -10.0), "z", Middle);
     d.label(at(110.0, 0.0, 0.0) + dvec2(6.0, 16.0), "x", Middle);
     d.label(at(0.0, 120.0, 0.0) + dvec2(-14.0, 0.0), "y", Middle);
-    d.label(pixel + dvec2(2.0, -12.0), "P", Middle);
-    d.label(hit + dvec2(-4.0, -12.0), "M", End);
+    d.label(pixel + dvec2(14.0, 1.0), "P", Middle);
+    d.label(hit + dvec2(-8.0, -12.0), "M", End);
     d.label(center + dvec2(8.0, 8.0), "Ω", Start);
-    d.label(at(0.0, 0.0, z) + dvec2(8.0, 22.0), "D", Start);
     d
 }
 
@@ -203,24 +205,24 @@ fn distance() -> Drawing {
     let along = dvec2(0.985, -0.17).normalize();
     let foot = eye + along * (center - eye).dot(along);
     let half = (radius * radius - (center - foot).length_squared()).sqrt();
-    let (near, far) = (foot - along * half, foot + along * half);
+    let near = foot - along * half;
     d.circle(center, radius, BODY, INK);
     d.line(eye, center, DASHED);
     d.line(near, center, INK);
     d.line(center, foot, INK);
-    d.arrow(eye, foot + along * 150.0, SIGHT);
+    d.line(eye, foot + along * 150.0, SIGHT);
+    d.arrow(eye, eye + along * 110.0, SIGHT);
     d.right_angle(foot, center, near);
-    for point in [eye, center, foot, near, far] {
+    for point in [eye, center, foot, near] {
         d.dot(point);
     }
     d.label(eye + dvec2(-10.0, 4.0), "O", End);
     d.label(center + dvec2(4.0, -12.0), "Ω", Start);
     d.label(foot + dvec2(8.0, 24.0), "H", Start);
-    d.label(near + dvec2(-10.0, -10.0), "M", End);
-    d.label(far + dvec2(14.0, -10.0), "t_2", Start);
-    d.label((near + center) / 2.0 + dvec2(-2.0, -10.0), "r", End);
+    d.label(near + dvec2(-4.0, 26.0), "M", End);
+    d.label((near + center) / 2.0 + dvec2(8.0, 16.0), "r", Start);
     d.label((center + foot) / 2.0 + dvec2(10.0, 4.0), "h", Start);
     d.label((near + foot) / 2.0 + dvec2(4.0, 22.0), "s", Middle);
-    d.label((eye + near) / 2.0 + dvec2(20.0, 26.0), "→u", Middle);
+    d.label(eye + along * 90.0 + dvec2(0.0, 28.0), "→d", Middle);
     d
 }

@@ -89,29 +89,30 @@ fn angles() -> Drawing {
 
 /// The mirrored direction: twice the part along the normal is taken away.
 fn mirror() -> Drawing {
-    let mut d = Drawing::new(640.0, 360.0, "r = u − 2 (u · n) n");
-    let hit = dvec2(320.0, 185.0);
-    let (across, down) = (140.0, 120.0);
-    let (from, through, to) =
-        (hit + dvec2(-across, -down), hit + dvec2(across, down), hit + dvec2(across, -down));
+    let mut d = Drawing::new(640.0, 310.0, "r = u − 2 (u · n) n");
+    // The four unit vectors are equally long.
+    let (hit, one) = (dvec2(320.0, 185.0), 150.0);
+    let (across, down) = (dvec2(0.8 * one, 0.0), dvec2(0.0, 0.6 * one));
+    let (from, through, to) = (hit - across - down, hit + across + down, hit + across - down);
+    let (up, along) = (hit - dvec2(0.0, one), hit + dvec2(one, 0.0));
     d.line(hit - dvec2(260.0, 0.0), hit + dvec2(260.0, 0.0), INK);
-    d.arrow(hit, hit - dvec2(0.0, 150.0), INK);
+    d.arrow(hit, up, INK);
+    d.arrow(hit, along, INK);
     d.arrow(from, hit, SIGHT);
-    d.line(hit, through, DASHED);
+    d.arrow(hit, through, DASHED);
     d.arrow(through, to, FINE);
     d.arrow(hit, to, OTHER);
     d.right_angle(dvec2(through.x, hit.y), hit, to);
-    d.angle(hit, hit - dvec2(0.0, 1.0), from, 50.0, "β", INK);
-    d.angle(hit, hit - dvec2(0.0, 1.0), to, 50.0, "β", INK);
+    d.angle(hit, up, from, 50.0, "β", INK);
+    d.angle(hit, up, to, 50.0, "β", INK);
     d.dot(hit);
     d.label(hit + dvec2(-4.0, 26.0), "M", End);
-    d.label(from + dvec2(-4.0, 10.0), "→u", End);
+    d.label((from + hit) / 2.0 + dvec2(-12.0, 22.0), "→u", End);
     d.label((hit + through) / 2.0 + dvec2(-12.0, 22.0), "→u", End);
     d.label(to + dvec2(-14.0, -6.0), "→r", End);
-    d.label(hit + dvec2(10.0, -146.0), "→n", Start);
-    d.label(through + dvec2(12.0, -50.0), "− 2 (u · n) n", Start);
-    d.label(dvec2(78.0, hit.y + 24.0), "→m", Middle);
-    d.arrow(dvec2(90.0, hit.y), dvec2(140.0, hit.y), INK);
+    d.label(up + dvec2(10.0, 4.0), "→n", Start);
+    d.label(through + dvec2(12.0, -40.0), "− 2 (→u · →n) →n", Start);
+    d.label(along + dvec2(-6.0, -14.0), "→m", Start);
     d
 }
 

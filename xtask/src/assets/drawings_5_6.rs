@@ -25,16 +25,6 @@ fn ground(d: &mut Drawing, level: f64, depth: f64, fill: &str) {
     d.line(dvec2(left, level), dvec2(right, level), INK);
 }
 
-/// A length, with a stroke at each end and its name beside it.
-fn measure(d: &mut Drawing, from: DVec2, to: DVec2, label: &str, aside: DVec2) {
-    d.line(from, to, FINE);
-    let across = (to - from).normalize().perp() * 6.0;
-    for end in [from, to] {
-        d.line(end - across, end + across, FINE);
-    }
-    d.label((from + to) / 2.0 + aside, label, Anchor::Middle);
-}
-
 fn height() -> Drawing {
     let mut d = Drawing::new(640.0, 320.0, "t = OA·n / u·n");
     let (eye, level) = (dvec2(110.0, 70.0), 260.0);
@@ -43,14 +33,16 @@ fn height() -> Drawing {
     let point = dvec2(250.0, level);
     let hit = dvec2(530.0, level);
     let along = (hit - eye).normalize();
-    let unit = eye + along * 130.0;
+    // Both unit vectors are equally long.
+    let one = 110.0;
+    let unit = eye + along * one;
     d.line(eye, foot, DASHED);
-    d.line(eye, point, DASHED);
+    d.arrow(eye, point, DASHED);
     d.line(eye, hit, SIGHT);
     d.arrow(eye, unit, INK);
     d.line(unit, dvec2(unit.x, eye.y), FINE);
     d.line(eye, dvec2(unit.x, eye.y), DASHED);
-    d.arrow(point, point - DVec2::Y * 90.0, INK);
+    d.arrow(point, point - DVec2::Y * one, INK);
     d.right_angle(point, point - DVec2::Y, point + DVec2::X);
     d.right_angle(foot, foot - DVec2::Y, foot + DVec2::X);
     [eye, point, hit].into_iter().for_each(|point| d.dot(point));
@@ -58,9 +50,10 @@ fn height() -> Drawing {
     d.label(point + dvec2(0.0, 36.0), "A", Anchor::Middle);
     d.label(hit + dvec2(0.0, 36.0), "M", Anchor::Middle);
     d.label(point + dvec2(12.0, -80.0), "→n", Anchor::Start);
-    d.label(eye + along * 70.0 + dvec2(-6.0, 34.0), "→u", Anchor::Start);
-    d.label(dvec2(unit.x + 12.0, (unit.y + eye.y) / 2.0 + 6.0), "|u·n|", Anchor::Start);
-    d.label(dvec2(eye.x - 12.0, 180.0), "|OA·n|", Anchor::End);
+    d.label(eye + along * 66.0 + dvec2(4.0, 34.0), "→u", Anchor::Start);
+    d.label(dvec2(150.0, 210.0), "→OA", Anchor::Middle);
+    d.label(dvec2(unit.x + 12.0, (unit.y + eye.y) / 2.0 + 6.0), "|→u · →n|", Anchor::Start);
+    d.label(dvec2(eye.x - 12.0, 180.0), "|→OA · →n|", Anchor::End);
     d
 }
 
@@ -84,8 +77,8 @@ fn horizon() -> Drawing {
             d.label(hit + dvec2(0.0, 36.0), &format!("z_{k}"), Anchor::Middle);
         }
     }
-    measure(&mut d, dvec2(22.0, eye.y), dvec2(22.0, level), "h", dvec2(-10.0, 6.0));
-    measure(&mut d, eye - DVec2::Y * 38.0, dvec2(screen, 22.0), "D", dvec2(0.0, -6.0));
+    d.measure(dvec2(22.0, eye.y), dvec2(22.0, level), "h", dvec2(-10.0, 6.0));
+    d.measure(eye - DVec2::Y * 38.0, dvec2(screen, 22.0), "D", dvec2(0.0, -6.0));
     d.dot(eye);
     d.label(eye + dvec2(-2.0, -12.0), "O", Anchor::Middle);
     d
@@ -134,8 +127,8 @@ fn refraction() -> Drawing {
     d.ray(at, b, LIGHT);
     d.angle(at, a, at - DVec2::Y, 46.0, "θ_1", FINE);
     d.angle(at, b, at + DVec2::Y, 66.0, "θ_2", FINE);
-    measure(&mut d, over + DVec2::Y * 26.0, at + DVec2::Y * 26.0, "x", dvec2(0.0, 20.0));
-    measure(&mut d, over + DVec2::Y * 62.0, under + DVec2::Y * 62.0, "d", dvec2(-90.0, 20.0));
+    d.measure(over + DVec2::Y * 26.0, at + DVec2::Y * 26.0, "x", dvec2(0.0, 20.0));
+    d.measure(over + DVec2::Y * 62.0, under + DVec2::Y * 62.0, "d", dvec2(-90.0, 20.0));
     [a, b, at].into_iter().for_each(|point| d.dot(point));
     d.label(a + dvec2(-10.0, 0.0), "A", Anchor::End);
     d.label(b + dvec2(10.0, 8.0), "B", Anchor::Start);
