@@ -5,7 +5,7 @@
 //! shadow rays are not.
 
 use crate::geometry::{
-    Geometry, HitBatch, LANES, PrimitiveId, PrimitiveId16, RayBatch, Side, triangle,
+    Geometry, Hit, HitBatch, LANES, PrimitiveId, PrimitiveId16, Ray, RayBatch, Side, triangle,
 };
 use crate::integrator::{Counts, Integrator, simd};
 use crate::intersect::Coherence;
@@ -45,13 +45,15 @@ impl BackFaces {
     }
 
     /// Sets `culled` to the numbers of the rays of a batch that hit a culled side, and `continued` to
-    /// their continuations. Returns the number of hits on surfaces that have such a side.
+    /// their continuations. Returns the number of hits on surfaces that have such a side. `is_first` says
+    /// that none of the rays has passed a back face yet.
     #[inline(always)]
     fn find_culled(
         &self,
         scene: &Scene,
         rays: &RayBatch,
         hits: &HitBatch,
+        is_first: bool,
         culled: &mut Vec<usize>,
         continued: &mut RayBatch,
     ) -> u64 {
@@ -76,14 +78,28 @@ impl BackFaces {
                 if culled_side == side
                     && let Some(hit) = hit16.hit(i)
                 {
-                    let ray = block * LANES + i;
-                    culled.push(ray);
-                    continued.push(&rays.ray(ray).continue_past(&hit, side.opposite()));
+                    culled.push(block * LANES + i);
+                    let ray = rays.ray(block * LANES + i);
+                    continued.push(&beyond(&ray, &hit, side.opposite(), is_first));
                 }
             }
         }
         count
     }
+}
+
+/// The relative distance within which a face may lie at the same place as another: twice that within
+/// which precision `fast` may find two in either order.
+const COINCIDENCE: f64 = 1.0 / (1u64 << 31) as f64;
+
+/// Returns the continuation of a ray past a back face that it hit, on whose `side` it goes on.
+///
+/// A leaf is often two faces at one place, of which Embree in precision `fast` finds either. The first
+/// continuation begins just before them, so that it finds the other one, whichever comes first by its id.
+fn beyond(ray: &Ray, hit: &Hit, side: Side, is_first: bool) -> Ray {
+    let before = hit.t * (1.0 - COINCIDENCE);
+    let hit = if is_first && before > ray.start_t() { Hit { t: before, ..*hit } } else { *hit };
+    ray.continue_past(&hit, side)
 }
 
 /// Replaces the hits of rays on culled sides by their next hits on anything else.
@@ -94,16 +110,19 @@ pub(super) fn pass_back_faces(
     counts: &mut Counts,
 ) {
     let Integrator { scene, intersector, arch, .. } = *integrator;
+    let mut is_first = true;
     let mut find =
         |rays: &RayBatch, hits: &HitBatch, culled: &mut Vec<usize>, to: &mut RayBatch| {
             simd::dispatch(
                 arch,
                 #[inline(always)]
                 || {
-                    counts.work.culling +=
-                        integrator.back_faces.find_culled(scene, rays, hits, culled, to);
+                    let found =
+                        integrator.back_faces.find_culled(scene, rays, hits, is_first, culled, to);
+                    counts.work.culling += found;
                 },
             );
+            is_first = false;
         };
     let (mut passing, mut continued) = (Vec::new(), RayBatch::default());
     find(rays, hits, &mut passing, &mut continued);

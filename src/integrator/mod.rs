@@ -153,8 +153,7 @@ impl<'a> Integrator<'a> {
                 textures: textures.into_iter().any(has),
                 smooth_normals: has(Feature::SmoothNormals),
                 highlights: has(Feature::Highlights),
-                soft_terminator: scene.film.soft_terminator
-                    && (has(Feature::SmoothNormals) || has(Feature::NormalMaps)),
+                soft_terminator: scene.film.soft_terminator && has(Feature::SmoothNormals),
                 secondary_rays: has(Feature::Reflection) || has(Feature::Refraction),
                 transmission: has(Feature::Refraction)
                     || scene.materials_in_use().any(Material::passes_light_from_behind),

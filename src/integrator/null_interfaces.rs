@@ -95,7 +95,7 @@ pub(super) fn cross(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut C
             }
         }
         // These rays find their next hits, which may be null interfaces again.
-        integrator.closest_hits(&continued, Coherence::Incoherent, &mut continued_hits, counts);
+        integrator.visible_hits(&continued, Coherence::Incoherent, &mut continued_hits, counts);
         counts.rays.refraction += continued.len() as u64;
         for (&i, hit) in crossed.iter().zip(continued_hits.iter()) {
             hits.set(i, hit);

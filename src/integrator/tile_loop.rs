@@ -129,7 +129,7 @@ impl Integrator<'_> {
         wave.paths.clear();
         camera_rays::generate(self.arch, &self.camera, tile, position, &mut wave.rays);
         // Closest hits.
-        self.closest_hits(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
+        self.visible_hits(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
         counts.rays.primary += wave.rays.len() as u64;
         counts.hits += wave.hits.count() as u64;
         // Debug views show the hits themselves.
@@ -165,7 +165,7 @@ impl Integrator<'_> {
                 break;
             }
             wave = &mut waves.current;
-            self.closest_hits(&wave.rays, Coherence::Incoherent, &mut wave.hits, counts);
+            self.visible_hits(&wave.rays, Coherence::Incoherent, &mut wave.hits, counts);
         }
         // Adaptive sampling compares the colours, too.
         if let Some(threshold) = self.contrast_threshold {
@@ -215,8 +215,22 @@ impl Integrator<'_> {
         radiance.add_groups();
     }
 
-    /// Finds the closest hits of rays that come from the camera, but for the back faces of one-sided
+    /// Finds what the viewer sees along rays: their closest hits, but for the back faces of one-sided
     /// surfaces.
+    pub(super) fn visible_hits(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        hits: &mut HitBatch,
+        counts: &mut Counts,
+    ) {
+        self.closest_hits(rays, coherence, hits, counts);
+        if !self.back_faces.is_empty() {
+            back_faces::pass_back_faces(self, rays, hits, counts);
+        }
+    }
+
+    /// Finds the closest hits of rays.
     pub(super) fn closest_hits(
         &self,
         rays: &RayBatch,
@@ -227,9 +241,6 @@ impl Integrator<'_> {
         self.intersector.closest_batch(rays, coherence, hits);
         let has_filter = self.intersector.uses_filter(Query::Closest, rays);
         counts.work.add_extra_tests(self.scene, has_filter, rays);
-        if !self.back_faces.is_empty() {
-            back_faces::pass_back_faces(self, rays, hits, counts);
-        }
     }
 
     /// Finds which shadow rays are occluded.

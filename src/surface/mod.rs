@@ -158,6 +158,30 @@ fn smooth_normal(scene: &Scene, hit: &Hit, geometric: DVec3) -> Option<DVec3> {
     Some(if smooth.dot(geometric) < 0.0 { -smooth } else { smooth })
 }
 
+/// Returns how far the normals at the vertices of a triangle, which has some, turn from its face: the
+/// tangents of these angles, interpolated.
+///
+/// Angles from 20° on count less and less, and from 45° on not at all: there a mesh does not approximate
+/// something round, but has its edges smoothed.
+#[inline]
+fn normal_spread(scene: &Scene, hit: &Hit, face: DVec3) -> f64 {
+    const FULL: f64 = 0.939_692_620_785_908_4; // cos 20°
+    const NONE: f64 = std::f64::consts::FRAC_1_SQRT_2; // cos 45°
+    let instance = &scene.instances[hit.id.instance as usize];
+    let mesh = &scene.meshes[instance.mesh.0 as usize];
+    // With the matrix C of normals, (C n)·face is n·(Cᵀ face); lengths are those of a rigid transform.
+    let local = (cofactor(&instance.transform.matrix3).transpose() * face).normalize_or(face);
+    let weights = [1.0 - hit.u - hit.v, hit.u, hit.v];
+    let spread_at = |vertex: u32| {
+        let normal = DVec3::from(mesh.normals[vertex as usize].map(f64::from));
+        let cosine = normal.dot(local).abs().clamp(NONE, 1.0);
+        let share = ((cosine - NONE) / (FULL - NONE)).min(1.0);
+        share * (1.0 - cosine * cosine).sqrt() / cosine
+    };
+    let vertices = mesh.triangles[hit.id.primitive as usize];
+    vertices.iter().zip(weights).map(|(&vertex, weight)| spread_at(vertex) * weight).sum()
+}
+
 /// Returns the matrix that transforms normals: the inverse transpose, whose columns are, up to the
 /// determinant, the cross products of the matrix's columns.
 #[inline]

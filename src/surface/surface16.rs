@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Surface, project_to_plane, smooth_normal, sphere_normal, triangle_point};
+use super::{
+    Surface, normal_spread, project_to_plane, smooth_normal, sphere_normal, triangle_point,
+};
 use crate::geometry::{
     Hit16, LANES, Lanes, PrimitiveId, PrimitiveId16, Ray16, RayBatch, Side, plane,
 };
@@ -19,6 +21,8 @@ pub struct Surface16 {
     pub geometric_normal: [Lanes<f64>; 3],
     /// The shading normals, axis by axis.
     pub normal: [Lanes<f64>; 3],
+    /// How far smooth normals turn from the faces; see [`normal_spread`]. 0 on all else.
+    pub spread: Lanes<f64>,
     /// True where the viewer sees the back.
     pub is_back: Lanes<bool>,
     /// The materials.
@@ -53,6 +57,7 @@ impl Surface16 {
             has_planes |= hits.id.geometry[i] == PrimitiveId16::PLANES;
             has_triangles |= hits.id.geometry[i] >= PrimitiveId16::MESHES;
         }
+        self.spread = [0.0; LANES];
         self.has_spheres = has_spheres;
         self.has_planes = has_planes;
         self.has_triangles = has_triangles;
@@ -169,10 +174,11 @@ impl Surface16 {
             if !SMOOTH_NORMALS || scene.meshes[mesh].normals.is_empty() {
                 continue;
             }
-            let smooth =
-                hits.hit(i).and_then(|hit| smooth_normal(scene, &hit, self.geometric_normal(i)));
-            if let Some(normal) = smooth {
+            let Some(hit) = hits.hit(i) else { continue };
+            let face = self.geometric_normal(i);
+            if let Some(normal) = smooth_normal(scene, &hit, face) {
                 self.set_normal(i, normal);
+                self.spread[i] = normal_spread(scene, &hit, face);
             }
         }
     }

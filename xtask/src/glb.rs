@@ -79,6 +79,13 @@ impl Glb {
         self.materials.len() - 1
     }
 
+    /// A material that is seen from both sides.
+    pub fn double_sided(&mut self, name: &str, color: [f64; 3], metal: f64, rough: f64) -> usize {
+        let id = self.material(name, color, metal, rough);
+        self.materials[id]["doubleSided"] = true.into();
+        id
+    }
+
     /// A material with a picture.
     pub fn textured(&mut self, name: &str, texture: usize, rough: f64) -> usize {
         let id = self.material(name, [1.0; 3], 0.0, rough);

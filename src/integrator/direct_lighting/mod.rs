@@ -250,7 +250,7 @@ impl Reflected16 {
         }
         // Toward the terminator of a smooth mesh, light fades out.
         if SOFT_TERMINATOR && surface.has_triangles {
-            self.fade_to_terminator(surface, &unit, hits);
+            self.fade_to_terminator(surface, &diffuse);
         }
     }
 
@@ -315,23 +315,20 @@ impl Reflected16 {
         }
     }
 
-    /// Multiplies the shares on smooth meshes by the share of light that flat faces let through:
-    /// g + g² − g³ with g = min(1, (m·l) / ((n·l) (n·m))), where n is the shading normal, m the normal of
-    /// the face and l the direction of the light (Chiang, Li and Burley, *Taming the Shadow Terminator*,
-    /// SIGGRAPH Talks 2019). It is 0 where light grazes a face, as on those that are turned away; by n
-    /// alone the light would end at the edge of a face.
+    /// Multiplies the shares on smooth meshes by g + g² − g³, with g = 1 − tan θ tan δ, where θ is the angle
+    /// of the light and δ that of the faces about the point, both from the shading normal.
+    ///
+    /// This is the factor of Chiang, Li and Burley (*Taming the Shadow Terminator*, SIGGRAPH Talks 2019),
+    /// g = (m·l) / ((n·l) (n·m)), for a face m that is turned from the light as far as any about the
+    /// point. For the face that was hit itself it would make each of the flat faces visible; so it is as
+    /// smooth as the normals are, and 0 before the light reaches the edge of a face that is turned away.
     #[inline(always)]
-    fn fade_to_terminator(&mut self, surface: &Surface16, light: &[Lanes<f64>; 3], hits: &Hit16) {
+    fn fade_to_terminator(&mut self, surface: &Surface16, cosine: &Lanes<f64>) {
         let mut fade = [1.0; LANES];
         for i in 0..LANES {
-            let light = DVec3::new(light[0][i], light[1][i], light[2][i]);
-            let (smooth, geometric) = (surface.normal(i), surface.geometric_normal(i));
-            let face = if surface.is_back[i] { -geometric } else { geometric };
-            // Only bent normals count; one that is bent by 90° leaves nothing to fade.
-            let along = smooth.dot(light) * smooth.dot(face);
-            let g = face.dot(light).max(0.0) / along;
-            let is_mesh = hits.id.geometry[i] >= PrimitiveId16::MESHES;
-            let fades = is_mesh & (smooth != face) & (along > 0.0) & (g < 1.0);
+            let tangent = (1.0 - cosine[i] * cosine[i]).max(0.0).sqrt() / cosine[i];
+            let g = (1.0 - tangent * surface.spread[i]).max(0.0);
+            let fades = (surface.spread[i] > 0.0) & (cosine[i] > 0.0);
             fade[i] = if fades { (g + g * g - g * g * g) as f32 } else { 1.0 };
         }
         for channel in &mut self.share {

@@ -58,38 +58,36 @@ fn even_exponent_does_not_light_what_faces_away_from_the_mirror_direction() {
     assert_eq!(reflected(glossy(0.0, 2.0), view, light), Vec3::ZERO);
 }
 
-/// What a white face along +y, whose shading normal is turned by `bend` toward +x, reflects of a light
-/// that is turned by `light` from +y toward +x.
-fn of_bent_face(bend: f64, light: f64) -> f32 {
+/// What a white face of a smooth mesh reflects of a light at this angle from its shading normal, where
+/// the faces about the point are turned from it by `spread`.
+fn of_smooth_face(spread: f64, light: f64) -> f32 {
     let lanes = |v: DVec3| v.to_array().map(|x| [x; LANES]);
-    let at = |angle: f64| DVec3::new(angle.sin(), angle.cos(), 0.0);
     let mut lit = matte();
-    lit.surface.normal = lanes(at(bend));
+    lit.surface.normal = lanes(DVec3::Y);
     lit.surface.geometric_normal = lanes(DVec3::Y);
+    lit.surface.spread = [spread.tan(); LANES];
     lit.surface.has_triangles = true;
-    let arrives = [true; LANES];
-    let incident = IncidentLight16 { toward: lanes(at(light)), arrives, ..Default::default() };
+    let toward = lanes(DVec3::new(light.sin(), light.cos(), 0.0));
+    let incident = IncidentLight16 { toward, arrives: [true; LANES], ..Default::default() };
     let mut hits = crate::geometry::HitBatch::default();
     hits.resize(LANES)[0].id.geometry = [PrimitiveId16::MESHES; LANES];
     let mut reflected = Reflected16::default();
     reflected.set::<false, true>(&lit, &incident, &lanes(DVec3::NEG_Y), &hits.blocks()[0]);
-    if reflected.faces_light[0] { reflected.share[0][0] } else { 0.0 }
+    reflected.share[0][0]
 }
 
 #[test]
-fn light_fades_out_toward_the_edge_of_a_face_and_is_whole_where_the_face_sees_it_well() {
-    // By g = (m·l) / ((n·l) (n·m)) = cos 80° / (cos 50° cos 30°), for a normal turned by 30°.
-    let [bend, light] = [30f64, 80.0].map(f64::to_radians);
-    let g = light.cos() / ((light - bend).cos() * bend.cos());
-    let expected = (light - bend).cos() * (g + g * g - g * g * g);
-    assert!((f64::from(of_bent_face(bend, light)) - expected).abs() < 1e-7);
-    // At the edge nothing is left; beside it, next to nothing.
-    assert!(of_bent_face(bend, 90f64.to_radians()) < 1e-15);
-    assert!(of_bent_face(bend, 89.9f64.to_radians()) < 0.01);
-    // Where the face is turned to the light more than its normal, and without a bend, nothing is lost.
-    assert_eq!(of_bent_face(bend, -30f64.to_radians()), 60f64.to_radians().cos() as f32);
-    for degrees in [1f64, 45.0, 89.0] {
-        let light = degrees.to_radians();
-        assert!((f64::from(of_bent_face(0.0, light)) - light.cos()).abs() < 1e-7);
+fn light_fades_out_before_it_grazes_any_of_the_faces_about_a_point() {
+    let [spread, light] = [15f64, 60.0].map(f64::to_radians);
+    // By the paper, for a face that is turned from the light: (m·l) / ((n·l) (n·m)).
+    let g = (light + spread).cos() / (light.cos() * spread.cos());
+    let expected = light.cos() * (g + g * g - g * g * g);
+    assert!((f64::from(of_smooth_face(spread, light)) - expected).abs() < 1e-7);
+    assert!(of_smooth_face(spread, 74.9f64.to_radians()) < 2e-3);
+    for beyond in [75.1f64, 80.0, 89.9] {
+        assert_eq!(of_smooth_face(spread, beyond.to_radians()), 0.0);
     }
+    // Light along the normal, and that on a flat mesh, is whole.
+    assert_eq!(of_smooth_face(spread, 0.0), 1.0);
+    assert!((f64::from(of_smooth_face(0.0, 1.5)) - 1.5f64.cos()).abs() < 1e-7);
 }

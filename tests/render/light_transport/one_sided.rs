@@ -1,7 +1,10 @@
 //! One-sided surfaces: what the viewer sees through their back faces, and what light does not.
 
 use envers::scene::{AlphaMode, Coverage};
-use envers::{Instance, Light, LightKind, LoadOptions, Material, Mesh, Plane, Scene, Shadow};
+use envers::{
+    Backend, Camera, Instance, Light, LightKind, LoadOptions, Material, Mesh, Plane, Precision,
+    Projection, Renderer, Scene, Shadow,
+};
 use envers_testing::{Folder, Model};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use serde_json::json;
@@ -87,6 +90,32 @@ fn of_two_faces_at_one_place_the_front_is_seen() {
 }
 
 #[test]
+fn a_leaf_of_two_faces_shows_the_one_that_is_turned_to_the_viewer_all_over() {
+    // Turned so that the distances round, with the back face before or behind the front one in the
+    // scene, on each backend in each precision.
+    let turned = DAffine3::from_rotation_y(0.7) * DAffine3::from_rotation_x(0.4);
+    let reversed = turned * DAffine3::from_rotation_y(std::f64::consts::PI);
+    for places in [[turned, reversed], [reversed, turned]] {
+        let mut scene = view();
+        scene.film.size = [60, 60];
+        scene.cameras[0] =
+            Camera::look_at(DVec3::Z * 9.0, DVec3::ZERO, DVec3::Y, Projection::FovY(0.2)).unwrap();
+        for place in places {
+            let radiance = if place == turned { 0.5 } else { 1.0 };
+            square(&mut scene, place, one_sided(glow(radiance)));
+        }
+        for (backend, precision) in [Backend::Rust, Backend::default()]
+            .into_iter()
+            .flat_map(|backend| [Precision::Fast, Precision::Certified].map(|p| (backend, p)))
+        {
+            let renderer = Renderer::new(&scene).backend(backend).precision(precision);
+            let pixels = renderer.render().unwrap().film.pixels;
+            assert!(pixels.iter().all(|p| p[0] == 0.5), "{} {precision:?}", backend.name());
+        }
+    }
+}
+
+#[test]
 fn a_mirror_and_glass_show_what_the_viewer_would_see() {
     // In the mirror at z = −2 a square between is seen from its other side.
     let mirrored = |transform| {
@@ -169,7 +198,10 @@ fn culls(material: serde_json::Value, options: LoadOptions) -> bool {
 
 #[test]
 fn gltf_materials_are_one_sided_unless_they_say_otherwise_or_are_glass() {
-    let glass = json!({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}});
+    let glass = json!({
+        "pbrMetallicRoughness": {"metallicFactor": 0},
+        "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}},
+    });
     for (material, expected) in [
         (json!({}), true),
         (json!({"doubleSided": false}), true),

@@ -89,11 +89,11 @@ fn the_terminator_of_a_ball_of_few_faces_is_no_staircase() {
         scene.film.soft_terminator = false;
         let hard = red(&scene);
         let steps = [&soft, &hard].map(|pixels| greatest_step(pixels));
-        assert!(steps[0] < 0.5 * steps[1], "{around} x {across}: {steps:?}");
+        assert!(steps[0] < 0.4 * steps[1], "{around} x {across}: {steps:?}");
         // Nothing becomes brighter, and what the sun sees well stays as it was.
         assert!(soft.iter().zip(&hard).all(|(soft, hard)| soft <= hard));
         assert!(
-            soft.iter().zip(&hard).filter(|(_, hard)| **hard > 0.9).all(|(a, b)| a > &(b * 0.95))
+            soft.iter().zip(&hard).filter(|(_, hard)| **hard > 0.9).all(|(a, b)| *a > b * 0.94)
         );
     }
 }

@@ -123,7 +123,8 @@ pub fn glb() -> Vec<u8> {
     let red = glb.material("pompeian red", [0.36, 0.07, 0.045], 0.0, 0.8);
     let bronze = glb.material("bronze", [0.80, 0.50, 0.22], 0.45, 0.38);
     let ivory = glb.material("ivory", [0.72, 0.68, 0.58], 0.0, 0.3);
-    let iron = glb.material("iron", [0.05, 0.05, 0.055], 0.0, 0.5);
+    // The shade of the lamp is a thin sheet.
+    let iron = glb.double_sided("iron", [0.05, 0.05, 0.055], 0.0, 0.5);
     let hedge = glb.material("hedge", [0.075, 0.135, 0.045], 0.0, 1.0);
     let cypress = glb.material("cypress", [0.035, 0.085, 0.04], 0.0, 1.0);
     let bulb = glb.glowing("bulb", [1.0, 0.85, 0.6]);
