@@ -54,7 +54,11 @@ impl Mesh {
     /// When there is no such vertex.
     #[inline(always)]
     pub(crate) fn corners(&self, vertices: &[u32; 3]) -> [DVec3; 3] {
-        vertices.map(|i| self.positions.at(i as usize))
+        // Asked once whether they are f32, not for each of the three.
+        match &self.positions {
+            Positions::F32(p) => vertices.map(|i| DVec3::from(p[i as usize].map(f64::from))),
+            Positions::F64(p) => vertices.map(|i| DVec3::from(p[i as usize])),
+        }
     }
 
     /// Interpolates a vertex attribute at a point of a triangle, by the weights of its vertices.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::PrimitiveId16;
-use crate::scene::{Positions, Scene};
+use crate::scene::{Mesh, Positions, Scene};
 
 /// The vertices of `W` triangles in world space, by vertex, axis and lane. In a lane without triangle
 /// all three are at one point.
@@ -24,26 +24,21 @@ impl<const W: usize> Triangles<W> {
         instance: &[u32; W],
     ) -> Option<Self> {
         // The mesh in each lane, and what they have in common.
-        let mesh = |i: usize| {
-            (geometry[i] >= PrimitiveId16::MESHES)
-                .then(|| &*scene.meshes[(geometry[i] - PrimitiveId16::MESHES) as usize])
-        };
-        let (mut first, mut alike, mut all_f32) = (None, true, true);
+        let is_triangle = |i: usize| geometry[i] >= PrimitiveId16::MESHES;
+        let mesh = |i: usize| &*scene.meshes[(geometry[i] - PrimitiveId16::MESHES) as usize];
+        let first = (0..W).find(|&i| is_triangle(i))?;
+        let mut alike = true;
         for i in 0..W {
-            let Some(mesh) = mesh(i) else { continue };
-            alike &= *first.get_or_insert(instance[i]) == instance[i];
-            all_f32 &= matches!(mesh.positions, Positions::F32(_));
+            alike &= !is_triangle(i) | (instance[i] == instance[first]);
         }
-        let first = first?;
 
-        // The vertices in the spaces of their meshes: f32 is converted in a loop that vectorises.
+        // The vertices in the spaces of their meshes: those of one mesh in f32 are converted in a loop that
+        // vectorises.
         let mut local = [[[0.0; W]; 3]; 3];
-        if all_f32 {
+        if alike && let Mesh { positions: Positions::F32(positions), triangles, .. } = mesh(first) {
             let mut narrow = [[[0.0f32; W]; 3]; 3];
-            for i in 0..W {
-                let Some(mesh) = mesh(i) else { continue };
-                let Positions::F32(positions) = &mesh.positions else { continue };
-                for (to, vertex) in narrow.iter_mut().zip(mesh.triangles[primitive[i] as usize]) {
+            for i in (0..W).filter(|&i| is_triangle(i)) {
+                for (to, vertex) in narrow.iter_mut().zip(triangles[primitive[i] as usize]) {
                     for axis in 0..3 {
                         to[axis][i] = positions[vertex as usize][axis];
                     }
@@ -57,9 +52,8 @@ impl<const W: usize> Triangles<W> {
                 }
             }
         } else {
-            for i in 0..W {
-                let Some(mesh) = mesh(i) else { continue };
-                for (to, p) in local.iter_mut().zip(mesh.triangle_vertices(primitive[i])) {
+            for i in (0..W).filter(|&i| is_triangle(i)) {
+                for (to, p) in local.iter_mut().zip(mesh(i).triangle_vertices(primitive[i])) {
                     for axis in 0..3 {
                         to[axis][i] = p[axis];
                     }
@@ -69,7 +63,7 @@ impl<const W: usize> Triangles<W> {
 
         // Nearly always all are of one instance: one transform, in a loop that vectorises.
         let mut world = [[[0.0; W]; 3]; 3];
-        let shared = &scene.instances[first as usize];
+        let shared = &scene.instances[instance[first] as usize];
         for (to, from) in world.iter_mut().zip(&local) {
             for i in 0..W {
                 let p = shared.to_world(DVec3::new(from[0][i], from[1][i], from[2][i]));

@@ -93,6 +93,15 @@ impl Goal {
             [self as usize]
     }
 
+    /// Returns the most rays of a case, which is less where the oracle takes a tenth of a millisecond or
+    /// more for each.
+    const fn max_rays(self) -> u64 {
+        match self {
+            Goal::Order | Goal::FarDetail => 20_000,
+            _ => u64::MAX,
+        }
+    }
+
     fn cases(self, method: Method) -> Vec<Case> {
         match self {
             Goal::SphereDistance => sphere_distance::cases(method),
@@ -118,7 +127,7 @@ pub struct StressOptions {
     /// The goals to test.
     pub goals: Vec<Goal>,
     /// The number of rays of each kind in a case, at least 1; a sweep of fewer than ten cases gets
-    /// more, so that it has ten times as many in all.
+    /// more, so that it has ten times as many in all, and some sweeps have fewer.
     pub rays: u64,
     /// The seed of the random numbers.
     pub seed: u64,
@@ -164,6 +173,7 @@ pub fn run(options: &StressOptions, progress: &dyn Fn(f32)) -> Result<Vec<Row>> 
     for (goal, cases) in &sweeps {
         // A sweep of few cases tests more rays in each.
         let rays = options.rays.max((10 * options.rays).div_ceil(cases.len() as u64));
+        let rays = rays.min(goal.max_rays());
         for case in cases {
             let row = match finished.row(goal.name(), case) {
                 Some(row) => row.clone(),

@@ -12,8 +12,6 @@ struct Estimates<const W: usize> {
     may_start: [bool; W],
     /// True for each shadow ray that the primitive may block at its origin.
     may_block: [bool; W],
-    /// True for each shadow ray that may end on the primitive, which then does not block its light.
-    may_end: [bool; W],
 }
 
 impl<const W: usize> QueryContext<'_, W> {
@@ -50,7 +48,7 @@ impl<const W: usize> QueryContext<'_, W> {
             if !certain
                 || primitive.is_masked
                 || (estimates.may_start[i] && primitive.shape.may_start_on(self, i))
-                || estimates.may_end[i]
+                || self.may_end_on(&primitive.shape, i)
             {
                 self.resolve_exactly(i, primitive.id);
             } else {
@@ -81,7 +79,8 @@ impl<const W: usize> QueryContext<'_, W> {
             let within = e.lower() > 0.0 && e.upper() < self.rays.tmax[i];
             let has_plain_hit = !self.departures.any_continuation && !primitive.is_masked;
             let starts_apart = !(may_start && primitive.shape.may_start_on(self, i));
-            let certain = within && has_plain_hit && starts_apart && !estimates.may_end[i];
+            let certain =
+                within && has_plain_hit && starts_apart && !self.may_end_on(&primitive.shape, i);
             if certain || self.exact_hit(i, primitive.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
@@ -106,8 +105,7 @@ impl<const W: usize> QueryContext<'_, W> {
         active: &[i32; W],
     ) -> Option<Estimates<W>> {
         // A shadow ray may be blocked by what it starts on, beside its line.
-        let corner_distance = self.departures.corner_distance;
-        let distance = if self.are_shadow_rays { corner_distance } else { 0.0 };
+        let distance = if self.are_shadow_rays { self.departures.corner_distance } else { 0.0 };
         let mut any = false;
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
@@ -118,38 +116,50 @@ impl<const W: usize> QueryContext<'_, W> {
         if !any {
             return None;
         }
-        let mut estimates = Estimates {
-            hits: [Estimate::MISS; W],
-            may_start: [false; W],
-            may_block: [false; W],
-            may_end: [false; W],
-        };
+        let mut estimates =
+            Estimates { hits: [Estimate::MISS; W], may_start: [false; W], may_block: [false; W] };
         for i in 0..W {
             let (origin, direction) = self.rays.origin_and_direction(i);
             let inverse = self.rays.inverse_length_squared[i];
             estimates.hits[i] = primitive.shape.estimate(origin, direction, inverse);
         }
-        // Whether an end lies on the primitive matters for few.
+        // Whether its origin lies on the primitive matters for few. A corner reaches farther than rounding; one
+        // distance for both finds a few more, which are decided exactly.
         let tolerance = self.departures.tolerance;
-        if self.departures.any {
+        if self.are_shadow_rays {
+            let mut may_any_start = false;
+            for i in 0..W {
+                let origin = self.rays.origin_and_direction(i).0;
+                estimates.may_start[i] = primitive.shape.may_contain(origin, distance);
+                may_any_start |= estimates.may_start[i];
+            }
+            if may_any_start {
+                for i in 0..W {
+                    let (origin, direction) = self.rays.origin_and_direction(i);
+                    let may_separate =
+                        primitive.shape.may_separate(origin, self.viewer(i), direction);
+                    estimates.may_block[i] = estimates.may_start[i] & may_separate;
+                }
+            }
+        } else if self.departures.any {
             for i in 0..W {
                 let origin = self.rays.origin_and_direction(i).0;
                 estimates.may_start[i] = primitive.shape.may_contain(origin, tolerance);
             }
         }
-        if self.are_shadow_rays {
-            for i in 0..W {
-                let (origin, direction) = self.rays.origin_and_direction(i);
-                let end = origin + direction * self.rays.tmax[i];
-                // A directional light is nowhere.
-                let is_bounded = self.rays.tmax[i] < f64::INFINITY;
-                estimates.may_end[i] = is_bounded & primitive.shape.may_contain(end, tolerance);
-                let is_at_corner = primitive.shape.may_contain(origin, corner_distance);
-                let may_separate = primitive.shape.may_separate(origin, self.viewer(i), direction);
-                estimates.may_block[i] = is_at_corner & may_separate;
-            }
-        }
         Some(estimates)
+    }
+
+    /// True if the shadow ray in `lane` may end on the primitive, which then does not block its light. Only
+    /// rays that seem to be blocked need to know.
+    #[inline(always)]
+    fn may_end_on(&self, shape: &impl Shape, lane: usize) -> bool {
+        let (origin, direction) = self.rays.origin_and_direction(lane);
+        let tmax = self.rays.tmax[lane];
+        // A directional light is nowhere.
+        self.are_shadow_rays
+            && tmax < f64::INFINITY
+            && shape.may_contain(origin + direction * tmax, self.departures.tolerance)
     }
 
     /// The exact hit of the ray in `lane` on a primitive.
