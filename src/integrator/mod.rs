@@ -98,6 +98,9 @@ struct TransparentMedia {
     may_alter_camera_rays: bool,
     /// The bounding boxes of the transmissive objects.
     bounds: TransmissiveBounds,
+    /// True if all of them are meshes that only leave light uncovered: then it does not matter in which
+    /// order light crosses them.
+    are_layers: bool,
 }
 
 impl TransparentMedia {
@@ -120,8 +123,22 @@ impl TransparentMedia {
             dielectrics,
             camera_interior,
             bounds: TransmissiveBounds::new(scene),
+            are_layers: are_layers(scene),
         }
     }
+}
+
+/// True if everything in a scene that lets light through is a mesh that neither reflects nor refracts it
+/// there.
+fn are_layers(scene: &Scene) -> bool {
+    let lets_through =
+        |material: &Material| material.may_transmit() || material.passes_light_from_behind();
+    let is_layer =
+        |material: &Material| material.may_transmit() && material.thin && material.ior == 1.0;
+    let in_shapes = scene.spheres.iter().map(|sphere| sphere.material);
+    let in_shapes = in_shapes.chain(scene.planes.iter().map(|plane| plane.material));
+    scene.materials_in_use().filter(|m| lets_through(m)).all(is_layer)
+        && !in_shapes.map(|id| &scene.materials[id.0 as usize]).any(lets_through)
 }
 
 impl<'a> Integrator<'a> {

@@ -204,9 +204,12 @@ impl Integrator<'_> {
                 continue;
             }
             // Shadow rays: occluded, or attenuated by glass.
-            self.occluded(&shadows.rays, &mut shadows.occluded, counts);
             counts.rays.shadow += shadows.count();
-            if self.features.transmission {
+            if !self.features.transmission {
+                self.occluded(&shadows.rays, &mut shadows.occluded, counts);
+            } else if !transmissive_shadows::find_layers(self, light.shadow, shadows, glass, counts)
+            {
+                self.occluded(&shadows.rays, &mut shadows.occluded, counts);
                 transmissive_shadows::attenuate(self, light.shadow, wave, shadows, glass, counts);
             }
             // The contributions that arrive.

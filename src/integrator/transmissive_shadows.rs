@@ -12,7 +12,7 @@ use crate::integrator::shadow_rays::{AttenuatedRay, ShadowQueue};
 use crate::integrator::surface_evaluation::shading_params_at;
 use crate::integrator::wave::Wave;
 use crate::integrator::{Counts, Integrator};
-use crate::intersect::Coherence;
+use crate::intersect::{Coherence, Crossing, Query};
 use crate::scene::Shadow;
 use crate::shading::DielectricInterface;
 use crate::surface::{RayCone, Surface};
@@ -29,6 +29,8 @@ pub(super) struct TransmissiveShadows {
     hits: HitBatch,
     /// The continuation rays beyond these hits, which are traced next.
     continued: RayBatch,
+    /// The layers that shadow rays may cross.
+    crossings: Vec<Crossing>,
 }
 
 /// The state of a shadow ray that nothing occludes, on its way to the light.
@@ -54,7 +56,7 @@ pub(super) fn attenuate(
     counts: &mut Counts,
 ) {
     let ShadowQueue { rays: shadow_rays, pending, occluded, attenuated } = queue;
-    let TransmissiveShadows { misses_glass, paths, rays, hits, continued } = memory;
+    let TransmissiveShadows { misses_glass, paths, rays, hits, continued, .. } = memory;
     // Rays that miss the boxes of all glass stay as they are.
     integrator.media.bounds.find_misses(integrator.arch, shadow_rays, misses_glass);
     paths.clear();
@@ -95,15 +97,71 @@ pub(super) fn attenuate(
                 return false;
             };
             let side = cross_surface(integrator, &ray, &hit, path);
-            let is_lit = match shadow {
-                Shadow::Tinted | Shadow::None => path.transmittance != DVec3::ZERO,
-                Shadow::Opaque => path.transmittance == DVec3::ONE,
-            };
+            let is_lit = is_lit(shadow, path.transmittance);
             if is_lit {
                 continued.push(&ray.continue_past(&hit, side));
             }
             is_lit
         });
+    }
+}
+
+/// Finds which shadow rays of a queue are occluded, and the transmittance of the layers that the others
+/// cross, in one traversal, whatever their number. Returns false, and does nothing, if the scene has more
+/// than layers or the intersector does not find crossings.
+pub(super) fn find_layers(
+    integrator: &Integrator<'_>,
+    shadow: Shadow,
+    queue: &mut ShadowQueue,
+    memory: &mut TransmissiveShadows,
+    counts: &mut Counts,
+) -> bool {
+    let Integrator { scene, intersector, media, .. } = integrator;
+    let ShadowQueue { rays, occluded, attenuated, .. } = queue;
+    let crossings = &mut memory.crossings;
+    if !media.are_layers
+        || !intersector.occluded_with_crossings(rays, Coherence::Coherent, occluded, crossings)
+    {
+        return false;
+    }
+    let has_filter = intersector.uses_filter(Query::Occluded, rays);
+    counts.work.add_extra_tests(scene, has_filter, rays);
+    // The layers of each ray, each once, in their order along it.
+    crossings.sort_unstable();
+    crossings.dedup();
+    let mut ids = Vec::new();
+    for crossings in crossings.chunk_by(|a, b| a.ray == b.ray) {
+        let number = crossings[0].ray as usize;
+        if occluded[number] {
+            continue;
+        }
+        let ray = rays.ray(number);
+        ids.clear();
+        ids.extend(crossings.iter().map(|crossing| crossing.id));
+        let interior = InteriorList::default();
+        let mut path = ShadowPath { ray: number, interior, transmittance: DVec3::ONE };
+        for hit in intersector.hits_on(&ray, &ids) {
+            counts.work.glass += 1;
+            cross_surface(integrator, &ray, &hit, &mut path);
+            if !is_lit(shadow, path.transmittance) {
+                break;
+            }
+        }
+        if path.transmittance != DVec3::ONE {
+            occluded[number] = true;
+            if is_lit(shadow, path.transmittance) {
+                attenuated.push(AttenuatedRay { ray: number, transmittance: path.transmittance });
+            }
+        }
+    }
+    true
+}
+
+/// True if light of this transmittance counts.
+fn is_lit(shadow: Shadow, transmittance: DVec3) -> bool {
+    match shadow {
+        Shadow::Tinted | Shadow::None => transmittance != DVec3::ZERO,
+        Shadow::Opaque => transmittance == DVec3::ONE,
     }
 }
 

@@ -27,7 +27,7 @@ pub use bvh::Bvh;
 pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
 
 use crate::error::Result;
-use crate::geometry::{Hit, HitBatch, Ray, RayBatch};
+use crate::geometry::{Hit, HitBatch, PrimitiveId, Ray, RayBatch};
 use crate::scene::Scene;
 
 /// The coherence of the rays of a batch, which a packet tracer can use.
@@ -37,6 +37,15 @@ pub enum Coherence {
     Coherent,
     /// Neighbours in the batch differ, as secondary rays do.
     Incoherent,
+}
+
+/// A triangle that a ray may cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Crossing {
+    /// The number of the ray in its batch.
+    pub ray: u32,
+    /// The triangle.
+    pub id: PrimitiveId,
 }
 
 /// The kind of a query.
@@ -89,6 +98,26 @@ pub trait Intersector: Send + Sync {
         occluded.clear();
         occluded.resize(rays.len(), false);
         indices.into_iter().zip(active_occluded).for_each(|(i, value)| occluded[i] = value);
+    }
+
+    /// Finds whether rays in lanes are occluded, as [`Intersector::occluded_batch`] does, and which triangles
+    /// that let light through each ray that is not may cross: all that it crosses, in any order, perhaps
+    /// several times, and perhaps others. Returns false if the intersector does not find these.
+    fn occluded_with_crossings(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        occluded: &mut Vec<bool>,
+        _crossings: &mut Vec<Crossing>,
+    ) -> bool {
+        self.occluded_batch(rays, coherence, occluded);
+        false
+    }
+
+    /// Finds the hits of a ray on these primitives, one on each that it hits, in their order along the ray;
+    /// none if the intersector does not find crossings.
+    fn hits_on(&self, _ray: &Ray, _ids: &[PrimitiveId]) -> Vec<Hit> {
+        Vec::new()
     }
 
     /// True if a filter callback accepts or rejects each candidate hit of these rays; for

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::geometry::{Bounds, Hit, PrimitiveId, Ray};
+use crate::geometry::{Bounds, Hit, PrimitiveId, Ray, RayBatch};
 use crate::intersect::blas_cache::{BlasCache, meshes_in_use};
 use crate::intersect::brute_force::is_extreme;
 use crate::intersect::build_stats::BuildStats;
@@ -20,7 +20,7 @@ use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::object_space::{ObjectSpace, world_bounds};
 use crate::intersect::order::NEAR_TIE;
 use crate::intersect::primitive::{Primitives, RayTests};
-use crate::intersect::{BruteForce, Coherence, Intersector, Precision, trace_each};
+use crate::intersect::{BruteForce, Coherence, Crossing, Intersector, Precision, trace_each};
 use crate::scene::{Mesh, Scene, Sphere};
 use build::build;
 use tree::{TraversalRay, Tree};
@@ -199,6 +199,37 @@ impl Intersector for Bvh<'_> {
             }
             occluded
         });
+    }
+
+    fn occluded_with_crossings(
+        &self,
+        rays: &RayBatch,
+        _: Coherence,
+        occluded: &mut Vec<bool>,
+        crossings: &mut Vec<Crossing>,
+    ) -> bool {
+        occluded.clear();
+        crossings.clear();
+        for (number, ray) in (0..).zip(rays.iter()) {
+            let tests = self.primitives.with_ray(&ray);
+            let is_active = ray.tmax > 0.0;
+            let mut is_occluded = is_active && tests.planes_occlude();
+            if is_active && !is_occluded {
+                self.visit(&tests, &mut { ray.tmax }, |hit, _| {
+                    is_occluded = self.primitives.scene.blocks_light(hit.id);
+                    if !is_occluded {
+                        crossings.push(Crossing { ray: number, id: hit.id });
+                    }
+                    is_occluded
+                });
+            }
+            occluded.push(is_occluded);
+        }
+        true
+    }
+
+    fn hits_on(&self, ray: &Ray, ids: &[PrimitiveId]) -> Vec<Hit> {
+        self.primitives.hits_in_order(ray, ids)
     }
 }
 

@@ -34,7 +34,7 @@ use crate::geometry::{Bounds, Hit, HitBatch, PrimitiveId, Ray, RayBatch};
 use crate::intersect::build_stats::BuildStats;
 use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::ray_ends::max_coordinate;
-use crate::intersect::{Coherence, Intersector, Precision, Query};
+use crate::intersect::{Coherence, Crossing, Intersector, Precision, Query};
 use crate::scene::{Instance, Scene};
 pub use ffi::peak_memory;
 use ffi::{DeviceHandle, PacketWidth};
@@ -201,6 +201,25 @@ impl Intersector for Embree<'_> {
         occluded.resize(rays.len(), false);
         let query = &self.query_scene();
         let width = self.tlas.scene.device.width;
-        width.run(OcclusionQuery { query, rays, coherence, occluded });
+        width.run(OcclusionQuery { query, rays, coherence, occluded, crossings: None });
+    }
+
+    fn occluded_with_crossings(
+        &self,
+        rays: &RayBatch,
+        coherence: Coherence,
+        occluded: &mut Vec<bool>,
+        crossings: &mut Vec<Crossing>,
+    ) -> bool {
+        occluded.clear();
+        occluded.resize(rays.len(), false);
+        let query = &self.query_scene();
+        let width = self.tlas.scene.device.width;
+        width.run(OcclusionQuery { query, rays, coherence, occluded, crossings: Some(crossings) });
+        true
+    }
+
+    fn hits_on(&self, ray: &Ray, ids: &[PrimitiveId]) -> Vec<Hit> {
+        self.query_scene().primitives().hits_in_order(ray, ids)
     }
 }

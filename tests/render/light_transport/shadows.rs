@@ -1,6 +1,10 @@
 //! Shadows of glass.
 
-use envers::{Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Scene, Shadow};
+use envers::scene::{AlphaMode, Coverage};
+use envers::{
+    Backend, Camera, Falloff, Instance, Light, LightKind, Material, Mesh, Plane, Precision,
+    Projection, Renderer, Scene, Shadow,
+};
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::one_pixel::*;
@@ -133,4 +137,68 @@ fn a_light_in_the_water_is_absorbed_though_nothing_stands_in_its_way() {
         shadow: Shadow::Tinted,
     });
     assert_near(radiance(&scene), (-0.5f64).exp());
+}
+
+/// Cards of alpha 0.1 and 0.3, one above the other over white ground, under a light that shines down
+/// through all of them at a slant.
+fn stack(count: u32) -> Scene {
+    let mut scene = ground(Shadow::Tinted);
+    scene.film.size = [24, 24];
+    scene.cameras[0] =
+        Camera::look_at(DVec3::new(0.0, 9.0, 6.0), DVec3::Y, DVec3::Y, Projection::FovY(0.5))
+            .unwrap();
+    let mesh = scene.add_mesh(Mesh {
+        positions: vec![[-9., 0., -9.], [-9., 0., 9.], [9., 0., 9.], [9., 0., -9.]].into(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    });
+    let card = |alpha: f32| {
+        let coverage = Some(Coverage { alpha, map: None, mode: AlphaMode::Blend });
+        Material { coverage, thin: true, ior: 1.0, ..Material::matte(Vec3::splat(0.5)) }
+    };
+    let cards = [0.1, 0.3].map(|alpha| scene.add_material(card(alpha)));
+    for i in 0..count {
+        let transform = DAffine3::from_translation(DVec3::Y * (0.5 + f64::from(i) * 0.05));
+        scene.instances.push(Instance::new(mesh, transform, cards[i as usize % 2]));
+    }
+    scene
+}
+
+#[test]
+fn each_point_of_a_stack_of_layers_costs_one_shadow_ray() {
+    for count in [1, 4, 16] {
+        for backend in [Backend::Rust, Backend::default()] {
+            for precision in [Precision::Fast, Precision::Certified] {
+                let scene = stack(count);
+                let renderer = Renderer::new(&scene).backend(backend).precision(precision);
+                let rays = renderer.render().unwrap().statistics.counts.rays;
+                // Every pixel sees the cards and the ground, and each of these the light.
+                let points = 24 * 24 * (u64::from(count) + 1);
+                assert_eq!(rays.shadow, points, "{count} cards on {}", backend.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn layers_dim_light_as_glass_does_surface_by_surface() {
+    for shadow in [Shadow::Tinted, Shadow::Opaque] {
+        let mut layers = stack(9);
+        layers.lights[0].shadow = shadow;
+        // Glass out of sight, with which shadow rays go from surface to surface.
+        let mut glassy = layers.clone();
+        sphere(&mut glassy, DVec3::new(0.0, -50.0, 0.0), 1.0, glass(1.5));
+        let picture = |scene: &Scene, backend| {
+            let renderer = Renderer::new(scene).backend(backend).precision(Precision::Certified);
+            let rendering = renderer.render().unwrap();
+            (rendering.film.pixels, rendering.statistics.counts.rays.shadow)
+        };
+        for backend in [Backend::Rust, Backend::default()] {
+            let [(at_once, few), (one_by_one, many)] =
+                [&layers, &glassy].map(|scene| picture(scene, backend));
+            assert_eq!(at_once, one_by_one, "{}", backend.name());
+            assert!(few < many);
+        }
+        assert!(picture(&layers, Backend::Rust).0.iter().any(|pixel| pixel[0] > 0.0));
+    }
 }

@@ -66,12 +66,18 @@ impl<S: Shape> UserPrimitive for CertifiedPrimitive<S> {
         let (context, active, tfar) = packet.parts();
         if self.blocks_light {
             context.mark_occluded(self, active, tfar);
+        } else if context.collects_crossings() {
+            context.note_crossings(self, active);
         }
     }
 
     #[inline(always)]
     fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        self.blocks_light && context.exact_hit(lane, self.id).is_some()
+        if !self.blocks_light {
+            context.note_crossing(lane, self.id);
+            return false;
+        }
+        context.exact_hit(lane, self.id).is_some()
     }
 }
 

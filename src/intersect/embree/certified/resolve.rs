@@ -87,6 +87,18 @@ impl<const W: usize> QueryContext<'_, W> {
         }
     }
 
+    /// Notes for each active ray that it may cross a primitive that lets light through.
+    #[inline(always)]
+    pub fn note_crossings(&self, primitive: &CertifiedPrimitive<impl Shape>, active: &[i32; W]) {
+        let Some(estimates) = self.estimates(primitive, active) else { return };
+        for i in 0..W {
+            let misses = estimates.hits[i].is_outside(self.rays.tmax[i]);
+            if active[i] != 0 && (!misses || estimates.may_block[i]) {
+                self.note_crossing(i, primitive.id);
+            }
+        }
+    }
+
     /// True if the ray in `lane` left this very primitive, and so does not hit it again, except a sphere
     /// that it went into.
     #[inline(always)]
@@ -201,6 +213,14 @@ impl<const W: usize> QueryContext<'_, W> {
         for id in self.instance_triangles(instance) {
             self.resolve_exactly(lane, id);
         }
+    }
+
+    /// Notes the triangles of an instance that the ray in `lane` crosses.
+    pub fn note_instance(&self, lane: usize, instance: u32) {
+        let crossed = |&id: &PrimitiveId| self.exact_hit(lane, id).is_some();
+        self.instance_triangles(instance)
+            .filter(crossed)
+            .for_each(|id| self.note_crossing(lane, id));
     }
 
     /// True if the ray in `lane` hits any triangle of an instance.

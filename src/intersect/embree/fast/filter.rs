@@ -91,6 +91,9 @@ pub fn counts<const OCCLUSION: bool, const W: usize>(
     let id = PrimitiveId::triangle(mesh, candidate.primitive, index);
     // Test it: by its material, by the ray in f64, and by its mask.
     if OCCLUSION && !scene.blocks_light(id) {
+        if context.collects_crossings() {
+            context.note_crossing(lane, id);
+        }
         return false;
     }
     if !certain && !is_hit(context, lane, id) {

@@ -47,13 +47,15 @@ impl UserPrimitive for FastTriangle {
 
     #[inline(always)]
     fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
-        if !self.blocks_light {
+        let (context, active, tfar) = packet.parts();
+        if !self.blocks_light && !context.collects_crossings() {
             return;
         }
-        let (context, active, tfar) = packet.parts();
         let Some(crosses) = self.crosses(context, active) else { return };
         for i in (0..W).filter(|&i| crosses[i]) {
-            if context.exact_hit(i, self.id).is_some() {
+            if !self.blocks_light {
+                context.note_crossing(i, self.id);
+            } else if context.exact_hit(i, self.id).is_some() {
                 tfar[i] = f32::NEG_INFINITY;
             }
         }
@@ -61,7 +63,11 @@ impl UserPrimitive for FastTriangle {
 
     #[inline(always)]
     fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        self.blocks_light && context.exact_hit(lane, self.id).is_some()
+        if !self.blocks_light {
+            context.note_crossing(lane, self.id);
+            return false;
+        }
+        context.exact_hit(lane, self.id).is_some()
     }
 }
 

@@ -1,5 +1,7 @@
 //! The query context: the state of a packet that Embree's callbacks read and write.
 
+use std::cell::RefCell;
+
 use glam::DVec3;
 
 use crate::geometry::{Estimate, Geometry, Hit16, PrimitiveId, PrimitiveId16, RayBatch};
@@ -9,7 +11,7 @@ use crate::intersect::embree::packet::Packet;
 use crate::intersect::embree::packet::rays::{PacketRays, TracedLanes};
 use crate::intersect::primitive::Primitives;
 use crate::intersect::ray_ends::{max_corner_distance, max_tolerance};
-use crate::intersect::{BruteForce, Precision};
+use crate::intersect::{BruteForce, Crossing, Precision};
 use crate::scene::Scene;
 
 /// A scene as its queries see it.
@@ -196,6 +198,9 @@ pub struct QueryContext<'a, const W: usize> {
     pub t_uncertainty: f32,
     /// The instance whose BLAS is being traced.
     pub instance: u32,
+    /// The triangles that let light through and that the rays of an occlusion query may cross, if the query
+    /// asks for them.
+    crossings: Option<RefCell<Vec<Crossing>>>,
 }
 
 const _: () = {
@@ -226,7 +231,36 @@ impl<'a, const W: usize> QueryContext<'a, W> {
             f32_tmax: [0.0; W],
             t_uncertainty: query.space.t_uncertainty(),
             instance: INVALID,
+            crossings: None,
         }
+    }
+
+    /// Makes a context that collects what rays may cross.
+    pub fn with_crossings(self) -> Self {
+        Self { crossings: Some(RefCell::default()), ..self }
+    }
+
+    /// True if the query asks what its rays cross.
+    #[inline(always)]
+    pub fn collects_crossings(&self) -> bool {
+        self.crossings.is_some()
+    }
+
+    /// Notes that the ray in `lane` may cross a triangle that lets light through.
+    #[cold]
+    #[inline(never)]
+    pub fn note_crossing(&self, lane: usize, id: PrimitiveId) {
+        if let Some(crossings) = &self.crossings
+            && lane < self.packet.count
+        {
+            let ray = self.packet.ray_index(lane) as u32;
+            crossings.borrow_mut().push(Crossing { ray, id });
+        }
+    }
+
+    /// Returns what was noted.
+    pub fn into_crossings(self) -> Vec<Crossing> {
+        self.crossings.map_or_else(Vec::new, RefCell::into_inner)
     }
 
     /// Loads another packet of the batch, and sets up its f32 rays in `record`.

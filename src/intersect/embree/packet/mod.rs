@@ -65,6 +65,12 @@ impl<'a> Packet<'a> {
         self.rays.ray(self.first + lane)
     }
 
+    /// The number in the batch of the ray in a lane.
+    #[inline(always)]
+    pub fn ray_index(&self, lane: usize) -> usize {
+        self.first + lane
+    }
+
     /// The directions toward the viewers of shadow rays.
     #[inline(always)]
     pub fn viewers<const W: usize>(&self) -> Option<[[f64; W]; 3]> {

@@ -5,7 +5,7 @@ use crate::intersect::embree::certified::round_hits;
 use crate::intersect::embree::fast::{merge_triangles, refine};
 use crate::intersect::embree::ffi::{Filter, INVALID, Kernel, LaneMask, RayHitRecord, queries};
 use crate::intersect::embree::packet::{Packet, QueryContext, QueryScene, planes};
-use crate::intersect::{Coherence, Precision};
+use crate::intersect::{Coherence, Crossing, Precision};
 
 /// The query for the closest hits of a batch.
 pub struct ClosestQuery<'a> {
@@ -86,6 +86,8 @@ pub struct OcclusionQuery<'a> {
     pub coherence: Coherence,
     /// The answers, one for each ray: true if it is occluded.
     pub occluded: &'a mut [bool],
+    /// What the rays may cross that lets light through, if somebody asks.
+    pub crossings: Option<&'a mut Vec<Crossing>>,
 }
 
 impl Kernel for OcclusionQuery<'_> {
@@ -93,6 +95,9 @@ impl Kernel for OcclusionQuery<'_> {
     fn run<const W: usize>(self) {
         let query = self.query;
         let mut context = QueryContext::<W>::new(query, self.rays);
+        if self.crossings.is_some() {
+            context = context.with_crossings();
+        }
         let mut record = RayHitRecord::new();
         let filter = (query.precision == Precision::Fast)
             .then(|| query.top.device.width.callback::<Filter<true>>());
@@ -109,11 +114,19 @@ impl Kernel for OcclusionQuery<'_> {
             if lanes.any_brute_force {
                 for i in (0..packet.count).filter(|&i| lanes.brute_force[i]) {
                     occluded[i] = query.brute_force().is_occluded(&packet.ray(i));
+                    if context.collects_crossings() {
+                        let hits = query.brute_force();
+                        hits.all_hits(&packet.ray(i))
+                            .for_each(|hit| context.note_crossing(i, hit.id));
+                    }
                 }
             }
             if !context.scene.planes.is_empty() {
                 planes::occlude(context, occluded);
             }
+        }
+        if let Some(crossings) = self.crossings {
+            *crossings = context.into_crossings();
         }
     }
 }

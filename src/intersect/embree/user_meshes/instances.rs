@@ -236,14 +236,18 @@ impl UserPrimitive for &InstanceEntry {
     #[inline(always)]
     fn occluded<const W: usize>(&self, packet: &mut CallbackPacket<'_, W>) {
         let context = packet.parts().0;
-        if !self.blocks_light(context) {
+        let blocks_light = self.blocks_light(context);
+        if !blocks_light && !context.collects_crossings() {
             return;
         }
         let limits = context.rays.tmax;
         let traced = self.trace(packet, limits);
         let (context, _, tfar) = packet.parts();
         for i in 0..W {
-            let occluded = if traced.brute_force[i] {
+            let occluded = if traced.brute_force[i] && !blocks_light {
+                context.note_instance(i, self.instance);
+                false
+            } else if traced.brute_force[i] {
                 context.hits_instance(i, self.instance)
             } else {
                 traced.active.0[i] != 0 && tfar[i] == f32::NEG_INFINITY
@@ -254,6 +258,12 @@ impl UserPrimitive for &InstanceEntry {
 
     #[inline(always)]
     fn occluded_lane<const W: usize>(&self, context: &QueryContext<'_, W>, lane: usize) -> bool {
-        self.blocks_light(context) && context.hits_instance(lane, self.instance)
+        if !self.blocks_light(context) {
+            if context.collects_crossings() {
+                context.note_instance(lane, self.instance);
+            }
+            return false;
+        }
+        context.hits_instance(lane, self.instance)
     }
 }
