@@ -45,6 +45,7 @@ use sample_pattern::SamplePattern;
 #[cfg(all(feature = "measure", any(feature = "embree", test)))]
 pub use sample_pattern::sample_positions;
 pub use sample_pattern::sample_steps;
+#[cfg(feature = "cli")]
 pub use secondary_rays::MAX_LAYERS;
 use texture_lod::TextureLod;
 pub use tile_loop::{RefineStrip, Scratch};
