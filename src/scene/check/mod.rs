@@ -23,7 +23,7 @@ pub(in crate::scene) use require::require;
 
 use crate::error::Result;
 use crate::geometry::Bounds;
-use crate::scene::{Material, Scene, animation::Animation};
+use crate::scene::{Material, Scene};
 
 /// The greatest absolute coordinate in world space: Embree ignores what lies beyond 1.8e18, and
 /// f32 products of coordinates must stay finite.
@@ -44,7 +44,11 @@ impl Scene {
         (0..self.planes.len()).try_for_each(|i| self.check_plane(i))?;
         (0..self.meshes.len()).try_for_each(|i| self.check_mesh(i))?;
         // An animated instance may be flat at one time, and is then left out.
-        let moved = self.animation.as_ref().map(Animation::moved_instances).unwrap_or_default();
+        let moved = self
+            .animation
+            .as_ref()
+            .map(|animation| animation.moved_instances())
+            .unwrap_or_default();
         (0..self.instances.len()).try_for_each(|i| self.check_instance(i, moved.contains(&i)))?;
         self.check_textures()?;
         check_extent(&self.bounds())?;
