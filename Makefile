@@ -48,12 +48,17 @@ gallery: setup ## build, and render the scenes of docs/gallery.md into out/galle
 	    $(ENVERS) render $$scene -o out/gallery/$$(basename $$scene .toml).png; \
 	done
 
+# The fuzz targets are compiled without libFuzzer, which nothing is linked with.
+FUZZ_CLIPPY = CUSTOM_LIBFUZZER_PATH=none/libnone.a $(CARGO) clippy --locked \
+    --manifest-path fuzz/Cargo.toml --target-dir "$${CARGO_TARGET_DIR:-target}"
+
 # One target directory serves both feature sets: most dependencies are compiled once for the two.
 test: setup ## everything that CI checks: format, lints, tests, documentation, with and without Embree
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --locked --workspace --all-targets -- -D warnings
 	$(CARGO) clippy --locked --all-targets $(PURE_RUST) -- -D warnings
 	$(CARGO) clippy --locked --lib --no-default-features -- -D warnings
+	$(FUZZ_CLIPPY) -- -D warnings
 	$(CARGO) test --locked
 	$(CARGO) test --locked $(PURE_RUST)
 	RUSTDOCFLAGS='-D warnings' $(CARGO) doc --locked --no-deps

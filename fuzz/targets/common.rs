@@ -29,11 +29,11 @@ pub fn load(file: &str, bytes: &[u8], entry: &str) {
     write(file, bytes);
     // Small, so that what goes beyond them is tried often.
     let limits = Limits::default()
-        .with(Limit::Elements, 1 << 16)
-        .with(Limit::Pixels, 1 << 18)
-        .with(Limit::Keys, 1 << 12);
+        .with_limit(Limit::Elements, 1 << 16)
+        .with_limit(Limit::Pixels, 1 << 18)
+        .with_limit(Limit::Keys, 1 << 12);
     match LoadOptions::default().limits(limits).load(path(entry)) {
-        Ok(scene) => scene.check().expect("what loads is valid"),
+        Ok(loaded) => loaded.scene.check().expect("what loads is valid"),
         Err(error) => {
             assert!(!error.message().is_empty());
             assert!(error.path().is_some_and(Path::exists), "{error}");
