@@ -301,8 +301,8 @@ fn not_finite_warnings(counts: &NotFinite) -> impl Iterator<Item = String> {
 fn layers_warning(count: u64) -> Option<String> {
     (count > 0).then(|| {
         format!(
-            "{count} rays see black behind {MAX_LAYERS} transparent layers, one behind the other: no \
-             more are shown"
+            "{count} rays are black behind {MAX_LAYERS} transparent layers, the most that are shown one \
+             behind the other"
         )
     })
 }
@@ -325,6 +325,12 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
     entries.extend([
         ("max_depth", scene.film.max_depth.to_string()),
         ("cutoff", scene.film.cutoff.to_string()),
+    ]);
+    // What is the rule is left out.
+    if !scene.film.soft_terminator {
+        entries.push(("soft_terminator", "false".to_owned()));
+    }
+    entries.extend([
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),
         ("view", format!("{:?}", options.view).to_lowercase()),
         ("precision", options.precision.name().to_owned()),

@@ -132,14 +132,12 @@ impl TransparentMedia {
 /// True if everything in a scene that lets light through is a mesh that neither reflects nor refracts it
 /// there.
 fn are_layers(scene: &Scene) -> bool {
-    let lets_through =
-        |material: &Material| material.may_transmit() || material.passes_light_from_behind();
     let is_layer =
         |material: &Material| material.may_transmit() && material.thin && material.ior == 1.0;
     let in_shapes = scene.spheres.iter().map(|sphere| sphere.material);
-    let in_shapes = in_shapes.chain(scene.planes.iter().map(|plane| plane.material));
-    scene.materials_in_use().filter(|m| lets_through(m)).all(is_layer)
-        && !in_shapes.map(|id| &scene.materials[id.0 as usize]).any(lets_through)
+    let mut in_shapes = in_shapes.chain(scene.planes.iter().map(|plane| plane.material));
+    scene.materials_in_use().filter(|material| !material.blocks_light()).all(is_layer)
+        && in_shapes.all(|id| scene.materials[id.0 as usize].blocks_light())
 }
 
 impl<'a> Integrator<'a> {
@@ -173,8 +171,7 @@ impl<'a> Integrator<'a> {
                 highlights: has(Feature::Highlights),
                 soft_terminator: scene.film.soft_terminator && has(Feature::SmoothNormals),
                 secondary_rays: has(Feature::Reflection) || has(Feature::Refraction),
-                transmission: has(Feature::Refraction)
-                    || scene.materials_in_use().any(Material::passes_light_from_behind),
+                transmission: !scene.materials_in_use().all(Material::blocks_light),
             },
             materials: MaterialCache::new(scene),
             texture_lod: TextureLod::new(has(Feature::Mipmaps), &camera, &film),

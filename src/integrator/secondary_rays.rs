@@ -55,6 +55,11 @@ pub(super) fn spawn_at_hit(
     mut emit: impl FnMut(&Ray, bool, PathState),
 ) {
     let (scene, surface) = (integrator.scene, &specular.surface);
+    // At the greatest depth only a layer, which does not count for it, sends light on.
+    let is_thin = scene.materials[surface.material.0 as usize].thin;
+    if path.depth >= scene.film.max_depth && !is_thin {
+        return;
+    }
     // The directions, and the shares of the light.
     let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
     let scattered = scatter(integrator, specular, &media, ray.direction.normalize());

@@ -20,7 +20,7 @@ impl TransmissiveBounds {
     pub fn new(scene: &Scene) -> Self {
         let transmits = |id: MaterialId| {
             let material = scene.materials.get(id.0 as usize);
-            material.is_some_and(|m| m.may_transmit() || m.passes_light_from_behind())
+            material.is_some_and(|m| !m.blocks_light())
         };
         let spheres = scene.spheres.iter().filter(|s| transmits(s.material)).map(|s| s.bounds());
         let instances = scene

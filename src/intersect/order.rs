@@ -5,14 +5,33 @@
 //! alike, in `fast` those of flat surfaces that are nearly alike. So of faces that coincide both precisions
 //! show the same one.
 
+use std::cmp::Ordering;
+
 use crate::geometry::exact_order::{CrossedSurface, compare};
-use crate::geometry::{Geometry, Hit, PrimitiveId, Side};
+use crate::geometry::{Geometry, Hit, PrimitiveId, Ray, Side};
 use crate::intersect::Precision;
-use crate::intersect::primitive::{ORIGIN_T, RayTests, SphereDeparture};
+use crate::intersect::primitive::{ORIGIN_T, Primitives, RayTests, SphereDeparture};
 
 /// The relative difference of two distances below which the rounding of `fast` may have reversed them.
 /// Far more than a plane or a triangle that is not flat is off by.
 pub(super) const NEAR_TIE: f64 = 1.0 / (1u64 << 32) as f64;
+
+impl Primitives<'_> {
+    /// The hits of a ray on these primitives, one on each that it hits, in their order along the ray.
+    pub fn hits_in_order(&self, ray: &Ray, ids: &[PrimitiveId]) -> Vec<Hit> {
+        let tests = self.with_ray(ray);
+        let mut hits: Vec<Hit> = ids.iter().filter_map(|&id| tests.primitive(id)).collect();
+        hits.sort_by(|a, b| {
+            // What is nearly alike in `fast` has no order that sorting could rely on.
+            let is_exact = self.precision == Precision::Certified && a.t == b.t && a.id != b.id;
+            if is_exact {
+                return if tests.is_before(a, b) { Ordering::Less } else { Ordering::Greater };
+            }
+            a.t.total_cmp(&b.t).then(a.id.cmp(&b.id))
+        });
+        hits
+    }
+}
 
 impl RayTests<'_> {
     /// True if hit `a` of the ray comes before its hit `b`.

@@ -3,8 +3,6 @@
 //!
 //! A ray does not hit, at its ends, surfaces on which these lie; see [`RayEnds`].
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use crate::geometry::triangle::TriangleHit;
@@ -35,21 +33,6 @@ impl<'s> Primitives<'s> {
         let Primitives { scene, precision } = *self;
         let inverse_length_squared = sphere::inverse_length_squared(ray.direction);
         RayTests { scene, precision, ray, ends: RayEnds::new(scene, ray), inverse_length_squared }
-    }
-
-    /// The hits of a ray on these primitives, one on each that it hits, in their order along the ray.
-    pub fn hits_in_order(&self, ray: &Ray, ids: &[PrimitiveId]) -> Vec<Hit> {
-        let tests = self.with_ray(ray);
-        let mut hits: Vec<Hit> = ids.iter().filter_map(|&id| tests.primitive(id)).collect();
-        hits.sort_by(|a, b| {
-            // What is nearly alike in `fast` has no order that sorting could rely on.
-            let is_exact = self.precision == Precision::Certified && a.t == b.t && a.id != b.id;
-            if is_exact {
-                return if tests.is_before(a, b) { Ordering::Less } else { Ordering::Greater };
-            }
-            a.t.total_cmp(&b.t).then(a.id.cmp(&b.id))
-        });
-        hits
     }
 }
 

@@ -258,6 +258,11 @@ impl Material {
         is_clear && self.ior == ior
     }
 
+    /// True if it blocks all light, from either side.
+    pub fn blocks_light(&self) -> bool {
+        !self.may_transmit() && !self.passes_light_from_behind()
+    }
+
     /// True if light passes through it from behind, as the viewer does: an unlit surface is a backdrop,
     /// such as a sky that surrounds a model, and keeps no light out.
     pub fn passes_light_from_behind(&self) -> bool {

@@ -138,8 +138,7 @@ impl Scene {
     #[inline(always)]
     pub fn blocks_light(&self, id: PrimitiveId) -> bool {
         let material = || self.materials.get(self.material_of(id).0 as usize);
-        let passes_none = |m: &Material| !m.may_transmit() && !m.passes_light_from_behind();
-        self.casts_shadow(id) && material().is_none_or(passes_none)
+        self.casts_shadow(id) && material().is_none_or(Material::blocks_light)
     }
 
     /// True if a primitive blocks all or some light.

@@ -158,8 +158,8 @@ fn smooth_normal(scene: &Scene, hit: &Hit, geometric: DVec3) -> Option<DVec3> {
     Some(if smooth.dot(geometric) < 0.0 { -smooth } else { smooth })
 }
 
-/// Returns how far the normals at the vertices of a triangle, which has some, turn from its face: the
-/// tangents of these angles, interpolated.
+/// Returns the spread of the normals of a triangle, which has some: the tangents of their angles to its
+/// face at the vertices, interpolated.
 ///
 /// Angles from 20° on count less and less, and from 45° on not at all: there a mesh does not approximate
 /// something round, but has its edges smoothed.

@@ -21,7 +21,7 @@ pub struct Surface16 {
     pub geometric_normal: [Lanes<f64>; 3],
     /// The shading normals, axis by axis.
     pub normal: [Lanes<f64>; 3],
-    /// How far smooth normals turn from the faces; see [`normal_spread`]. 0 on all else.
+    /// The spread of smooth normals, as [`normal_spread`] gives it; 0 on all else.
     pub spread: Lanes<f64>,
     /// True where the viewer sees the back.
     pub is_back: Lanes<bool>,

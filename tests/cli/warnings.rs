@@ -124,3 +124,41 @@ fn detail_is_no_matter_in_any_precision_or_backend() {
     speck().run("render scene.toml --size 20x20 --precision certified").good();
     speck().run("render scene.toml --size 20x20 --backend rust").good();
 }
+
+#[test]
+fn layers_beyond_the_limit_are_warned_of_once_with_their_rays() {
+    let folder = Folder::new();
+    let cards = |count: usize| {
+        let corners = |i: usize| {
+            let z = -0.01 * i as f64;
+            format!("v -1 -1 {z}\nv 1 -1 {z}\nv 1 1 {z}\nv -1 1 {z}\nf -4 -3 -2 -1\n")
+        };
+        "mtllib c.mtl\nusemtl a\n".to_owned() + &(0..count).map(corners).collect::<String>()
+    };
+    folder.write("c.mtl", "newmtl a\nKd 0.5 0.5 0.5\nd 0.01\n");
+    for (count, is_warned) in [(256, false), (257, true)] {
+        folder.write("c.obj", cards(count));
+        let run = folder.run("render c.obj -o a.png --size 8x8 --spp 1");
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        let said = run.stderr.contains("black behind 256 transparent layers");
+        assert_eq!(said, is_warned, "{}", run.stderr);
+    }
+}
+
+#[test]
+fn double_sided_shows_what_is_seen_from_behind() {
+    let folder = Folder::new();
+    let mut model = envers_testing::Model::triangle();
+    model.material(serde_json::json!({"extensions": {"KHR_materials_unlit": {}}}));
+    folder.write("a.glb", model.glb());
+    let scene = "[film]\nsize = [9, 9]\n[camera]\nposition = [0.3, 0.3, -3]\nlook_at = [0.3, 0.3, 0]\n\
+                 [[model]]\nfile = \"a.glb\"\n";
+    folder.write("scene.toml", scene);
+    let middle = |flags: &str| {
+        let run = folder.run(&format!("render scene.toml -o a.png {flags}"));
+        let picture = image::open(folder.path("a.png")).unwrap().into_rgb8();
+        (picture.get_pixel(4, 4).0, run.stderr.contains("the image is empty"))
+    };
+    assert_eq!(middle("--double-sided"), ([255; 3], false));
+    assert_eq!(middle(""), ([0; 3], true));
+}

@@ -58,7 +58,7 @@ fn even_exponent_does_not_light_what_faces_away_from_the_mirror_direction() {
     assert_eq!(reflected(glossy(0.0, 2.0), view, light), Vec3::ZERO);
 }
 
-/// What a white face of a smooth mesh reflects of a light at this angle from its shading normal, where
+/// Returns what a white face of a smooth mesh reflects of a light at this angle from its shading normal, where
 /// the faces about the point are turned from it by `spread`.
 fn of_smooth_face(spread: f64, light: f64) -> f32 {
     let lanes = |v: DVec3| v.to_array().map(|x| [x; LANES]);

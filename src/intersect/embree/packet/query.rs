@@ -86,7 +86,7 @@ pub struct OcclusionQuery<'a> {
     pub coherence: Coherence,
     /// The answers, one for each ray: true if it is occluded.
     pub occluded: &'a mut [bool],
-    /// What the rays may cross that lets light through, if somebody asks.
+    /// The triangles that let light through and that the rays may cross, if somebody asks for them.
     pub crossings: Option<&'a mut Vec<Crossing>>,
 }
 
