@@ -51,7 +51,9 @@
 //!
 //! All three are on by default; a library user can take none.
 //!
-//! - `embree`: Intel Embree 4 as an intersector; needs libembree4 to link and libclang to build.
+//! - `embree`: Intel Embree 4 as an intersector; needs libclang to build. Embree's library is opened when it is
+//!   first used, from the folder that the environment variable `EMBREE_DIR` names, or else from beside the
+//!   program or from the system.
 //! - `measure`: holding one backend against the other, and one picture against another.
 //! - `cli`: the `envers` command.
 //!
@@ -91,7 +93,7 @@ pub use geometry::{
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
 pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_ground, load};
-pub use render::{RenderOptions, Renderer, Rendering, Statistics};
+pub use render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
     LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,

@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use crate::cli::flag_values::{
-    BVH_QUALITIES, BvhQuality, NamedLimit, SampleRange, TONES, VIEWS, backend, choice, duration,
-    finite, goal, not_negative, sample_range, share,
+    BVH_QUALITIES, BackendChoice, BvhQuality, NamedLimit, SampleRange, TONES, VIEWS, backend,
+    backend_choice, choice, duration, finite, goal, not_negative, sample_range, share,
 };
 use crate::cli::frame_range::FrameRange;
 use crate::cli::scene_args::{InputArgs, LoadArgs, TraceArgs};
@@ -86,9 +86,9 @@ pub struct Render {
     /// Skip frames whose output files exist, to resume an interrupted rendering
     #[arg(long)]
     pub skip_existing: bool,
-    /// Ray tracing backend [default: embree if it is built in, otherwise rust]
-    #[arg(long, value_name = "BACKEND", value_parser = backend())]
-    pub backend: Option<Backend>,
+    /// Ray tracing backend: auto is Embree if its library is on this machine, otherwise rust
+    #[arg(long, value_name = "BACKEND", value_parser = backend_choice(), default_value = "auto")]
+    pub backend: BackendChoice,
     /// Build quality of Embree's BVH: low builds faster, medium traces faster, auto chooses by the
     /// number of rays. The pure-Rust backend has only one quality
     #[arg(long, value_name = "QUALITY", value_parser = choice(BVH_QUALITIES), default_value = "auto")]
@@ -237,7 +237,7 @@ pub struct Bench {
     /// Time limit for all runs of a mode together; a mode that is too slow gets fewer runs, or none
     #[arg(long, value_name = "SECONDS", value_parser = duration, default_value = "60", allow_negative_numbers = true)]
     pub budget: Duration,
-    /// Ray tracing backend to measure [default: all that are built in]
+    /// Ray tracing backend to measure [default: all that are on this machine]
     #[arg(long, value_name = "BACKEND", value_parser = backend())]
     pub backend: Option<Backend>,
 }

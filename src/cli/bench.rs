@@ -86,6 +86,7 @@ fn options(arguments: &Bench, camera: usize) -> Result<BenchOptions> {
 
     // The setups of one backend, or of all.
     if let Some(backend) = arguments.backend {
+        backend.check()?;
         options.setups.retain(|setup| setup.backend == backend);
     }
     options.check()?;

@@ -13,19 +13,33 @@ use crate::measure::stress::Goal;
 use crate::scene::Tone;
 use crate::scene::check::{check_samples, check_size};
 
-/// Returns the parser of a ray tracing backend. It knows the name of Embree in every build, and
-/// fails for it in a build without Embree.
-pub fn backend() -> impl TypedValueParser<Value = Backend> {
-    let backend = |name: String| -> Result<Backend, &'static str> {
-        match &*name {
-            "rust" => Ok(Backend::Rust),
-            #[cfg(feature = "embree")]
-            _ => Ok(Backend::Embree),
-            #[cfg(not(feature = "embree"))]
-            _ => Err("this envers was built without Embree; its backend is `rust`"),
-        }
+/// A ray tracing backend; none leaves the choice to the renderer.
+pub type BackendChoice = Option<Backend>;
+
+/// Returns the parser of a [`BackendChoice`].
+pub fn backend_choice() -> impl TypedValueParser<Value = BackendChoice> {
+    let choice = |name: String| match &*name {
+        "auto" => Ok(None),
+        name => named_backend(name).map(Some),
     };
-    PossibleValuesParser::new(["embree", "rust"]).try_map(backend)
+    PossibleValuesParser::new(["auto", "embree", "rust"]).try_map(choice)
+}
+
+/// Returns the parser of a ray tracing backend.
+pub fn backend() -> impl TypedValueParser<Value = Backend> {
+    PossibleValuesParser::new(["embree", "rust"]).try_map(|name| named_backend(&name))
+}
+
+/// Returns the backend of a name, `embree` or `rust`. The name of Embree is known in every build, and an
+/// error in one without Embree.
+fn named_backend(name: &str) -> Result<Backend, &'static str> {
+    match name {
+        "rust" => Ok(Backend::Rust),
+        #[cfg(feature = "embree")]
+        _ => Ok(Backend::Embree),
+        #[cfg(not(feature = "embree"))]
+        _ => Err("this envers was built without Embree; its backend is `rust`"),
+    }
 }
 
 /// The build quality of Embree's BVH; none leaves the choice to the renderer.

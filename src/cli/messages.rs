@@ -132,11 +132,12 @@ fn format(error: &Error) -> String {
         let mark = "^".repeat(*length);
         text += &format!("{margin} |\n{number} | {ahead}{rest}\n{margin} | {indent}{mark}\n");
     }
-    // The advice, and the flag that does what it says.
+    // The advice, and the flag that does what it says, or that is another way out.
     let flag = error.remedy().map(flag);
+    let separator = if error.remedy() == Some(Remedy::RustBackend) { "; " } else { ": " };
     let help: Vec<&str> = error.advice().into_iter().chain(flag.as_deref()).collect();
     if !help.is_empty() {
-        text += &format!("help: {}\n", line(&help.join(": ")));
+        text += &format!("help: {}\n", line(&help.join(separator)));
     }
     text
 }
@@ -147,7 +148,7 @@ fn flag(remedy: Remedy) -> String {
         Remedy::AllowOutside => "`--allow-outside`".to_owned(),
         Remedy::RaiseLimit { name, least: Some(least) } => format!("`--limit {name}={least}`"),
         Remedy::RaiseLimit { name, least: None } => format!("`--limit {name}=NUMBER`"),
-        Remedy::RustBackend => "`--backend rust`".to_owned(),
+        Remedy::RustBackend => "`--backend rust` works without Embree".to_owned(),
         Remedy::ReferenceSamples(samples) => format!("`--reference-spp {samples}`"),
     }
 }

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
 use crate::cli::args::Render;
 use crate::cli::flag_values::SampleRange;
@@ -15,12 +14,12 @@ use crate::film::View;
 use crate::integrator::{MAX_LAYERS, NotFinite};
 use crate::intersect::{Backend, Precision};
 use crate::load::add_ground;
-use crate::render::{RenderOptions, Renderer, Rendering, Statistics};
+use crate::render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics, Stopwatch};
 use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
 use crate::write::{self, Format, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Result<ExitCode> {
-    let start = Instant::now();
+    let stopwatch = Stopwatch::start();
 
     // Check the flags, then load the scene and apply them.
     let input = &arguments.trace.input;
@@ -35,11 +34,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
     let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
-    let load = start.elapsed();
+    let load = stopwatch.elapsed();
 
-    // Warn of what the picture may suffer from.
+    // Open the backend before anything is built for it. Warn of what the picture may suffer from.
+    let backend = arguments.backend.unwrap_or_default();
+    backend.check()?;
     let options = RenderOptions {
-        backend: arguments.backend.unwrap_or_default(),
+        backend: Some(backend),
         precision: arguments.trace.precision,
         quality: arguments.bvh,
         threads: input.threads(),
@@ -47,8 +48,11 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
         view: arguments.view,
         ..RenderOptions::default()
     };
-    let has_f32_rays = options.backend != Backend::Rust && options.precision == Precision::Fast;
+    let has_f32_rays = backend != Backend::Rust && options.precision == Precision::Fast;
     let mut warnings = messages::scene_warnings(&report, &first, has_f32_rays);
+    if arguments.backend.is_none() {
+        warnings.extend(fallback_warning());
+    }
     if !input.quiet {
         warnings.iter().for_each(|w| messages::warning(w));
     }
@@ -70,11 +74,11 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(layers_warning(totals.statistics.counts.beyond_layers));
     warnings.extend(image_warning(&first, &options, &totals));
-    let total = start.elapsed();
+    let total = stopwatch.elapsed();
     if !input.quiet {
         warnings.iter().skip(before).for_each(|w| messages::warning(w));
         if output::stdout_is_free(arguments.stats.as_ref()) {
-            output::print(&plan.summary(total.as_secs_f64()))?;
+            output::print(&plan.summary(total.wall.as_secs_f64()))?;
         }
     }
     if let Some(path) = &arguments.stats {
@@ -145,7 +149,7 @@ impl<'a> FrameWriter<'a> {
             frames,
             images: 0,
             is_black: true,
-            write: Duration::ZERO,
+            write: Elapsed::default(),
         };
         let settings = Settings {
             half,
@@ -159,7 +163,7 @@ impl<'a> FrameWriter<'a> {
     /// Writes a frame.
     fn write(&mut self, index: usize, rendering: Rendering) -> Result<()> {
         // The settings of this frame, whose time the metadata of an animation tells.
-        let start = Instant::now();
+        let stopwatch = Stopwatch::start();
         let frame = self.plan.frames[index];
         let mut settings = self.settings.clone();
         if frame.number.is_some() {
@@ -179,15 +183,15 @@ impl<'a> FrameWriter<'a> {
         let is_black = |pixel: &[f32; 3]| pixel.iter().all(|&x| f64::from(x) <= darkest);
         self.totals.is_black &= rendering.film.pixels.iter().all(is_black);
         self.totals.statistics.add(&rendering.statistics);
-        self.totals.write += start.elapsed();
+        self.totals.write += stopwatch.elapsed();
         Ok(())
     }
 
     /// Completes the animated images.
     fn into_totals(mut self) -> Result<RenderTotals> {
-        let start = Instant::now();
+        let stopwatch = Stopwatch::start();
         self.movies.into_iter().try_for_each(Movie::finish)?;
-        self.totals.write += start.elapsed();
+        self.totals.write += stopwatch.elapsed();
         Ok(self.totals)
     }
 }
@@ -243,6 +247,16 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Returns a warning if rays are traced in Rust because Embree, which is built in, cannot be opened.
+fn fallback_warning() -> Option<String> {
+    #[cfg(feature = "embree")]
+    return Backend::Embree.check().err().map(|error| {
+        format!("{}: rays are traced by the slower backend `rust` instead", error.message())
+    });
+    #[cfg(not(feature = "embree"))]
+    None
 }
 
 /// Returns a warning if the image is empty or black, with the likely cause.

@@ -10,7 +10,7 @@ use crate::cli::load_report::LoadSummary;
 use crate::integrator::{Counts, NotFinite, RayCounts, sample_steps};
 use crate::intersect::BuildQuality;
 use crate::load::LoadReport;
-use crate::render::Statistics;
+use crate::render::{Elapsed, Statistics};
 use crate::scene::{AdaptiveSampling, Feature, Scene, SceneFeatures};
 
 /// The sums of all frames, and the times of the command.
@@ -24,7 +24,7 @@ pub struct RenderTotals {
     /// True if all frames are black.
     pub is_black: bool,
     /// The time to encode and write images.
-    pub write: Duration,
+    pub write: Elapsed,
 }
 
 /// The statistics of a rendering: `render --stats`.
@@ -49,6 +49,8 @@ pub struct RenderStats {
     /// The numbers of samples that were left out because they are not finite, by cause.
     pub not_finite: NotFinite,
     pub seconds: Seconds,
+    /// The seconds of all processors that worked for the process; null where the system does not tell.
+    pub cpu_seconds: Option<Seconds>,
     /// The number of all rays over the time to render.
     pub mrays_per_second: f64,
     /// The peak memory of the process; null where the system does not tell.
@@ -78,6 +80,9 @@ pub struct Adaptive {
 pub struct Backend {
     pub name: &'static str,
     pub version: String,
+    /// The library of Embree that is used: its path, or the name by which the system found it; null
+    /// without Embree.
+    pub library: Option<String>,
 }
 
 /// The numbers of primitives.
@@ -122,7 +127,7 @@ pub struct Build {
     pub spheres_moved: u64,
 }
 
-/// The times in seconds.
+/// The times of the stages, in seconds.
 #[derive(Serialize)]
 pub struct Seconds {
     pub load: f64,
@@ -132,26 +137,35 @@ pub struct Seconds {
     pub total: f64,
 }
 
+impl Seconds {
+    /// Collects the seconds of one kind, by the clock or of the processors.
+    fn new(
+        totals: &RenderTotals,
+        [load, total]: [Elapsed; 2],
+        of: fn(Elapsed) -> Duration,
+    ) -> Self {
+        let Statistics { build, render, .. } = totals.statistics;
+        let [load, build, render, write, total] =
+            [load, build, render, totals.write, total].map(|elapsed| of(elapsed).as_secs_f64());
+        Self { load, build, render, write, total }
+    }
+}
+
 impl RenderStats {
-    /// Collects the statistics of a rendering; `scene` is that of the first frame, `load` the time to load
-    /// it and check the outputs, and `total` that of the whole command.
+    /// Collects the statistics of a rendering; `scene` is that of the first frame, and `times` are the time to load
+    /// it and check the outputs, and that of the whole command.
     pub fn new(
         scene: &Scene,
         report: &LoadReport,
         totals: &RenderTotals,
-        [load, total]: [Duration; 2],
+        times: [Elapsed; 2],
         warnings: Vec<String>,
     ) -> Self {
-        let RenderTotals { statistics, frames, images, write, .. } = totals;
+        let RenderTotals { statistics, frames, images, .. } = totals;
         let (Counts { rays, not_finite, .. }, built) = (statistics.counts, statistics.built);
-        // The times, by stage.
-        let seconds = Seconds {
-            load: load.as_secs_f64(),
-            build: statistics.build.as_secs_f64(),
-            render: statistics.render.as_secs_f64(),
-            write: write.as_secs_f64(),
-            total: total.as_secs_f64(),
-        };
+        let seconds = Seconds::new(totals, times, |elapsed| elapsed.wall);
+        let cpu_seconds = Seconds::new(totals, times, |elapsed| elapsed.cpu);
+        let cpu_seconds = (cpu_seconds.total > 0.0).then_some(cpu_seconds);
         let (name, version) = (statistics.backend, statistics.backend_version.clone());
         // The steps of adaptive sampling, and how many pixels took each after the first.
         let adaptive = scene.film.adaptive.map(|AdaptiveSampling { max, threshold }| {
@@ -165,7 +179,7 @@ impl RenderStats {
         let skipped = features.skipped().map(|(feature, reason)| (feature.name(), reason));
         let skipped = skipped.filter(|(name, _)| work.get(name).is_none_or(|&count| count == 0));
         Self {
-            backend: Backend { name, version },
+            backend: Backend { name, version, library: embree_library(statistics) },
             precision: statistics.precision.name(),
             threads: statistics.threads,
             size: scene.film.size,
@@ -189,6 +203,7 @@ impl RenderStats {
             not_finite,
             mrays_per_second: rays.total() as f64 / seconds.render.max(1e-9) * 1e-6,
             seconds,
+            cpu_seconds,
             peak_memory_bytes: peak_memory(),
             embree_peak_memory_bytes: embree_peak_memory(statistics),
             report: report.into(),
@@ -229,6 +244,17 @@ fn work(scene: &Scene, statistics: &Statistics, images: u64) -> BTreeMap<&'stati
         ("layers", images),
     ]
     .into()
+}
+
+/// Returns the library of Embree; none without Embree.
+fn embree_library(statistics: &Statistics) -> Option<String> {
+    #[cfg(feature = "embree")]
+    return statistics
+        .quality
+        .and_then(|_| crate::intersect::embree_library())
+        .map(|path| path.display().to_string());
+    #[cfg(not(feature = "embree"))]
+    statistics.quality.and(None)
 }
 
 /// Returns the peak memory of Embree; none without Embree.

@@ -1,6 +1,8 @@
 //! The builder of intersectors, for one picture or for the frames of an animation, which share the trees
 //! of their meshes.
 
+#[cfg(feature = "embree")]
+use crate::error::Remedy;
 use crate::error::Result;
 use crate::geometry::Bounds;
 use crate::intersect::blas_cache::meshes_in_use;
@@ -96,7 +98,8 @@ impl IntersectorBuilder {
         let (intersector, contents): (Box<dyn Intersector + 's>, _) = match self.backend {
             #[cfg(feature = "embree")]
             Backend::Embree => {
-                let embree = self.build_embree(scene, diff.as_ref())?;
+                let embree = self.build_embree(scene, diff.as_ref());
+                let embree = embree.map_err(|e| e.remedied_by(Remedy::RustBackend))?;
                 let contents = embree.stats();
                 (Box::new(embree), contents)
             }

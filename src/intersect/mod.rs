@@ -24,8 +24,13 @@ pub use build_stats::BuildStats;
 pub use builder::IntersectorBuilder;
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
-pub use embree::{Embree, peak_memory as embree_peak_memory, version as embree_version};
+pub use embree::{
+    Embree, library_path as embree_library, peak_memory as embree_peak_memory,
+    version as embree_version,
+};
 
+#[cfg(feature = "embree")]
+use crate::error::Remedy;
 use crate::error::Result;
 use crate::geometry::{Hit, HitBatch, PrimitiveId, Ray, RayBatch};
 use crate::scene::Scene;
@@ -172,16 +177,35 @@ pub enum Backend {
 }
 
 impl Default for Backend {
-    /// Returns Embree if it is compiled in, and else the pure-Rust BVH.
+    /// Returns Embree if it is built in and its library can be opened, and else the pure-Rust BVH.
     fn default() -> Self {
-        #[cfg(feature = "embree")]
-        return Backend::Embree;
-        #[cfg(not(feature = "embree"))]
-        Backend::Rust
+        Self::available()[0]
     }
 }
 
 impl Backend {
+    /// The backends that can be used here, the fastest first: Embree if it is built in and its library can be
+    /// opened, and the pure-Rust BVH. The first call opens the library.
+    pub fn available() -> &'static [Self] {
+        #[cfg(feature = "embree")]
+        if embree::open().is_ok() {
+            return &[Backend::Embree, Backend::Rust];
+        }
+        &[Backend::Rust]
+    }
+
+    /// Checks that the backend can be used here.
+    ///
+    /// # Errors
+    /// When it is Embree, and its library cannot be opened.
+    pub fn check(self) -> Result<()> {
+        match self {
+            #[cfg(feature = "embree")]
+            Backend::Embree => embree::open().map_err(|e| e.remedied_by(Remedy::RustBackend)),
+            Backend::Rust => Ok(()),
+        }
+    }
+
     /// The name of its intersectors.
     pub const fn name(self) -> &'static str {
         match self {
@@ -194,7 +218,7 @@ impl Backend {
     /// Builds the intersector of a checked scene, on `threads` threads (0: all there are).
     ///
     /// # Errors
-    /// When Embree cannot be started or runs out of memory.
+    /// When Embree's library cannot be opened, or Embree runs out of memory.
     pub fn build(
         self,
         scene: &Scene,

@@ -8,9 +8,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::geometry::{Geometry, Hit, Ray};
-#[cfg(feature = "embree")]
-use crate::intersect::Backend;
-use crate::intersect::{BruteForce, Bvh, Coherence, Intersector, Precision};
+use crate::intersect::{Backend, BruteForce, Coherence, Intersector, Precision};
 use crate::measure::decimals::{DecimalAnswer, answer_by_decimals};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
@@ -34,7 +32,7 @@ pub struct Replay {
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
     /// The name of the intersector and its precision.
-    pub name: &'static str,
+    pub name: String,
     /// The closest hit; null for none.
     pub hit: Option<ReplayedHit>,
     /// The difference of t from the reference, in units in the last place; null unless the two hit
@@ -84,23 +82,23 @@ pub fn replay(scene: &Scene, ray: &Ray, file: Option<&Path>) -> Result<Replay> {
     use Precision::{Certified, Fast};
     scene.check()?;
     render::in_pool(0, || {
-        let intersectors: Vec<Named<'_>> = vec![
-            ("oracle", Box::new(Oracle::new(scene))),
-            ("brute certified", Box::new(BruteForce::new(scene, Certified))),
-            ("brute fast", Box::new(BruteForce::new(scene, Fast))),
-            ("rust certified", Box::new(Bvh::build(scene, Certified))),
-            ("rust fast", Box::new(Bvh::build(scene, Fast))),
-            #[cfg(feature = "embree")]
-            ("embree certified", Backend::Embree.build(scene, Certified, 0)?),
-            #[cfg(feature = "embree")]
-            ("embree fast", Backend::Embree.build(scene, Fast, 0)?),
+        let mut intersectors: Vec<Named<'_>> = vec![
+            ("oracle".to_owned(), Box::new(Oracle::new(scene))),
+            ("brute certified".to_owned(), Box::new(BruteForce::new(scene, Certified))),
+            ("brute fast".to_owned(), Box::new(BruteForce::new(scene, Fast))),
         ];
+        for backend in Backend::available().iter().rev() {
+            for precision in [Certified, Fast] {
+                let name = format!("{} {}", backend.name(), precision.name());
+                intersectors.push((name, backend.build(scene, precision, 0)?));
+            }
+        }
         Ok(replay_with(scene, ray, file, &intersectors))
     })
 }
 
 /// An intersector and its name in the replay.
-type Named<'s> = (&'static str, Box<dyn Intersector + 's>);
+type Named<'s> = (String, Box<dyn Intersector + 's>);
 
 /// Traces a ray with the intersectors, the first of which is the reference.
 fn replay_with(
@@ -130,7 +128,7 @@ fn replay_with(
         });
         let same_primitive = hit.zip(reference).filter(|(a, b)| a.id == b.id);
         Answer {
-            name,
+            name: name.clone(),
             hit: hit.map(ReplayedHit::from),
             t_error_ulp: same_primitive.map(|(a, b)| ulps_between(a.t, b.t)),
             lights: lights.collect(),
@@ -266,8 +264,8 @@ mod tests {
         without.spheres[0].center = DVec3::X * 50.0;
         let ray = Ray::new(DVec3::Y * 9.0, DVec3::NEG_Y);
         let intersectors: [Named<'_>; 2] = [
-            ("with", Box::new(BruteForce::new(&with, Precision::Fast))),
-            ("without", Box::new(BruteForce::new(&without, Precision::Fast))),
+            ("with".to_owned(), Box::new(BruteForce::new(&with, Precision::Fast))),
+            ("without".to_owned(), Box::new(BruteForce::new(&without, Precision::Fast))),
         ];
         let found = replay_with(&with, &ray, None, &intersectors);
         let errors: Vec<_> = found.answers.iter().map(|a| a.t_error_ulp).collect();

@@ -3,10 +3,10 @@
 mod options;
 mod pool;
 mod rendering;
+mod stopwatch;
 mod trace;
 
 use std::borrow::Cow;
-use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::film::View;
@@ -19,6 +19,7 @@ use crate::write;
 pub use options::RenderOptions;
 pub use pool::in_pool;
 pub use rendering::{Rendering, Statistics};
+pub use stopwatch::{Elapsed, Stopwatch};
 pub use trace::Traced;
 
 use trace::{Progress, trace};
@@ -73,7 +74,7 @@ impl<'s> Renderer<'s> {
 
     /// Sets the backend that finds the hits.
     pub fn backend(mut self, backend: Backend) -> Self {
-        self.options.backend = backend;
+        self.options.backend = Some(backend);
         self
     }
 
@@ -125,11 +126,12 @@ impl<'s> Renderer<'s> {
         let scene = posed.as_ref().unwrap_or(scene);
         in_pool(options.threads, || {
             let threads = rayon::current_num_threads();
-            let mut builder = IntersectorBuilder::new(options.backend, options.precision, threads)
-                .with_quality(options.build_quality(scene));
-            let start = Instant::now();
+            let mut builder =
+                IntersectorBuilder::new(options.backend(), options.precision, threads)
+                    .with_quality(options.build_quality(scene));
+            let stopwatch = Stopwatch::start();
             let intersector = builder.build(scene)?;
-            let (quality, built) = (builder.quality(), (builder.stats(), start.elapsed()));
+            let (quality, built) = (builder.quality(), (builder.stats(), stopwatch.elapsed()));
             Ok(render_scene(scene, options, &*intersector, quality, built, &*self.progress))
         })
     }
@@ -151,7 +153,7 @@ impl<'s> Renderer<'s> {
         scene.check()?;
         check_camera(scene, options.camera)?;
         in_pool(options.threads, || {
-            let (backend, precision) = (options.backend, options.precision);
+            let (backend, precision) = (options.backend(), options.precision);
             let threads = rayon::current_num_threads();
             let moves = scene.animation.as_ref().is_some_and(|a| a.moves_geometry());
             // Frames in which rays can hit something else share the trees of the meshes.
@@ -177,7 +179,7 @@ impl<'s> Renderer<'s> {
                     (self.progress)((i as f32 + of_frame) / times.len() as f32);
                 };
                 // Build or update the intersector, unless the one that all frames share is there already.
-                let (start, before) = (Instant::now(), builder.stats());
+                let (stopwatch, before) = (Stopwatch::start(), builder.stats());
                 let own;
                 let mut built = None;
                 let intersector: &dyn Intersector = if moves {
@@ -190,7 +192,7 @@ impl<'s> Renderer<'s> {
                     &**shared.insert(builder.build(scene)?)
                 };
                 let built = built.unwrap_or_else(|| builder.stats() - before);
-                let (quality, built) = (builder.quality(), (built, start.elapsed()));
+                let (quality, built) = (builder.quality(), (built, stopwatch.elapsed()));
                 // Render the frame.
                 each(i, render_scene(posed, options, intersector, quality, built, &share))?;
             }
@@ -221,10 +223,10 @@ fn render_scene(
     options: &RenderOptions,
     intersector: &dyn Intersector,
     quality: Option<BuildQuality>,
-    (built, build): (BuildStats, Duration),
+    (built, build): (BuildStats, Elapsed),
     progress: &Progress<'_>,
 ) -> Rendering {
-    let Traced { film, counts, duration } = trace(scene, options, intersector, progress);
+    let Traced { film, counts, elapsed } = trace(scene, options, intersector, progress);
     let statistics = Statistics {
         backend: intersector.name(),
         backend_version: intersector.version(),
@@ -234,7 +236,7 @@ fn render_scene(
         counts,
         built,
         build,
-        render: duration,
+        render: elapsed,
     };
     Rendering { film, settings: write::Settings::from_film(&scene.film), statistics }
 }

@@ -8,8 +8,8 @@ use crate::scene::Scene;
 /// The options of a rendering; size, samples and background are the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RenderOptions {
-    /// The backend that finds the hits.
-    pub backend: Backend,
+    /// The backend that finds the hits; `None` takes [`Backend::default`].
+    pub backend: Option<Backend>,
     /// The precision of the hits.
     pub precision: Precision,
     /// The quality of Embree's trees; `None` chooses it by the number of rays to come.
@@ -25,6 +25,11 @@ pub struct RenderOptions {
 }
 
 impl RenderOptions {
+    /// The backend that is chosen, or else the default.
+    pub fn backend(&self) -> Backend {
+        self.backend.unwrap_or_default()
+    }
+
     /// Chooses the quality of a scene's trees, unless it is set, by the number of primary rays and their
     /// shadow rays. All frames of an animation count, also when only some are rendered: a frame must not
     /// depend on which others are.

@@ -1,9 +1,9 @@
 //! The result of a rendering: the picture, with its counts and times.
 
 use std::path::Path;
-use std::time::Duration;
 
 use super::options::RenderOptions;
+use super::stopwatch::Elapsed;
 use crate::error::Result;
 use crate::film::Film;
 use crate::integrator::Counts;
@@ -52,24 +52,24 @@ pub struct Statistics {
     /// Counts of what was built for the intersector, and of what was reused.
     pub built: BuildStats,
     /// The time to build the intersector.
-    pub build: Duration,
+    pub build: Elapsed,
     /// The time from the first ray to the last pixel.
-    pub render: Duration,
+    pub render: Elapsed,
 }
 
 impl Statistics {
     /// Zeroed statistics, to which those of frames are added.
     pub fn zero(options: &RenderOptions) -> Self {
         Self {
-            backend: options.backend.name(),
+            backend: options.backend().name(),
             backend_version: String::new(),
             precision: options.precision,
             quality: None,
             threads: options.threads,
             counts: Counts::default(),
             built: BuildStats::default(),
-            build: Duration::ZERO,
-            render: Duration::ZERO,
+            build: Elapsed::default(),
+            render: Elapsed::default(),
         }
     }
 

@@ -2,11 +2,11 @@
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use super::options::RenderOptions;
+use super::stopwatch::{Elapsed, Stopwatch};
 use crate::film::Film;
 use crate::integrator::{Counts, Integrator, PixelRecord, RefineStrip, Scratch};
 use crate::intersect::Intersector;
@@ -24,7 +24,7 @@ pub struct Traced {
     /// Rays and other counts.
     pub counts: Counts,
     /// The time from the first ray to the last pixel.
-    pub duration: Duration,
+    pub elapsed: Elapsed,
 }
 
 /// Traces a checked scene with an intersector that is built, on the current rayon pool.
@@ -58,7 +58,7 @@ pub fn trace(
     };
 
     // First pass: the samples that every pixel has, and a record of what they hit where more follow.
-    let start = Instant::now();
+    let stopwatch = Stopwatch::start();
     let recorded = if passes == 2 { film.pixels.len() } else { 0 };
     let mut records = vec![PixelRecord::default(); recorded];
     let mut record_strips: Vec<&mut [PixelRecord]> = records.chunks_mut(strip).collect();
@@ -79,5 +79,5 @@ pub fn trace(
         });
     }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
-    Traced { film, counts, duration: start.elapsed() }
+    Traced { film, counts, elapsed: stopwatch.elapsed() }
 }

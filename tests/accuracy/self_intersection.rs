@@ -68,7 +68,7 @@ fn backends() -> impl Iterator<Item = RenderOptions> {
     }
     backends.into_iter().flat_map(|backend| {
         [Precision::Fast, Precision::Certified].map(|precision| RenderOptions {
-            backend,
+            backend: Some(backend),
             precision,
             threads: 1,
             ..RenderOptions::default()
@@ -111,7 +111,8 @@ fn assert_alike(scene: &Scene, expected: &Scene) {
 /// that rounding does to a cosine, and far below a shadow.
 #[track_caller]
 fn assert_alike_here(scene: &Scene, expected: &Scene) {
-    let options = RenderOptions { backend: Backend::Rust, threads: 1, ..RenderOptions::default() };
+    let options =
+        RenderOptions { backend: Some(Backend::Rust), threads: 1, ..RenderOptions::default() };
     let expected = Renderer::new(expected).options(options.clone()).render().unwrap().film;
     let bright = expected.pixels.iter().filter(|p| p[0] > 0.01).count();
     assert!(bright > 300, "only {bright} pixels are lit: nothing would be shown");
@@ -223,7 +224,7 @@ fn first_of_coincident_surfaces_is_seen_in_certified() {
     for options in backends().filter(|o| o.precision == Precision::Certified) {
         let seen = |scene: &Scene| -> Vec<Option<PrimitiveId>> {
             let mut hits = vec![None; rays.len()];
-            let intersector = options.backend.build(scene, options.precision, 1).unwrap();
+            let intersector = options.backend().build(scene, options.precision, 1).unwrap();
             intersector.closest(&rays, envers::Coherence::Coherent, &mut hits);
             hits.into_iter().map(|hit| hit.map(|hit| hit.id)).collect()
         };
@@ -261,7 +262,7 @@ fn point_where_a_ball_touches_its_ground_is_dark() {
     ground(&mut scene);
     sphere(&mut scene, DVec3::Y, 1.0);
     for options in backends() {
-        let intersector = options.backend.build(&scene, options.precision, 1).unwrap();
+        let intersector = options.backend().build(&scene, options.precision, 1).unwrap();
         let from = Some(Departure { id: PrimitiveId::plane(0), side: Side::Front });
         let up = Ray { departure: from, ..Ray::new(DVec3::ZERO, DVec3::new(0.1, 1.0, 0.2)) };
         let mut blocked = [false];

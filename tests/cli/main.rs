@@ -1,6 +1,7 @@
 //! The `envers` command, run as its users run it.
 
 mod adaptive;
+mod backends;
 mod bench;
 mod frames;
 mod help;

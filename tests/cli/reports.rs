@@ -41,6 +41,7 @@ fn statistics_have_every_field() {
             ("skipped", Value::is_object),
             ("not_finite", Value::is_object),
             ("seconds", Value::is_object),
+            ("cpu_seconds", |v| v.is_object() || (!cfg!(unix) && v.is_null())),
             ("mrays_per_second", seconds),
             ("peak_memory_bytes", |v| v.is_u64() || (!cfg!(target_os = "linux") && v.is_null())),
             ("embree_peak_memory_bytes", |v| {
@@ -49,10 +50,17 @@ fn statistics_have_every_field() {
             ("warnings", texts),
         ],
     );
-    assert_fields(&stats["backend"], &[("name", Value::is_string), ("version", Value::is_string)]);
+    let library: Kind = |v| v.is_string() || v.is_null();
+    assert_fields(
+        &stats["backend"],
+        &[("name", Value::is_string), ("version", Value::is_string), ("library", library)],
+    );
     let times: [(&str, Kind); 5] =
         ["load", "build", "render", "write", "total"].map(|name| (name, seconds as _));
     assert_fields(&stats["seconds"], &times);
+    if cfg!(unix) {
+        assert_fields(&stats["cpu_seconds"], &times);
+    }
     let counts: [(&str, Kind); 4] =
         ["primary", "shadow", "reflection", "refraction"].map(|name| (name, Value::is_u64 as _));
     assert_fields(&stats["rays"], &counts);

@@ -102,7 +102,8 @@ fn the_picture_is_the_same_however_it_is_cut_up() {
 #[test]
 fn the_picture_is_the_same_on_either_backend() {
     let scene = with_samples(&varied(), 1, 25, 0.1);
-    let rust = made(&scene, &RenderOptions { backend: Backend::Rust, ..RenderOptions::default() });
+    let rust =
+        made(&scene, &RenderOptions { backend: Some(Backend::Rust), ..RenderOptions::default() });
     assert!(rust == made(&scene, &RenderOptions::default()));
 }
 

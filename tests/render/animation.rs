@@ -273,7 +273,8 @@ fn times(scene: &Scene) -> Vec<f64> {
 fn each_mesh_is_built_once_for_all_frames() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
     }
@@ -291,7 +292,8 @@ fn nothing_is_built_again_where_only_the_camera_moves() {
         lens: None,
     }];
     for (backend, precision) in backends() {
-        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
         let (films, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!((built.meshes_built, built.meshes_reused), (2, 10), "{backend:?} {precision:?}");
         assert_eq!((built.tlas_built, built.tlas_updated), (1, 5), "{backend:?} {precision:?}");
@@ -316,7 +318,7 @@ fn embree_places_again_only_what_moved() {
     let scene = workshop();
     for precision in [Precision::Fast, Precision::Certified] {
         let options =
-            RenderOptions { backend: Backend::Embree, precision, ..RenderOptions::default() };
+            RenderOptions { backend: Some(Backend::Embree), precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &times(&scene), &options);
         assert_eq!(tlas_counts(built), [1, 5, 3, 5, 5], "{precision:?}");
     }
@@ -326,7 +328,8 @@ fn embree_places_again_only_what_moved() {
 fn nothing_is_placed_again_where_nothing_moved() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
         let (_, built) = rendered(&scene, &[0.1; 4], &options);
         assert_eq!(tlas_counts(built), [1, 3, 3, 0, 0], "{backend:?} {precision:?}");
     }
@@ -341,7 +344,8 @@ fn assert_alone(scene: &Scene) -> Vec<u64> {
         if precision != Precision::Certified {
             continue;
         }
-        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
         let (films, built) = rendered(scene, &times(scene), &options);
         for (film, time) in films.iter().zip(times(scene)) {
             let alone = Renderer::new(&scene.at_time(time).unwrap())
@@ -408,7 +412,8 @@ fn a_scene_that_is_still_traced_is_left_as_it_is() {
 fn a_frame_is_the_same_bytes_whichever_frames_come_before_it() {
     let scene = workshop();
     for (backend, precision) in backends() {
-        let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
         let (all, _) = rendered(&scene, &times(&scene), &options);
         let (last, _) = rendered(&scene, &times(&scene)[5..], &options);
         assert!(all[5] == last[0], "{backend:?} {precision:?}");
@@ -419,8 +424,11 @@ fn a_frame_is_the_same_bytes_whichever_frames_come_before_it() {
 fn the_backends_agree_on_every_frame_to_the_bit() {
     let scene = workshop();
     let films = |backend| {
-        let options =
-            RenderOptions { backend, precision: Precision::Certified, ..RenderOptions::default() };
+        let options = RenderOptions {
+            backend: Some(backend),
+            precision: Precision::Certified,
+            ..RenderOptions::default()
+        };
         rendered(&scene, &times(&scene), &options).0
     };
     assert!(films(Backend::default()) == films(Backend::Rust));

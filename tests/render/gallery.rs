@@ -79,7 +79,7 @@ fn both_backends_make_the_same_radiance_in_certified_at_depth_16() {
     for name in scenes() {
         let [embree, rust] = [Backend::Embree, Backend::Rust].map(|backend| {
             let options = RenderOptions {
-                backend,
+                backend: Some(backend),
                 precision: Precision::Certified,
                 ..RenderOptions::default()
             };

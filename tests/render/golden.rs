@@ -24,7 +24,7 @@ fn picture(name: &str, [width, height]: [u32; 2], spp: u32, backend: Backend) ->
     let mut scene =
         LoadOptions::default().size([width, height]).load(&path).expect("the scene loads").scene;
     scene.film.spp = spp;
-    let options = RenderOptions { backend, ..RenderOptions::default() };
+    let options = RenderOptions { backend: Some(backend), ..RenderOptions::default() };
     let film =
         Renderer::new(&scene).options(options.clone()).render().expect("the scene renders").film;
     let settings = Settings::from_film(&scene.film);

@@ -41,7 +41,8 @@ fn matt(diffuse: f32) -> Material {
 /// Asserts what is counted, and that the pixel is finite; returns it.
 #[track_caller]
 fn assert_counted(scene: &Scene, expected: NotFinite) -> f32 {
-    let options = RenderOptions { backend: Backend::Rust, threads: 1, ..RenderOptions::default() };
+    let options =
+        RenderOptions { backend: Some(Backend::Rust), threads: 1, ..RenderOptions::default() };
     let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
     assert_eq!(rendering.statistics.counts.not_finite, expected);
     let [r, g, b] = rendering.film.pixel(0, 0);

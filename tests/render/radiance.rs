@@ -50,7 +50,8 @@ fn radiance(scene: &Scene) -> [f32; 3] {
 fn rendered(scene: &Scene) -> ([f32; 3], Counts) {
     use envers::Backend;
     let with = |backend| {
-        let options = RenderOptions { backend, threads: 1, ..RenderOptions::default() };
+        let options =
+            RenderOptions { backend: Some(backend), threads: 1, ..RenderOptions::default() };
         let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
         let mut counts = rendering.statistics.counts;
         counts.work.filters = 0; // Only Embree has any.

@@ -67,7 +67,12 @@ fn ambient() -> Light {
 /// The pixel, the same from every backend in either precision.
 fn radiance(scene: &Scene) -> [f32; 3] {
     let with = |backend, precision| {
-        let options = RenderOptions { backend, precision, threads: 1, ..RenderOptions::default() };
+        let options = RenderOptions {
+            backend: Some(backend),
+            precision,
+            threads: 1,
+            ..RenderOptions::default()
+        };
         Renderer::new(scene).options(options.clone()).render().unwrap().film.pixel(0, 0)
     };
     let rust = with(Backend::Rust, Precision::Fast);

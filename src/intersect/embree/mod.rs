@@ -17,9 +17,11 @@
 //! take records smaller than the library writes (`ffi::records`).
 
 mod certified;
+mod device;
 mod f32_space;
 mod fast;
 mod ffi;
+mod library_search;
 mod packet;
 mod scene_builder;
 #[cfg(test)]
@@ -36,8 +38,8 @@ use crate::intersect::frame_diff::FrameDiff;
 use crate::intersect::ray_ends::max_coordinate;
 use crate::intersect::{Coherence, Crossing, Intersector, Precision, Query};
 use crate::scene::{Instance, Scene};
-pub use ffi::peak_memory;
-use ffi::{DeviceHandle, PacketWidth};
+use ffi::PacketWidth;
+pub use ffi::{library_path, open, peak_memory};
 use packet::{ClosestQuery, OcclusionQuery, QueryScene};
 pub(super) use scene_builder::BuildOptions;
 pub(super) use tlas::FrameCache;
@@ -143,9 +145,9 @@ fn is_same_kind(a: &Ray, b: &Ray) -> bool {
 /// The version of the Embree library, such as `4.4.0`.
 ///
 /// # Errors
-/// When the library does not start.
+/// When the library cannot be opened.
 pub fn version() -> Result<String> {
-    Ok(DeviceHandle::new(1, None)?.version())
+    Ok(device::open(1, None)?.version())
 }
 
 impl Intersector for Embree<'_> {

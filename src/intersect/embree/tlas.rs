@@ -5,7 +5,7 @@
 //! motion it took a third less time to build, but rays took up to twice as long in precision
 //! `certified`, and 50,000 instances took longer to build.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
@@ -13,11 +13,12 @@ use crate::intersect::Precision;
 use crate::intersect::blas_cache::BlasCache;
 use crate::intersect::build_stats::BuildStats;
 use crate::intersect::embree::certified::{CertifiedSphere, CertifiedTriangle};
+use crate::intersect::embree::device;
 use crate::intersect::embree::f32_space::F32Space;
 use crate::intersect::embree::fast::{
     self, FastSpheres, FastTriangle, SphereTable, unresolved_meshes,
 };
-use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, check_abi, update_geometry};
+use crate::intersect::embree::ffi::{CommittedScene, DeviceHandle, update_geometry};
 use crate::intersect::embree::scene_builder::{BuildOptions, SceneBuilder};
 use crate::intersect::embree::user_meshes::{self, UserMeshes};
 use crate::intersect::frame_diff::FrameDiff;
@@ -48,7 +49,7 @@ impl Tlas {
     pub fn build(scene: &Scene, options: BuildOptions) -> Result<Self> {
         let mesh_bounds = scene.mesh_bounds();
         let space = F32Space::from_bounds(scene.bounds_with(&mesh_bounds));
-        let device = new_device(scene, options)?;
+        let device = device_for(scene, options)?;
         let builder =
             SceneBuilder::new(scene, &mesh_bounds, &device, options.quality, space, false)?;
         Self::from_builder(builder, options.precision, None)
@@ -156,18 +157,11 @@ fn are_user_meshes(scene: &Scene, space: &F32Space, precision: Precision) -> Vec
 /// The number of primitives below which one thread builds a tree in a few milliseconds.
 const FEW_PRIMITIVES: u64 = 1 << 12;
 
-/// Starts a device, once the library is known to be as expected.
-fn new_device(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
-    static CHECKED: OnceLock<std::result::Result<(), String>> = OnceLock::new();
-    CHECKED
-        .get_or_init(|| check_abi().map_err(|e| e.to_string()))
-        .clone()
-        .map_err(Error::failed)?;
+/// Returns the device to build a scene on.
+fn device_for(scene: &Scene, options: BuildOptions) -> Result<DeviceHandle> {
     // Waking threads takes longer than a small tree does.
     let is_small = scene.primitive_count() < FEW_PRIMITIVES;
-    let device = DeviceHandle::new(if is_small { 1 } else { options.threads }, options.width)?;
-    device.monitor_memory();
-    Ok(device)
+    device::open(if is_small { 1 } else { options.threads }, options.width)
 }
 
 /// The device, BLASes and TLAS that frames share.
@@ -226,7 +220,7 @@ impl FrameCache {
         } else {
             let device = match &self.device {
                 Some(device) => device.clone(),
-                None => self.device.insert(new_device(scene, options)?).clone(),
+                None => self.device.insert(device_for(scene, options)?).clone(),
             };
             let builder =
                 SceneBuilder::new(scene, mesh_bounds, &device, options.quality, space, true)?;

@@ -39,16 +39,16 @@ pub enum Samples {
 }
 
 impl Setup {
-    /// Returns every setup of this build: Embree's before the pure-Rust ones, and better build
+    /// Returns every setup that can be used here: Embree's before the pure-Rust ones, and better build
     /// quality before lower.
     pub fn all() -> Vec<Self> {
-        let builds = [
-            #[cfg(feature = "embree")]
-            (Backend::Embree, &[Some(BuildQuality::Medium), Some(BuildQuality::Low)][..]),
-            (Backend::Rust, &[None][..]),
-        ];
         let mut setups = Vec::new();
-        for (backend, qualities) in builds {
+        for &backend in Backend::available() {
+            let qualities = match backend {
+                #[cfg(feature = "embree")]
+                Backend::Embree => &[Some(BuildQuality::Medium), Some(BuildQuality::Low)][..],
+                Backend::Rust => &[None][..],
+            };
             for precision in [Precision::Fast, Precision::Certified] {
                 let setup = |&quality: &_| Self { backend, precision, quality };
                 setups.extend(qualities.iter().map(setup));

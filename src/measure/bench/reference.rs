@@ -53,9 +53,10 @@ impl Reference {
         let build = start.elapsed();
         let sampled = Scene { film: mode.samples.film(&scene.film), ..scene.clone() };
         let renderer = Renderer::new(&sampled).camera(camera).on_progress(progress);
-        let Traced { film, duration: render, .. } = renderer.render_with(&*intersector);
+        let Traced { film, elapsed, .. } = renderer.render_with(&*intersector);
         let ids = primitive_ids(scene, camera, &*intersector);
         let (perceived, bytes) = perceived(&film, scene);
+        let render = elapsed.wall;
         Ok(Self { mode, radiance: radiance(&film), perceived, bytes, ids, build, render })
     }
 

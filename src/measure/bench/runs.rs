@@ -94,7 +94,7 @@ impl<'a> SetupRuns<'a> {
         let film = FilmSettings { size, ..Samples::Regular(1).film(&self.scene.film) };
         let small = Scene { film, ..self.scene.clone() };
         self.render(&small, intersector); // Warms up the caches.
-        let time = self.render(&small, intersector).duration;
+        let time = self.render(&small, intersector).elapsed.wall;
         let pixels = |[w, h]: [u32; 2]| f64::from(w) * f64::from(h);
         self.sample_time = time.mul_f64(pixels(full) / pixels(size));
     }
@@ -110,7 +110,8 @@ impl<'a> SetupRuns<'a> {
         // Render the picture, whose time also corrects the estimate for later modes.
         let mode = self.modes[index].mode;
         let scene = Scene { film: mode.samples.film(&self.scene.film), ..self.scene.clone() };
-        let Traced { film, duration, .. } = self.render(&scene, intersector);
+        let Traced { film, elapsed, .. } = self.render(&scene, intersector);
+        let duration = elapsed.wall;
         if let Samples::Regular(spp) = mode.samples {
             self.sample_time = duration / spp;
         }

@@ -8,19 +8,24 @@ use crate::intersect::{Backend, Coherence::Incoherent, Intersector, Precision};
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::scene::Scene;
 
-/// The backends of this build, and their names in the report.
-pub const BACKENDS: &[(Backend, &str)] = &[
-    #[cfg(feature = "embree")]
-    (Backend::Embree, "embree"),
-    (Backend::Rust, "bvh"),
-];
+/// The name of a backend in the report.
+pub fn report_name(backend: Backend) -> &'static str {
+    match backend {
+        Backend::Rust => "bvh",
+        #[cfg(feature = "embree")]
+        Backend::Embree => "embree",
+    }
+}
 
-/// The names of all backends of this build.
-pub const INTERSECTORS: &str = if cfg!(feature = "embree") { "embree and bvh" } else { "bvh" };
+/// The names of the backends that are tested: all that can be used here.
+pub fn intersector_names() -> String {
+    let names: Vec<_> = Backend::available().iter().map(|&backend| report_name(backend)).collect();
+    names.join(" and ")
+}
 
-/// Builds the intersectors of this build for a scene.
+/// Builds an intersector of each backend for a scene.
 pub fn intersectors(scene: &Scene, precision: Precision) -> Result<Vec<Box<dyn Intersector + '_>>> {
-    BACKENDS.iter().map(|(backend, _)| backend.build(scene, precision, 1)).collect()
+    Backend::available().iter().map(|backend| backend.build(scene, precision, 1)).collect()
 }
 
 /// Returns a case for each backend, whose precision `certified` is tested, and `fast` measured.
@@ -28,11 +33,11 @@ pub fn on_each_backend(
     name: &str,
     test: impl Fn(&RaySampler, Backend) -> Result<CaseStats> + Copy + 'static,
 ) -> Vec<Case> {
-    let case = |&(backend, backend_name): &(Backend, &str)| {
-        let method = format!("certified, {backend_name}");
+    let case = |&backend: &Backend| {
+        let method = format!("certified, {}", report_name(backend));
         Case::new(name, method, move |sampler| test(sampler, backend))
     };
-    BACKENDS.iter().map(case).collect()
+    Backend::available().iter().map(case).collect()
 }
 
 /// The intersectors of one backend in both precisions: `certified` is tested, and `fast` measured.

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::CaseStats;
-use super::backends::BACKENDS;
+use super::backends::report_name;
 use super::case::{Case, RaySampler};
 use super::meshes::{icosphere, torus};
 use super::scale::scale_geometry;
@@ -37,7 +37,8 @@ const TILINGS: [Tiling; 4] = [
 /// Returns the cases.
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
-    for &(backend, name) in BACKENDS {
+    for &backend in Backend::available() {
+        let name = report_name(backend);
         let method = format!("certified, {name}");
         // Variants of the scene's scale, of the number of threads and of the tiling.
         for exponents in SCALE_EXPONENTS {
@@ -74,8 +75,11 @@ fn compare_variants(
     // Square pictures, of as many pixels together as the case has rays.
     let side = (sampler.rays as f64 / PICTURES as f64).sqrt().ceil().max(8.0) as u32;
     let scene = scene(side);
-    let options =
-        RenderOptions { backend, precision: Precision::Certified, ..RenderOptions::default() };
+    let options = RenderOptions {
+        backend: Some(backend),
+        precision: Precision::Certified,
+        ..RenderOptions::default()
+    };
     let variants = variants(&scene, &options);
     let mut stats = CaseStats::default();
     for camera in 0..scene.cameras.len() {

@@ -30,6 +30,7 @@ mod watertight;
 use std::path::PathBuf;
 
 use crate::error::Result;
+use crate::intersect::Backend;
 
 pub use plot::plot;
 pub use report::{BaselineStats, CaseStats, Row, Table};
@@ -159,7 +160,7 @@ impl Default for StressOptions {
 pub fn run(options: &StressOptions, progress: &dyn Fn(f32)) -> Result<Vec<Row>> {
     let conditions = RunConditions {
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        embree: cfg!(feature = "embree"),
+        embree: Backend::available().len() > 1,
         seed: options.seed,
         size: options.rays,
     };

@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::backends::{INTERSECTORS, intersectors};
+use super::backends::{intersector_names, intersectors};
 use super::case::{Case, RaySampler};
 use super::{CaseStats, random::Random};
 use crate::error::Result;
@@ -25,7 +25,7 @@ const GAP: f64 = 1e-9;
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for precision in [Precision::Fast, Precision::Certified] {
-        let method = format!("{}, {INTERSECTORS}", precision.name());
+        let method = format!("{}, {}", precision.name(), intersector_names());
         for (radius, offset) in RADII.into_iter().flat_map(|r| OFFSETS.map(|o| (r, o))) {
             let name = format!("R {radius:.0e}, centre {offset:.0e} R");
             cases.push(Case {

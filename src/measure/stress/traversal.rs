@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::backends::{INTERSECTORS, intersectors};
+use super::backends::{intersector_names, intersectors};
 use super::meshes::{icosphere, torus};
 use super::{case::Case, random::Random};
 use crate::geometry::Ray;
@@ -26,7 +26,7 @@ pub fn cases() -> Vec<Case> {
         for (offset, tangent) in OFFSETS.into_iter().flat_map(|o| [(o, false), (o, true)]) {
             let rays = if tangent { "axis-tangent" } else { "random" };
             let name = format!("{what}, {rays} rays, offset {offset:.0e}");
-            let method = format!("{}, {INTERSECTORS}", precision.name());
+            let method = format!("{}, {}", precision.name(), intersector_names());
             cases.push(Case::new(name, method, move |sampler| {
                 let center = DVec3::new(offset, -0.7 * offset, 0.3 * offset);
                 let scene = scene(center, meshes, &mut sampler.shared_random());

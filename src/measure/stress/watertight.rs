@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
-use super::backends::{INTERSECTORS, intersectors};
+use super::backends::{intersector_names, intersectors};
 use super::meshes::{cube, icosphere, torus};
 use super::{CaseStats, case::Case, random::Random};
 use crate::geometry::{Hit, PrimitiveId, Ray};
@@ -45,7 +45,7 @@ pub fn cases() -> Vec<Case> {
     for (mesh, (target, target_name)) in targeted {
         for offset in OFFSETS {
             let name = format!("{}, {target_name}, offset {offset:.0e}", mesh().name);
-            let method = format!("certified, {INTERSECTORS}");
+            let method = format!("certified, {}", intersector_names());
             cases.push(Case::new(name, method, move |sampler| {
                 let scene = scene(mesh(), target, offset, &mut sampler.shared_random());
                 let brute = BruteForce::new(&scene, Precision::Certified);

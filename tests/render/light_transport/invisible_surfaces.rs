@@ -45,7 +45,7 @@ fn scene() -> Scene {
 }
 
 fn pixels(scene: &Scene, backend: Backend, precision: Precision) -> Vec<[f32; 3]> {
-    let options = RenderOptions { backend, precision, ..RenderOptions::default() };
+    let options = RenderOptions { backend: Some(backend), precision, ..RenderOptions::default() };
     Renderer::new(scene).options(options.clone()).render().unwrap().film.pixels
 }
 

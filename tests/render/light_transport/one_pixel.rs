@@ -41,7 +41,12 @@ pub fn sphere(scene: &mut Scene, center: DVec3, radius: f64, material: Material)
 /// The pixel and the counts; the same from each backend in each precision.
 pub fn rendered(scene: &Scene) -> ([f32; 3], Counts) {
     let with = |backend, precision| {
-        let options = RenderOptions { backend, precision, threads: 1, ..RenderOptions::default() };
+        let options = RenderOptions {
+            backend: Some(backend),
+            precision,
+            threads: 1,
+            ..RenderOptions::default()
+        };
         let rendering = Renderer::new(scene).options(options.clone()).render().unwrap();
         (rendering.film.pixel(0, 0), rendering.statistics.counts)
     };

@@ -10,12 +10,11 @@ use crate::intersect::embree::ffi::handles::{CommittedScene, DeviceHandle, embre
 use crate::intersect::embree::ffi::queries::call_for_width;
 use crate::intersect::embree::ffi::records::{INVALID, LaneMask, RayHitRecord, SENTINEL};
 
-/// Traces the packets.
+/// Traces the packets on a device.
 ///
 /// # Errors
-/// When the library does not start, is not Embree 4, or its records are not as expected.
-pub fn check() -> Result<()> {
-    let device = DeviceHandle::new(1, None)?;
+/// When the library is not Embree 4, or its records are not as expected.
+pub fn check(device: &DeviceHandle) -> Result<()> {
     let version = device.property(sys::RTCDeviceProperty::VERSION_MAJOR);
     if version != 4 {
         return Err(Error::failed(format!("this is Embree {version}; envers needs Embree 4")));
@@ -24,13 +23,13 @@ pub fn check() -> Result<()> {
     let mesh = TriangleMeshGeometry::try_new(&device.to_device(), &corners, &[(0, 1, 2)])
         .map_err(embree_error)?;
     let (quality, flags) = (sys::RTCBuildQuality::MEDIUM, sys::RTCSceneFlags::NONE);
-    let scene = CommittedScene::new(&device, quality, flags, &mesh)?;
+    let scene = CommittedScene::new(device, quality, flags, &mesh)?;
     let agrees = agrees::<1>(&scene) && agrees::<4>(&scene) && agrees::<8>(&scene);
     if agrees && self::agrees::<16>(&scene) {
         return Ok(());
     }
     Err(Error::failed("this Embree lays its ray records out in a way that envers does not know")
-        .help("Embree 4.0 to 4.4 are known to work; `--backend rust` works without it"))
+        .help("Embree 4.0 to 4.4 are known to work"))
 }
 
 /// True if a packet along +z comes back with the hit in the right fields and the spare room
@@ -62,8 +61,10 @@ fn agrees<const W: usize>(scene: &CommittedScene) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn library_and_records_agree() {
-        super::check().unwrap();
+        super::check(&DeviceHandle::start(1).unwrap()).unwrap();
     }
 }

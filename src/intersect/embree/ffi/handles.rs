@@ -10,6 +10,7 @@ use embree4_rs::geometry::Geometry;
 use embree4_sys as sys;
 
 use crate::error::{Error, Result};
+use crate::intersect::embree::ffi::library;
 use crate::intersect::embree::ffi::packet_width::PacketWidth;
 
 /// The bytes that all devices of the process hold now.
@@ -43,25 +44,32 @@ pub struct DeviceHandle {
 }
 
 impl DeviceHandle {
-    /// Starts a device of `threads` threads (0: all there are), for packets of `width`, or else of
-    /// the widest that are native.
+    /// Starts a device of `threads` threads (0: all there are), for single rays.
     ///
     /// # Errors
-    /// When the library does not start.
-    ///
-    /// # Panics
-    /// When the processor does not support the width.
-    pub fn new(threads: usize, width: Option<PacketWidth>) -> Result<Self> {
+    /// When the library cannot be opened, or does not start.
+    pub fn start(threads: usize) -> Result<Self> {
+        library::open()?;
         let config = format!("threads={threads}\0");
         let device = embree4_rs::Device::try_new(Some(&config)).map_err(embree_error)?;
         const _: () = assert!(size_of::<embree4_rs::Device>() == size_of::<sys::RTCDevice>());
         // SAFETY: the crate's struct is its handle and nothing else, by the assertion here and in
         // `scene_handle`; the crate's version is pinned. Its reference is the one that `drop` releases.
         let handle = unsafe { std::mem::transmute::<embree4_rs::Device, sys::RTCDevice>(device) };
-        let mut device = Self { handle, width: PacketWidth::One };
-        device.width = width.unwrap_or_else(|| PacketWidth::native(|p| device.property(p)));
-        assert!(device.width.is_supported(), "packets of a width that the processor lacks");
-        Ok(device)
+        Ok(Self { handle, width: PacketWidth::One })
+    }
+
+    /// Returns another reference to the device, for packets of `width`, or else of the widest that are
+    /// native.
+    ///
+    /// # Panics
+    /// When the processor does not support the width.
+    pub fn with_width(&self, width: Option<PacketWidth>) -> Self {
+        let width = width.unwrap_or_else(|| PacketWidth::native(|p| self.property(p)));
+        assert!(width.is_supported(), "packets of a width that the processor lacks");
+        let mut device = self.clone();
+        device.width = width;
+        device
     }
 
     /// Returns another reference to the device, in the type of embree4-rs.

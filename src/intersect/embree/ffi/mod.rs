@@ -4,6 +4,7 @@
 mod abi_check;
 mod callbacks;
 mod handles;
+mod library;
 mod mesh_geometry;
 mod packet_width;
 pub mod queries;
@@ -13,6 +14,7 @@ mod user_geometry;
 pub use abi_check::check as check_abi;
 pub use callbacks::{CallbackPacket, Filter, UserPrimitive, UserPrimitives};
 pub use handles::{CommittedScene, DeviceHandle, OpenScene, OwnedGeometry, peak_memory};
+pub use library::{open, path as library_path};
 pub use mesh_geometry::new_mesh_geometry;
 pub use packet_width::{Kernel, PacketWidth};
 pub use records::{Candidate, INVALID, LaneMask, RayHitRecord};
