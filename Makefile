@@ -78,6 +78,11 @@ deny: ## hold licences, duplicates and sources of the dependencies to deny.toml
 	    { echo 'make deny: first `cargo install cargo-deny --locked`' >&2; exit 1; }
 	$(CARGO) deny --locked check licenses bans sources
 
+# Where manual pages and the scripts that complete the command line go.
+SHARE = $(DESTDIR)$(PREFIX)/share
+COMPLETIONS = $(SHARE)/bash-completion/completions/envers $(SHARE)/zsh/site-functions/_envers \
+    $(SHARE)/fish/vendor_completions.d/envers.fish
+
 # Embree goes along only if set-up fetched it: a system's own is found where it stands.
 install: setup ## build and install under PREFIX (default: ~/.local), with Embree if it was fetched
 	$(CARGO) install --path . --locked --no-track --force --root '$(DESTDIR)$(PREFIX)'
@@ -88,9 +93,16 @@ install: setup ## build and install under PREFIX (default: ~/.local), with Embre
 	        '$(DESTDIR)$(PREFIX)/lib/envers/' && \
 	    echo 'Embree is in $(DESTDIR)$(PREFIX)/lib/envers'; \
 	fi
+	@'$(DESTDIR)$(PREFIX)/bin/envers' man '$(SHARE)/man/man1'
+	@set -e; set -- bash zsh fish; for script in $(foreach script,$(COMPLETIONS),'$(script)'); do \
+	    mkdir -p "$${script%/*}"; \
+	    '$(DESTDIR)$(PREFIX)/bin/envers' completions $$1 >"$$script"; shift; \
+	done
+	@echo 'Manual pages and completions are in $(SHARE)'
 
 uninstall: ## remove what `make install` put under PREFIX
-	rm -f '$(DESTDIR)$(PREFIX)/bin/envers'
+	rm -f '$(DESTDIR)$(PREFIX)/bin/envers' '$(SHARE)'/man/man1/envers.1 '$(SHARE)'/man/man1/envers-*.1
+	rm -f $(foreach script,$(COMPLETIONS),'$(script)')
 	rm -rf '$(DESTDIR)$(PREFIX)/lib/envers'
 
 clean: ## remove what was built and rendered (what was fetched stays in .deps)

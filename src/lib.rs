@@ -92,7 +92,9 @@ pub use geometry::{
 #[cfg(feature = "embree")]
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
-pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_ground, load};
+pub use load::{
+    DropReason, Framing, Limit, Limits, LoadOptions, LoadReport, Loaded, UpAxis, add_ground, load,
+};
 pub use render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,

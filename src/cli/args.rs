@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::cli::flag_values::{
     BVH_QUALITIES, BackendChoice, BvhQuality, NamedLimit, SampleRange, TONES, VIEWS, backend,
-    backend_choice, choice, duration, finite, goal, not_negative, sample_range, share,
+    backend_choice, choice, duration, finite, goal, sample_range, share, tolerance,
 };
 use crate::cli::frame_range::FrameRange;
 use crate::cli::scene_args::{InputArgs, LoadArgs, TraceArgs};
@@ -53,6 +53,10 @@ pub enum Command {
     Info(Info),
     /// Compare two images: exit status 0 if they are equal, 1 if they differ
     Diff(Diff),
+    /// Print a script that completes the command line in a shell
+    Completions(Completions),
+    /// Write the manual pages to a folder
+    Man(Man),
 }
 
 #[derive(Args)]
@@ -268,8 +272,9 @@ pub struct Diff {
     pub a: PathBuf,
     /// Second image, of the same format and size
     pub b: PathBuf,
-    /// Largest difference of two values that counts as equal; the values of a PNG are n/255
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = not_negative, allow_negative_numbers = true)]
+    /// Largest difference of two values that counts as equal, as a number or a fraction such as 1/255: the
+    /// values of 8-bit images are from 0 to 1, in steps of 1/255
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: f32,
     /// Write the result as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
@@ -280,6 +285,27 @@ pub struct Diff {
     /// Change a limit on what the images may use: bytes or pixels; can be given several times
     #[arg(long, value_name = "NAME=NUMBER")]
     pub limit: Vec<NamedLimit>,
+}
+
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  envers completions bash > ~/.local/share/bash-completion/completions/envers
+  envers completions zsh > ~/.zfunc/_envers            (with `fpath+=~/.zfunc` before `compinit`)
+  envers completions fish > ~/.config/fish/completions/envers.fish
+
+`make install` installs those of bash, zsh and fish.")]
+pub struct Completions {
+    /// Shell to print the script for
+    #[arg(value_enum)]
+    pub shell: clap_complete::Shell,
+}
+
+#[derive(Args)]
+pub struct Man {
+    /// Folder for the pages, such as ~/.local/share/man/man1; created if it does not exist
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
 }
 
 #[cfg(test)]

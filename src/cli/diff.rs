@@ -38,6 +38,14 @@ pub fn run(arguments: &Diff) -> Result<ExitCode> {
             .at(&arguments.b)
             .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
     }
+    if format != Format::Exr && arguments.tolerance >= 1.0 {
+        let message = format!(
+            "--tolerance {}: the values of an 8-bit image are from 0 to 1, so any two images would pass",
+            arguments.tolerance
+        );
+        return Err(Error::input(message)
+            .help("for a difference of one step of the 255 give `--tolerance 1/255`"));
+    }
     // Compare the values, and what a viewer perceives of them.
     let limits = scene_args::limits(&arguments.limit);
     let [a, b] = Picture::read_pair(&arguments.a, &arguments.b, limits)?;

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::intersect::{Backend, BuildQuality, Precision};
-use crate::load::Limit;
+use crate::load::{Limit, UpAxis};
 use crate::measure::stress::Goal;
 use crate::scene::Tone;
 use crate::scene::check::{check_samples, check_size};
@@ -54,6 +54,14 @@ pub const BVH_QUALITIES: &Choices<BvhQuality> =
     &[("auto", None), ("low", Some(BuildQuality::Low)), ("medium", Some(BuildQuality::Medium))];
 pub const VIEWS: &Choices<View> =
     &[("beauty", View::Beauty), ("normal", View::Normal), ("depth", View::Depth), ("id", View::Id)];
+pub const UP_AXES: &Choices<UpAxis> = &[
+    ("x", UpAxis::X),
+    ("y", UpAxis::Y),
+    ("z", UpAxis::Z),
+    ("-x", UpAxis::NegX),
+    ("-y", UpAxis::NegY),
+    ("-z", UpAxis::NegZ),
+];
 pub const TONES: &Choices<Tone> =
     &[("none", Tone::None), ("reinhard", Tone::Reinhard), ("aces", Tone::Aces)];
 
@@ -69,16 +77,38 @@ where
     PossibleValuesParser::new(choices.iter().map(|(name, _)| *name)).map(value)
 }
 
-/// Parses a picture's size, such as `1920x1080`.
-pub fn size(text: &str) -> Result<[u32; 2], String> {
-    let parse = || {
-        let (width, height) = text.split_once(['x', 'X', '×'])?;
-        Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+/// The size of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Width and height.
+    Exact([u32; 2]),
+    /// The width; the height follows in the scene's proportions.
+    Width(u32),
+}
+
+/// Parses a picture's size, such as `1920x1080` or `640`.
+pub fn size(text: &str) -> Result<Size, String> {
+    let number = |text: &str| text.trim().parse::<u32>().ok();
+    let parse = || match text.split_once(['x', 'X', '×']) {
+        Some((width, height)) => Some(Size::Exact([number(width)?, number(height)?])),
+        None => Some(Size::Width(number(text)?)),
     };
-    let size = parse().ok_or("expected WIDTHxHEIGHT in pixels, such as 1920x1080")?;
-    check_size(size)
+    let message =
+        "expected WIDTHxHEIGHT in pixels, such as 1920x1080, or the width alone, such as 640";
+    let size = parse().ok_or(message)?;
+    // Of a width alone the height is known once the scene is loaded.
+    let least = match size {
+        Size::Exact(size) => size,
+        Size::Width(width) => [width, 1],
+    };
+    check_size(least)
         .map_err(|e| format!("{} ({})", e.message(), e.advice().unwrap_or_default()))?;
     Ok(size)
+}
+
+/// Parses an elevation in degrees.
+pub fn elevation(text: &str) -> Result<f64, String> {
+    number(text, |x: &f64| x.abs() <= 90.0, "expected an angle from -90 to 90 degrees")
 }
 
 /// Parses the name of a goal, `G1` to `G13`.
@@ -108,9 +138,15 @@ pub fn finite(text: &str) -> Result<f64, String> {
     number(text, |x: &f64| x.is_finite(), "expected a finite number")
 }
 
-/// Parses a number of at least 0.
-pub fn not_negative(text: &str) -> Result<f32, String> {
-    number(text, |x| *x >= 0.0, "expected a number, 0 or above")
+/// Parses the tolerance of a comparison: a number, or a fraction such as `1/255`.
+pub fn tolerance(text: &str) -> Result<f32, String> {
+    let expected = "expected a number, 0 or above, or a fraction such as 1/255";
+    let part = |text: &str| number(text, |x: &f64| x.is_finite() && *x >= 0.0, expected);
+    let value = match text.split_once('/') {
+        Some((above, below)) => part(above)? / part(below)?,
+        None => part(text)?,
+    };
+    (value as f32).is_finite().then_some(value as f32).ok_or(expected.to_owned())
 }
 
 /// Parses a number that must be valid.

@@ -96,7 +96,7 @@ impl fmt::Display for AnimationSummary {
 pub fn run(arguments: &Info) -> Result<ExitCode> {
     output::check_json(arguments.json.as_ref())?;
     paths::check_input(&arguments.scene)?;
-    let Loaded { scene, report } = arguments.load.options(None).load(&arguments.scene)?;
+    let Loaded { scene, report } = arguments.load.options().load(&arguments.scene)?;
     let animation = scene.animation.as_ref().map(AnimationSummary::new);
     // All but the animation is that of the first frame.
     // On a thread of the pool, where parallel loops over many small meshes cost nothing.

@@ -1,6 +1,7 @@
 //! The messages on stderr: errors, warnings and progress.
 
 use std::io::{IsTerminal, Write};
+use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -101,6 +102,26 @@ pub fn progress_bar(quiet: bool) -> ProgressBar {
         bar.set_style(style);
     }
     bar
+}
+
+/// Shows that something goes on whose share is not known, until the result is dropped; nothing if `quiet`, or
+/// if stderr is not a terminal.
+pub fn spinner(quiet: bool, what: &'static str) -> Spinner {
+    if quiet || !std::io::stderr().is_terminal() {
+        return Spinner(ProgressBar::hidden());
+    }
+    let bar = ProgressBar::new_spinner().with_message(what);
+    bar.enable_steady_tick(Duration::from_millis(100));
+    Spinner(bar)
+}
+
+/// A sign on stderr that something goes on.
+pub struct Spinner(ProgressBar);
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
 }
 
 /// Shows the share done, in \[0, 1\].

@@ -2,11 +2,13 @@
 
 mod args;
 mod bench;
+mod completions;
 mod diff;
 mod flag_values;
 mod frame_range;
 mod info;
 mod load_report;
+mod man;
 mod messages;
 mod output;
 mod paths;
@@ -15,6 +17,7 @@ mod render_plan;
 mod render_stats;
 mod scene_args;
 mod stress;
+mod usage_errors;
 mod validate;
 
 use std::process::ExitCode;
@@ -29,7 +32,8 @@ use args::{Arguments, Command};
 /// Exit status 0: success; 1: a check or the work failed; 2: the command line or the input is
 /// invalid.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = Arguments::try_parse();
+    let arguments = arguments.unwrap_or_else(|error| usage_errors::correct_tips(error).exit());
     if arguments.version {
         return exit_code(output::print(&format!("{}\n", version())).map(|()| ExitCode::SUCCESS));
     }
@@ -44,6 +48,8 @@ pub fn run() -> ExitCode {
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
     })
 }
 

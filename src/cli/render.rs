@@ -27,7 +27,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     output::check_json(arguments.stats.as_ref())?;
     let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
-        add_ground(&mut scene);
+        add_ground(&mut scene, input.up.unwrap_or_default().direction());
     }
     set_samples(&mut scene.film, arguments)?;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);

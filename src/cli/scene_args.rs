@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::flag_values::{NamedLimit, PRECISIONS, choice, seconds, size};
+use crate::cli::flag_values::{
+    NamedLimit, PRECISIONS, Size, UP_AXES, choice, elevation, finite, seconds, size,
+};
 use crate::cli::{load_report, messages, paths};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
-use crate::load::{Limits, LoadOptions, LoadReport, Loaded};
+use crate::load::{Framing, Limits, LoadOptions, LoadReport, Loaded, UpAxis};
 use crate::scene::check::{MAX_DEPTH, MAX_SPP};
 use crate::scene::{Camera, Scene};
 
@@ -33,13 +35,13 @@ pub struct LoadArgs {
 
 impl LoadArgs {
     /// Returns the options of a load.
-    pub fn options(&self, size: Option<[u32; 2]>) -> LoadOptions {
+    pub fn options(&self) -> LoadOptions {
         LoadOptions {
-            size,
             variant: self.variant.clone(),
             allow_outside: self.allow_outside,
             double_sided: self.double_sided,
             limits: limits(&self.limit),
+            ..LoadOptions::default()
         }
     }
 }
@@ -55,12 +57,21 @@ pub fn limits(changed: &[NamedLimit]) -> Limits {
 pub struct InputArgs {
     /// Scene file (.toml) or model (.gltf, .glb, .vrm, .obj)
     pub scene: PathBuf,
-    /// Image size in pixels, such as 1920x1080 [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = size)]
-    pub size: Option<[u32; 2]>,
+    /// Image size in pixels, such as 1920x1080, or the width alone [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size, allow_negative_numbers = true)]
+    pub size: Option<Size>,
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
+    /// Axis of a bare model that is upward in the picture: x, y, z, -x, -y or -z [default: y]
+    #[arg(long, value_name = "AXIS", value_parser = choice(UP_AXES), allow_hyphen_values = true)]
+    pub up: Option<UpAxis>,
+    /// Angle in degrees, to the right around a bare model, from its front to where the camera stands
+    #[arg(long, value_name = "DEGREES", value_parser = finite, conflicts_with = "camera", allow_negative_numbers = true)]
+    pub azimuth: Option<f64>,
+    /// Angle in degrees by which the camera stands higher than a bare model, from -90 to 90
+    #[arg(long, value_name = "DEGREES", value_parser = elevation, conflicts_with = "camera", allow_negative_numbers = true)]
+    pub elevation: Option<f64>,
     /// Number of threads [default: one per processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub threads: Option<u16>,
@@ -115,7 +126,17 @@ impl InputArgs {
         // The number of threads applies to loading and writing, too. Building the global pool fails
         // only if there is one already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let Loaded { scene, report } = self.load.options(self.size).load(&self.scene)?;
+        let mut options = self.load.options();
+        match self.size {
+            Some(Size::Exact(size)) => options.size = Some(size),
+            Some(Size::Width(width)) => options.width = Some(width),
+            None => {}
+        }
+        let [azimuth, elevation] = [self.azimuth, self.elevation].map(|a| a.map(f64::to_radians));
+        options.framing = Framing { up: self.up, azimuth, elevation };
+        let spinner = messages::spinner(self.quiet, "loading");
+        let Loaded { scene, report } = options.load(&self.scene)?;
+        drop(spinner);
         if strict {
             load_report::check_strictly(&report, &self.scene)?;
         }

@@ -7,6 +7,7 @@
 mod defaults;
 mod diagnostics;
 mod duplicates;
+mod framing;
 mod gltf;
 mod images;
 mod limits;
@@ -25,6 +26,7 @@ use crate::error::{Error, Result};
 use crate::scene::watertight;
 
 pub use defaults::ground::add_ground;
+pub use framing::{Framing, UpAxis};
 pub use limits::{Limit, Limits};
 pub use report::{DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
@@ -45,6 +47,12 @@ pub struct LoadOptions {
     /// The size of the picture in pixels, instead of the file's. A camera that is added to frame
     /// the scene depends on it.
     pub size: Option<[u32; 2]>,
+    /// The width of the picture in pixels, instead of the file's, where `size` is not set; the height follows
+    /// in the file's proportions.
+    pub width: Option<u32>,
+    /// The camera that frames a bare model. A direction of it comes before the file's own cameras; a scene
+    /// file is refused with it.
+    pub framing: Framing,
     /// The variant of the materials of a glTF file (`KHR_materials_variants`), instead of the
     /// default materials; in a scene file, for each model that has a variant of this name and
     /// names none itself.
@@ -62,6 +70,18 @@ impl LoadOptions {
     /// Sets the size of the picture, in pixels.
     pub fn size(mut self, size: [u32; 2]) -> Self {
         self.size = Some(size);
+        self
+    }
+
+    /// Sets the width of the picture, in pixels, and the height in the file's proportions.
+    pub fn width(mut self, width: u32) -> Self {
+        self.width = Some(width);
+        self
+    }
+
+    /// Sets the camera that frames a bare model.
+    pub fn framing(mut self, framing: Framing) -> Self {
+        self.framing = framing;
         self
     }
 
@@ -106,11 +126,18 @@ impl LoadOptions {
         // The extension decides between a scene file and a bare model.
         let file = sandbox.open_named(path)?;
         let is_scene_file = extension(path) == "toml";
-        let Loaded { mut scene, mut report } = if is_scene_file {
+        if is_scene_file && !self.framing.is_default() {
+            let message = "the framing of a bare model does not apply to a scene file";
+            return Err(Error::input(message)
+                .at(path)
+                .help("set `up` and `position` of its [camera], or `rotate` of its [[model]]"));
+        }
+        let (Loaded { mut scene, mut report }, needs_lights) = if is_scene_file {
             scene_file::load(file, &sandbox, self)?
         } else {
             let variant = self.variant.as_deref();
-            model(file, &sandbox, &ModelOptions { animation: None, variant, needs_images: true })?
+            let options = ModelOptions { animation: None, variant, needs_images: true };
+            (model(file, &sandbox, &options)?, true)
         };
 
         // What the options ask for.
@@ -119,6 +146,8 @@ impl LoadOptions {
         }
         if let Some(size) = self.size {
             scene.film.size = size;
+        } else if let Some(width) = self.width {
+            scene.film.size = size_of_width(width, scene.film.size);
         }
         if self.double_sided {
             scene.materials.iter_mut().for_each(|material| material.cull_back_faces = false);
@@ -126,8 +155,12 @@ impl LoadOptions {
         // What stands at one place again and again would cost every ray that meets it.
         duplicates::remove_duplicates(&mut scene, &mut report);
         // Defaults for what the file leaves out.
-        defaults::auto_camera::add_camera(&mut scene).map_err(|e| e.at(path))?;
-        if !is_scene_file {
+        defaults::auto_camera::add_camera(&mut scene, &self.framing).map_err(|e| e.at(path))?;
+        if is_scene_file {
+            if needs_lights {
+                defaults::auto_lighting::add_default_lights(&mut scene);
+            }
+        } else {
             scene.film.spp = BARE_MODEL_SPP;
             defaults::auto_lighting::add_lights(&mut scene);
         }
@@ -143,7 +176,7 @@ impl LoadOptions {
 /// Loads a scene file or a bare model file, by its extension.
 ///
 /// A bare model gets a camera that frames it and lights where it has none of its own, a neutral
-/// background, and 16 samples per pixel; a scene file gets no lights that it does not name.
+/// background, and 16 samples per pixel; a scene file with a model gets lights where neither has any.
 ///
 /// ```no_run
 /// let scene = envers::load("scene.toml")?.scene;
@@ -199,6 +232,12 @@ fn model(file: OpenedFile, sandbox: &Sandbox, options: &ModelOptions) -> Result<
         .at(&file.path)
         .help("a scene file ends in .toml, a model in .gltf, .glb or .obj")),
     }
+}
+
+/// Returns the size of a picture of this width in the proportions of another size.
+fn size_of_width(width: u32, [old_width, old_height]: [u32; 2]) -> [u32; 2] {
+    let height = f64::from(width) * f64::from(old_height) / f64::from(old_width);
+    [width, height.round().max(1.0) as u32]
 }
 
 /// Checks that a file has a variant of this name.

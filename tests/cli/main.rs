@@ -3,7 +3,9 @@
 mod adaptive;
 mod backends;
 mod bench;
+mod completions;
 mod frames;
+mod framing;
 mod help;
 mod inputs;
 mod outputs;

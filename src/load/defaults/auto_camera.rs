@@ -4,9 +4,11 @@ use glam::DVec3;
 
 use super::extents::{box_extent, extents};
 use super::surroundings;
-use super::view_direction::view_direction;
+use super::view_direction::{ViewDirection, view_direction};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
+use crate::load::framing::Framing;
+use crate::scene::animation::Animated;
 use crate::scene::check::MAX_COORDINATE;
 use crate::scene::{Camera, Projection, Scene};
 
@@ -25,19 +27,19 @@ const POINT_SIZE: f64 = 1e-6;
 const CLEARANCE: f64 = 0.1;
 /// Adds a camera that frames the scene, if it has none: a three-quarter view, as near as the whole
 /// model fits, in the middle of the image. What encloses the model, as a sky does, is not framed if the
-/// camera is within it.
+/// camera is within it. A camera of a given direction comes before the others of the scene.
 ///
 /// # Errors
 /// When the scene is so large that such a camera would stand beyond the coordinates that are supported.
-pub fn add_camera(scene: &mut Scene) -> Result<()> {
-    if !scene.cameras.is_empty() {
+pub fn add_camera(scene: &mut Scene, framing: &Framing) -> Result<()> {
+    if !scene.cameras.is_empty() && !framing.has_direction() {
         return Ok(());
     }
     let within = surroundings::find(scene).and_then(|surroundings| {
-        let camera = framing_camera(&surroundings.without(scene))?;
+        let camera = framing_camera(&surroundings.without(scene), framing)?;
         surroundings.have_within(scene, camera.position).then_some(camera)
     });
-    let camera = within.or_else(|| framing_camera(scene));
+    let camera = within.or_else(|| framing_camera(scene, framing));
     // What is itself too large `Scene::check` refuses.
     let extent = scene.bounds_over_time().max_abs();
     let is_too_far = |c: &Camera| c.position.abs().max_element() > MAX_COORDINATE;
@@ -47,12 +49,25 @@ pub fn add_camera(scene: &mut Scene) -> Result<()> {
              {MAX_COORDINATE:e} supported; scale the scene down, or give it a camera of its own"
         )));
     }
-    scene.cameras.extend(camera);
+    insert_first(scene, camera);
     Ok(())
 }
 
+/// Makes a camera the first of the scene.
+fn insert_first(scene: &mut Scene, camera: Option<Camera>) {
+    let Some(camera) = camera else { return };
+    scene.cameras.insert(0, camera);
+    // The animation knows the others by their indices.
+    let animated = scene.animation.iter_mut().flat_map(|animation| &mut animation.objects);
+    for object in animated {
+        if let Animated::Camera { camera, .. } = object {
+            *camera += 1;
+        }
+    }
+}
+
 /// Returns the camera that frames a scene; none if that is not finite.
-fn framing_camera(scene: &Scene) -> Option<Camera> {
+fn framing_camera(scene: &Scene, framing: &Framing) -> Option<Camera> {
     // The box to be framed, which must have a size.
     let mut bounds = scene.bounds_over_time();
     if bounds.is_empty() {
@@ -65,9 +80,9 @@ fn framing_camera(scene: &Scene) -> Option<Camera> {
         bounds = bounds.padded(least.max(POINT_SIZE));
     }
     // The direction, which fails only where the scene is not finite; `Scene::check` says that then.
-    let direction = view_direction(scene, bounds.size());
+    let ViewDirection { direction, up } = view_direction(scene, bounds.size(), framing);
     let lens = Projection::FovY(2.0 * HALF_FOV);
-    let mut camera = Camera::look_at(direction, DVec3::ZERO, DVec3::Y, lens).ok()?;
+    let mut camera = Camera::look_at(direction, DVec3::ZERO, up, lens).ok()?;
     if !bounds.max_abs().is_finite() {
         return None;
     }
@@ -153,7 +168,7 @@ mod tests {
 
     /// Returns the greatest distance, to the side and up, of a model's corners from the middle.
     fn filled(scene: &mut Scene) -> [f64; 2] {
-        add_camera(scene).unwrap();
+        add_camera(scene, &Framing::default()).unwrap();
         let camera = &scene.cameras[0];
         let placed = |p| scene.instances[0].to_world(p);
         let points = scene.meshes[0].positions.iter().map(placed);
@@ -185,7 +200,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.film.size = [400, 300];
         scene.spheres.push(Sphere::new(DVec3::new(5.0, -3.0, 2.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         let camera = &scene.cameras[0];
         let to = scene.spheres[0].center - camera.position;
         let half = (2.0 / to.length()).asin();
@@ -209,7 +224,7 @@ mod tests {
         let (center, radius) = (DVec3::ZERO, None);
         animation.objects.push(Animated::Sphere { sphere: 0, node: Some(node), center, radius });
         scene.animation = Some(animation);
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         let to = -scene.cameras[0].position;
         let half = (1.0 / to.length()).asin();
         assert!((half.tan() - HALF_FOV.tan() * FILL_RATIO).abs() < 1e-9, "{half}");
@@ -220,7 +235,7 @@ mod tests {
         for flat in [DVec3::X, DVec3::Y, DVec3::Z] {
             let corner = |p: &[f64; 3]| DVec3::from(*p) * (1.0 - flat);
             let mut scene = mesh(&BOX.map(|p| corner(&p).to_array()));
-            add_camera(&mut scene).unwrap();
+            add_camera(&mut scene, &Framing::default()).unwrap();
             assert!(scene.cameras[0].forward.dot(flat).abs() > 0.6, "{flat}");
         }
     }
@@ -229,7 +244,7 @@ mod tests {
     fn a_scene_too_large_to_be_framed_is_refused_by_its_own_size() {
         let mut scene = mesh(&BOX);
         scene.instances[0].transform = DAffine3::from_scale(DVec3::splat(3e14));
-        let error = add_camera(&mut scene).unwrap_err().to_string();
+        let error = add_camera(&mut scene, &Framing::default()).unwrap_err().to_string();
         assert!(error.contains("the scene reaches out to 9e14"), "{error}");
         assert_eq!(scene.cameras, []);
     }
@@ -248,7 +263,7 @@ mod tests {
     /// Returns the distance of the nearest corner from the plane of the eye, as a share of the model's size,
     /// and the share of its area that is seen.
     fn view_of(scene: &mut Scene) -> [f64; 2] {
-        add_camera(scene).unwrap();
+        add_camera(scene, &Framing::default()).unwrap();
         let camera = &scene.cameras[0];
         let points = scene.meshes[0].positions.iter().map(|p| scene.instances[0].to_world(p));
         let depths = points.map(|p| (p - camera.position).dot(camera.forward));
@@ -314,7 +329,7 @@ mod tests {
             let mesh = scene.add_mesh(mesh);
             scene.instances.push(Instance::new(mesh, DAffine3::IDENTITY, MaterialId(0)));
         }
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         scene.cameras[0].position.length()
     }
 
@@ -356,16 +371,16 @@ mod tests {
     fn a_scene_that_is_not_finite_gets_no_camera() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::INFINITY, 2.0, MaterialId(0)));
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         assert_eq!(scene.cameras, []);
     }
 
     #[test]
     fn a_files_own_camera_is_kept() {
         let mut scene = mesh(&BOX);
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         let camera = scene.cameras.clone();
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         assert_eq!(camera, scene.cameras);
     }
 }

@@ -35,8 +35,7 @@ pub fn add_lights(scene: &mut Scene) {
             scale = bright;
         }
     } else {
-        let camera = scene.cameras.first();
-        scene.lights.extend(camera.map(key_and_fill).into_iter().flatten());
+        add_default_lights(scene);
     }
 
     // The background, which rough metals reflect, and the exposure that brings all back to normal.
@@ -47,13 +46,24 @@ pub fn add_lights(scene: &mut Scene) {
 
     // Ambient light, so that no shadow is black.
     if !scene.lights.iter().any(is_ambient) {
-        let ambient = if has_own { AMBIENT_BESIDE_OWN } else { AMBIENT };
-        scene.lights.push(Light {
-            name: "ambient".to_owned(),
-            kind: LightKind::Ambient,
-            intensity: Vec3::splat(ambient * scale),
-            shadow: Shadow::None,
-        });
+        scene.lights.push(ambient(AMBIENT_BESIDE_OWN * scale));
+    }
+}
+
+/// Adds the default lights to a scene that has none: key, fill and ambient light.
+pub fn add_default_lights(scene: &mut Scene) {
+    let camera = scene.cameras.first();
+    scene.lights.extend(camera.map(key_and_fill).into_iter().flatten());
+    scene.lights.push(ambient(AMBIENT));
+}
+
+/// Returns ambient light.
+fn ambient(intensity: f32) -> Light {
+    Light {
+        name: "ambient".to_owned(),
+        kind: LightKind::Ambient,
+        intensity: Vec3::splat(intensity),
+        shadow: Shadow::None,
     }
 }
 
@@ -118,12 +128,13 @@ fn key_and_fill(camera: &Camera) -> [Light; 2] {
 mod tests {
     use super::*;
     use crate::load::defaults::auto_camera::add_camera;
+    use crate::load::framing::Framing;
     use crate::scene::{MaterialId, MetallicRoughnessMaps, Sphere};
 
     fn ball() -> Scene {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         scene
     }
 

@@ -10,14 +10,14 @@ use crate::scene::{LightKind, Material, Plane, Scene};
 /// that a flat bottom does not coincide with it.
 const GAP: f64 = 1e-4;
 
-/// Adds a matt plane just below the lowest point of a scene, which receives its shadows. Without a
-/// shadow it looks like the background, so that it has no horizon; where point or spot lights shine
+/// Adds a matt plane just below the lowest point of a scene, where `up` is the upward direction of length 1,
+/// to receive its shadows. Without a shadow it looks like the background, so that it has no horizon; where point or spot lights shine
 /// on it, it is an even grey instead.
 ///
 /// Nothing happens to a scene that has no finite lowest point.
-pub fn add_ground(scene: &mut Scene) {
+pub fn add_ground(scene: &mut Scene, up: DVec3) {
     let bounds = scene.bounds_over_time();
-    let [lowest] = extents(scene, &bounds, [DVec3::NEG_Y]).map(|extent| -extent);
+    let [lowest] = extents(scene, &bounds, [-up]).map(|extent| -extent);
     if bounds.is_empty() || !lowest.is_finite() {
         return;
     }
@@ -25,7 +25,7 @@ pub fn add_ground(scene: &mut Scene) {
     let white = scene.lights.iter().try_fold(Vec3::ZERO, |sum, light| match light.kind {
         LightKind::Ambient => Some(sum + light.intensity),
         LightKind::Directional { direction } => {
-            Some(sum + light.intensity * (-direction.y).max(0.0) as f32)
+            Some(sum + light.intensity * (-direction.dot(up)).max(0.0) as f32)
         }
         LightKind::Point { .. } | LightKind::Spot { .. } => None,
     });
@@ -39,8 +39,9 @@ pub fn add_ground(scene: &mut Scene) {
     // The plane itself, a little lower than the lowest point.
     let material = Material { name: "ground".to_owned(), diffuse, ..Material::default() };
     let material = scene.add_material(material);
-    let point = bounds.center().with_y(lowest - GAP * bounds.diagonal());
-    scene.planes.push(Plane::new(point, DVec3::Y, material));
+    let center = bounds.center();
+    let point = center - up * center.dot(up) + up * (lowest - GAP * bounds.diagonal());
+    scene.planes.push(Plane::new(point, up, material));
 }
 
 #[cfg(test)]
@@ -48,15 +49,16 @@ mod tests {
     use super::*;
     use crate::load::defaults::auto_camera::add_camera;
     use crate::load::defaults::auto_lighting::add_lights;
+    use crate::load::framing::Framing;
     use crate::scene::{MaterialId, Sphere};
 
     #[test]
     fn the_ground_lies_under_the_lowest_point_and_looks_like_the_background() {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
-        add_camera(&mut scene).unwrap();
+        add_camera(&mut scene, &Framing::default()).unwrap();
         add_lights(&mut scene);
-        add_ground(&mut scene);
+        add_ground(&mut scene, DVec3::Y);
         let plane = &scene.planes[0];
         assert!(plane.point.y < 1.0 && plane.point.y > 0.99);
         let diffuse = scene.materials[plane.material.0 as usize].diffuse;
@@ -76,7 +78,7 @@ mod tests {
     #[test]
     fn an_empty_scene_gets_no_ground() {
         let mut scene = Scene::default();
-        add_ground(&mut scene);
+        add_ground(&mut scene, DVec3::Y);
         assert_eq!(scene.planes.len(), 0);
     }
 }

@@ -1,8 +1,9 @@
 //! The direction from which a model is seen by the camera that frames it.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::geometry::triangle;
+use crate::load::framing::Framing;
 use crate::scene::Scene;
 
 /// The direction from the model to the camera: to the right, from above, and mostly from the front,
@@ -16,13 +17,39 @@ pub const MIN_VISIBLE: f64 = 0.05;
 /// The greatest number of triangles of a mesh, and of instances, by which a view is judged.
 const SAMPLE: usize = 1024;
 
-/// Returns the direction from a model of a size to the camera: flat models are seen from their broad
-/// side, whatever way they are turned.
-pub fn view_direction(scene: &Scene, size: DVec3) -> DVec3 {
-    let usual = usual_direction(size);
+/// A direction from a model to the camera, and the direction that is upward in the picture.
+pub struct ViewDirection {
+    pub direction: DVec3,
+    pub up: DVec3,
+}
+
+/// Returns the direction from a model of a size to the camera: the one that is asked for, or else as the
+/// model's shape suggests.
+pub fn view_direction(scene: &Scene, size: DVec3, framing: &Framing) -> ViewDirection {
+    let axes = framing.axes();
+    let suggested = suggested_direction(scene, size, axes);
+    if !framing.has_direction() {
+        return ViewDirection { direction: suggested, up: axes.y_axis };
+    }
+    // The angle that is not given is that of the suggestion.
+    let DVec3 { x, y, z } = axes.transpose() * suggested;
+    let azimuth = framing.azimuth.unwrap_or(x.atan2(z));
+    let elevation = framing.elevation.unwrap_or(y.asin());
+    let ((sin_a, cos_a), (sin_e, cos_e)) = (azimuth.sin_cos(), elevation.sin_cos());
+    // The upward direction is at a right angle to the view, also from straight above.
+    ViewDirection {
+        direction: axes * DVec3::new(sin_a * cos_e, sin_e, cos_a * cos_e),
+        up: axes * DVec3::new(-sin_a * sin_e, cos_e, -cos_a * sin_e),
+    }
+}
+
+/// Returns the direction from a model of a size to the camera, where `axes` are its right, up and front: flat
+/// models are seen from their broad side, whatever way they are turned.
+fn suggested_direction(scene: &Scene, size: DVec3, axes: DMat3) -> DVec3 {
+    let usual = axes * usual_direction((axes.transpose() * size).abs());
     let DVec3 { x, y, z } = VIEW_DIRECTION;
     let others = [[-x, y, z], [z, y, x], [-z, y, x], [x, z, y]];
-    let others = others.map(|other| DVec3::from(other).normalize());
+    let others = others.map(|other| axes * DVec3::from(other).normalize());
     let shares = visible_shares(scene, [usual, others[0], others[1], others[2], others[3]]);
     if shares[0] >= MIN_VISIBLE {
         return usual;

@@ -15,13 +15,15 @@ use crate::load::sandbox::{OpenedFile, Sandbox};
 use crate::load::{LoadOptions, Loaded};
 
 pub use schema::json_schema::schema;
+use schema::tables::{DefaultLights, SceneTable};
 
-/// Loads a scene file, with the models that it names.
+/// Loads a scene file, with the models that it names. Returns also whether it needs default lights: it has a
+/// model, no light, and does not say that there be none.
 ///
 /// # Errors
 /// When a file cannot be read, or its contents are not valid; the error names the line and
 /// the column in the scene file, or the place in the model at fault.
-pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Result<Loaded> {
+pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Result<(Loaded, bool)> {
     let path = &file.path.clone();
     // The size alone can be too much, before anything is read.
     sandbox.check(Limit::Json, source::least_memory(file.length())).map_err(|e| e.at(path))?;
@@ -36,8 +38,12 @@ pub fn load(file: OpenedFile, sandbox: &Sandbox, options: &LoadOptions) -> Resul
     }
     let memory = source::estimated_memory(text);
     sandbox.check(Limit::Json, memory).map_err(|e| e.at(path))?;
-    let tables = toml::from_str(text).map_err(|e| errors::reword(&source, e))?;
-    build::build_scene(&source, &tables, sandbox, options)
+    let tables: SceneTable = toml::from_str(text).map_err(|e| errors::reword(&source, e))?;
+    let loaded = build::build_scene(&source, &tables, sandbox, options)?;
+    let needs_lights = !tables.model.0.is_empty()
+        && loaded.scene.lights.is_empty()
+        && tables.lights != Some(DefaultLights::None);
+    Ok((loaded, needs_lights))
 }
 
 /// Returns the text of a file, without the byte order mark that some editors put first.

@@ -15,6 +15,9 @@ struct Key {
     default: Option<Value>,
 }
 
+/// The heading of the keys that are in no table.
+pub const TOP: &str = "At the top of the file";
+
 /// Returns the keys by table, nested ones with a dot.
 fn keys() -> BTreeMap<String, BTreeMap<String, Key>> {
     let schema = schema().to_value();
@@ -25,6 +28,11 @@ fn keys() -> BTreeMap<String, BTreeMap<String, Key>> {
         let table = [table.get("items"), table.pointer("/anyOf/0"), Some(table)];
         let table = table.into_iter().flatten().next().unwrap();
         let mut keys = BTreeMap::new();
+        if table.get("properties").is_none() {
+            let key = Key { required: false, default: table.get("default").cloned() };
+            all.entry(TOP.to_owned()).or_insert_with(BTreeMap::new).insert(name, key);
+            continue;
+        }
         collect(table, "", &mut keys);
         // A list of tables is a table of its own, such as `animation.orbit`.
         for (key, value) in table["properties"].as_object().unwrap() {

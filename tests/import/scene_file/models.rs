@@ -40,7 +40,7 @@ fn scene(text: &str) -> Scene {
 #[test]
 fn a_model_alone_is_a_scene_with_a_camera_that_frames_it() {
     let scene = scene("[[model]]\nfile = \"two.obj\"\n");
-    assert_eq!((scene.meshes.len(), scene.instances.len(), scene.lights.len()), (2, 2, 0));
+    assert_eq!((scene.meshes.len(), scene.instances.len()), (2, 2));
     assert_eq!(scene.cameras[0].name, "framing");
 }
 
@@ -112,7 +112,8 @@ fn a_models_lights_shine_where_it_is_placed_as_strong_as_they_are() {
 
 #[test]
 fn a_models_lights_can_be_left_out() {
-    assert!(scene("[[model]]\nfile = \"eye.gltf\"\nlights = false\n").lights.is_empty());
+    let text = "lights = \"none\"\n[[model]]\nfile = \"eye.gltf\"\nlights = false\n";
+    assert!(scene(text).lights.is_empty());
 }
 
 #[test]
@@ -144,4 +145,45 @@ fn defaults_of_a_model_are_what_missing_keys_mean() {
         .map(|text| scene(&text))
         .map(|scene| format!("{scene:?}"));
     assert_eq!(bare, full);
+}
+
+#[test]
+fn defaults_at_the_top_of_the_file_are_what_missing_keys_mean() {
+    let [bare, full] = super::docs::written_out("", super::docs::TOP, "")
+        .map(|text| scene(&(text + "[[model]]\nfile = \"two.obj\"\n")))
+        .map(|scene| format!("{scene:?}"));
+    assert_eq!(bare, full);
+}
+
+/// The kinds of the lights of a scene with a model that has none.
+#[track_caller]
+fn lights_with(rest: &str) -> Vec<LightKind> {
+    let scene = scene(&format!("{rest}\n[[model]]\nfile = \"two.obj\"\n"));
+    scene.lights.into_iter().map(|light| light.kind).collect()
+}
+
+#[test]
+fn a_model_without_any_light_has_the_lights_of_a_bare_model() {
+    let bare = envers::load(file("").beside("two.obj")).unwrap().scene.lights;
+    let bare: Vec<_> = bare.into_iter().map(|light| light.kind).collect();
+    assert_eq!(bare.len(), 3);
+    assert_eq!(lights_with(""), bare);
+    assert_eq!(lights_with("lights = \"auto\""), bare);
+}
+
+#[test]
+fn a_scene_that_says_none_has_no_default_lights() {
+    assert_eq!(lights_with("lights = \"none\""), []);
+}
+
+#[test]
+fn one_light_of_the_scene_or_of_a_model_is_all_its_light() {
+    assert_eq!(lights_with("[[light]]\nkind = \"ambient\""), [LightKind::Ambient]);
+    assert_eq!(lights_with("[[model]]\nfile = \"eye.gltf\"").len(), 1);
+}
+
+#[test]
+fn a_scene_without_a_model_has_no_default_lights() {
+    let sphere = "[[sphere]]\ncenter = [0, 0, 0]\nradius = 1\n";
+    assert_eq!(scene(&format!("{CAMERA}{sphere}")).lights, []);
 }

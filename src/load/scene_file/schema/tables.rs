@@ -35,8 +35,22 @@ pub struct SceneTable {
     pub model: Tables<ModelTable>,
     /// Lights.
     pub light: Tables<LightTable>,
+    /// The lights of a scene that has a model and no light: default ones, or none.
+    #[schemars(extend("default" = "auto"))]
+    pub lights: Option<DefaultLights>,
     /// The motion of objects, and its length.
     pub animation: Option<Spanned<Table<AnimationTable>>>,
+}
+
+/// The lights of a scene that has a model and no light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum DefaultLights {
+    /// Those of a bare model: a key light from the upper left of the camera, a fill light from its right, and
+    /// ambient light.
+    Auto,
+    /// None.
+    None,
 }
 
 /// The size and quality of the picture.
