@@ -75,7 +75,7 @@ fn version() -> String {
     #[cfg(feature = "embree")]
     match crate::intersect::embree_version() {
         Ok(embree) => format!("envers {version} (Embree {embree})"),
-        Err(error) => format!("envers {version} (Embree: {})", error.message()),
+        Err(error) => format!("envers {version} ({})", error.message()),
     }
     #[cfg(not(feature = "embree"))]
     format!("envers {version} (without Embree)")

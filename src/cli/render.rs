@@ -268,7 +268,11 @@ fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) 
     }
     if counts.hits == 0 {
         let bounds = scene.bounds();
-        return Some(if bounds.is_empty() && scene.planes.is_empty() {
+        return Some(if counts.work.culling > 0 {
+            "the image is empty: all that the camera sees is the back of one-sided materials \
+             (`--double-sided` shows it)"
+                .to_owned()
+        } else if bounds.is_empty() && scene.planes.is_empty() {
             "the image is empty: there is nothing in the scene".to_owned()
         } else {
             format!(

@@ -63,7 +63,7 @@ pub struct InputArgs {
     /// Camera, by name or by index from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX")]
     pub camera: Option<String>,
-    /// Axis of a bare model that is upward in the picture: x, y, z, -x, -y or -z [default: y]
+    /// Axis of a bare model that is upward in the picture [default: y]
     #[arg(long, value_name = "AXIS", value_parser = choice(UP_AXES), allow_hyphen_values = true)]
     pub up: Option<UpAxis>,
     /// Angle in degrees, to the right around a bare model, from its front to where the camera stands
