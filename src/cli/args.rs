@@ -37,7 +37,10 @@ Examples:
   envers bench scene.toml --out out/bench
   envers diff a.exr b.exr --tolerance 0.004
 
-Exit status: 0 success, 1 a check or the work failed, 2 the command line or the input is invalid.";
+Exit status:
+  0  success
+  1  a check or the work failed: an output cannot be written, memory ran out, Embree failed
+  2  the command line or an input is wrong, such as an output whose folder does not exist";
 
 #[derive(Subcommand)]
 pub enum Command {

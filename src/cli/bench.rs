@@ -28,7 +28,7 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
     // Make the folder, and check that all files of the report can be written.
     let files = ["bench.json", "bench.csv", "time-vs-error.svg", "report.html"];
     let files = files.map(|name| out.join(name));
-    std::fs::create_dir_all(out).map_err(|e| Error::io("create", out, &e))?;
+    std::fs::create_dir_all(out).map_err(|e| Error::writing(out, &e))?;
     files.iter().try_for_each(|path| write::check_file(path))?;
     // Warn of lost precision, and of meshes that coincide if any mode has f32 rays.
     if !input.quiet {

@@ -17,6 +17,7 @@ mod scene_args;
 mod stress;
 mod validate;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
@@ -29,7 +30,10 @@ use args::{Arguments, Command};
 /// Exit status 0: success; 1: a check or the work failed; 2: the command line or the input is
 /// invalid.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(message) => return exit_code(help_or_mistake(&message)),
+    };
     if arguments.version {
         return exit_code(output::print(&format!("{}\n", version())).map(|()| ExitCode::SUCCESS));
     }
@@ -45,6 +49,19 @@ pub fn run() -> ExitCode {
         Command::Info(arguments) => info::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
     })
+}
+
+/// Prints the help that is asked for, or what is wrong with the command line.
+///
+/// # Errors
+/// When the help cannot be printed.
+fn help_or_mistake(message: &clap::Error) -> Result<ExitCode> {
+    let printed = message.print();
+    if message.use_stderr() {
+        return Ok(ExitCode::from(2));
+    }
+    output::check_printed(printed.and_then(|()| std::io::stdout().flush()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the error, if there is one, and returns the exit status.

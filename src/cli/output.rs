@@ -75,7 +75,15 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 /// When it cannot be written for another reason.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    check_printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Checks that something could be printed to standard output; see [`print`].
+///
+/// # Errors
+/// When it could not, for another reason than a closed pipe.
+pub fn check_printed(printed: std::io::Result<()>) -> Result<()> {
+    match printed {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::failed(format!("cannot write to standard output: {e}")))
         }

@@ -21,7 +21,7 @@ pub fn check_input(path: &Path) -> Result<()> {
                 _ => error,
             });
         }
-        Err(e) => return Err(Error::io("read", path, &e)),
+        Err(e) => return Err(Error::reading(path, &e)),
         Ok(metadata) => metadata,
     };
     if metadata.is_file() {

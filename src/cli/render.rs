@@ -65,7 +65,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     bar.finish_and_clear();
     let totals = writer.into_totals()?;
 
-    // Report what the frames brought to light, the summary and the statistics.
+    // Report what the frames brought to light, the statistics and the summary.
     let before = warnings.len();
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(layers_warning(totals.statistics.counts.beyond_layers));
@@ -73,13 +73,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     let total = start.elapsed();
     if !input.quiet {
         warnings.iter().skip(before).for_each(|w| messages::warning(w));
-        if output::stdout_is_free(arguments.stats.as_ref()) {
-            output::print(&plan.summary(total.as_secs_f64()))?;
-        }
     }
     if let Some(path) = &arguments.stats {
         let stats = RenderStats::new(&first, &report, &totals, [load, total], warnings);
         output::write_json(path, &stats)?;
+    }
+    if !input.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
+        output::print(&plan.summary(total.as_secs_f64()))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,7 +1,7 @@
 //! The atomic replacement of files: at any moment a file is the complete old or the complete new one.
 
 use std::fs::{self, File};
-use std::io::{BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
@@ -20,16 +20,23 @@ fn temporary(target: &Path) -> Result<NamedTempFile> {
         // The permissions of any new file, by the user's umask, instead of those of temporary files.
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(folder).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound if !folder.exists() => {
-            let folder = folder.display();
-            Error::input(format!("the output's folder {folder} does not exist"))
-                .at(target)
-                .help(format!("make it first: mkdir -p {folder}"))
+    builder.tempfile_in(folder).map_err(|e| not_created(target, &e))
+}
+
+/// The error that no file can be made beside `target`.
+fn not_created(target: &Path, error: &io::Error) -> Error {
+    let folder = folder_of(target);
+    let shown = folder.display();
+    match fs::metadata(folder) {
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            Error::input(format!("the output's folder {shown} does not exist"))
+                .help(format!("make it first: mkdir -p {shown}"))
         }
-        _ => Error::io("write", target, &e)
-            .help(format!("can files be made in {}?", folder.display())),
-    })
+        Ok(m) if !m.is_dir() => Error::input(format!("the output's folder {shown} is a file"))
+            .help("name another folder"),
+        _ => Error::writing(target, error).help(format!("can files be made in {shown}?")),
+    }
+    .at(target)
 }
 
 /// The folder of a file.
@@ -57,10 +64,11 @@ pub fn check(path: &Path) -> Result<()> {
             .at(path)
             .help("name a file: it is written beside its old self, which it then replaces")),
         Ok(m) if m.permissions().readonly() => {
-            Err(Error::input("the output is there already and is read-only")
+            Err(Error::failed("the output is there already and is read-only")
                 .at(path)
                 .help("choose another name, or make it writable"))
         }
+        Err(e) if e.kind() == io::ErrorKind::InvalidFilename => Err(Error::writing(path, &e)),
         _ => temporary(&target).map(drop),
     }
 }
@@ -87,13 +95,13 @@ impl PendingFile {
     }
 
     /// A handle for writing.
-    pub fn handle(&self) -> std::io::Result<File> {
+    pub fn handle(&self) -> io::Result<File> {
         self.file.as_file().try_clone()
     }
 
     /// Flushes the file to disk and renames it.
     pub fn commit(self) -> Result<()> {
-        let failed = |e: std::io::Error| Error::io("write", &self.path, &e);
+        let failed = |e: io::Error| Error::writing(&self.path, &e);
         self.file.as_file().sync_all().map_err(failed)?;
         self.file.persist(&self.target).map_err(|e| failed(e.error))?;
         // The rename itself is flushed with the folder; some systems cannot open or flush folders, and
@@ -113,10 +121,10 @@ impl PendingFile {
 /// was.
 pub fn write_atomically(
     path: &Path,
-    fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
+    fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> io::Result<()>,
 ) -> Result<()> {
     let mut pending = PendingFile::new(path)?;
-    let failed = |e: std::io::Error| Error::io("write", path, &e);
+    let failed = |e: io::Error| Error::writing(path, &e);
     let mut buffered = BufWriter::new(pending.file.as_file_mut());
     fill(&mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
@@ -131,7 +139,6 @@ impl<T: Write + Seek> WriteSeek for T {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io;
 
     #[test]
     fn failure_leaves_the_old_file_and_no_other() {

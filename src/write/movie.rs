@@ -57,7 +57,7 @@ impl Movie {
     pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
         let format = Format::from_path(path)?;
         let file = PendingFile::new(path)?;
-        let failed = |e: io::Error| Error::io("write", path, &e);
+        let failed = |e: io::Error| Error::writing(path, &e);
         let handle = file.handle().map_err(failed)?;
         // The header of the format.
         let [width, height] = size;
@@ -99,7 +99,7 @@ impl Movie {
             Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
             Encoder::Apng(writer) => write_apng(writer, &pixels, part),
         }
-        .map_err(|e| Error::io("write", self.file.path(), &e))?;
+        .map_err(|e| Error::writing(self.file.path(), &e))?;
         self.frames += 1;
         self.previous = Some(bytes);
         Ok(())
@@ -118,7 +118,7 @@ impl Movie {
             }
             Encoder::Apng(writer) => writer.finish().map_err(io::Error::from),
         }
-        .map_err(|e| Error::io("write", &path, &e))?;
+        .map_err(|e| Error::writing(&path, &e))?;
         self.file.commit()
     }
 }

@@ -4,13 +4,6 @@ use image::AnimationDecoder;
 
 use super::*;
 
-/// A sphere that goes round, in ten frames of a fifth of a second.
-fn moving() -> String {
-    let scene = SPHERE.replacen("[[sphere]]", "[[sphere]]\nname = \"ball\"", 1);
-    let orbit = "object = \"ball\"\naround = [1, 0.5, 0]\nperiod = 2\n";
-    format!("{scene}\n[animation]\nframes = 10\nfps = 5\n[[animation.orbit]]\n{orbit}")
-}
-
 /// The delays in milliseconds and the pictures of a GIF.
 fn gif(bytes: Vec<u8>) -> Vec<(u32, Vec<u8>)> {
     let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).unwrap();

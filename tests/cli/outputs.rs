@@ -2,11 +2,23 @@
 
 use super::*;
 
-/// The message of a run on a scene that would take days; no file is made or changed by it.
+/// The message of a run that is refused on a scene that would take days; no file is made or changed
+/// by it.
 #[track_caller]
 fn refused_in(folder: &Folder, arguments: &str) -> String {
+    ended_at_once(folder, arguments, Run::refused)
+}
+
+/// The message of a run that fails before the work begins.
+#[track_caller]
+fn failed_in(folder: &Folder, arguments: &str) -> String {
+    ended_at_once(folder, arguments, Run::failed)
+}
+
+#[track_caller]
+fn ended_at_once(folder: &Folder, arguments: &str, message: fn(Run) -> String) -> String {
     let before = folder.names();
-    let message = folder.run(arguments).refused();
+    let message = message(folder.run(arguments));
     assert_eq!(folder.names(), before, "{message}");
     message
 }
@@ -30,7 +42,7 @@ fn a_folder_that_does_not_exist_is_named() {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_folder_that_takes_no_files_is_named() {
-    let message = refused("render scene.toml -o /proc/a.png");
+    let message = failed_in(&Folder::with(&endless()), "render scene.toml -o /proc/a.png");
     assert!(message.contains("/proc/a.png") && !message.contains("mkdir"), "{message}");
 }
 
@@ -45,9 +57,29 @@ fn a_folder_that_is_read_only_is_named() {
     std::fs::create_dir(folder.path("fixed")).unwrap();
     let rights = |mode| std::fs::Permissions::from_mode(mode);
     std::fs::set_permissions(folder.path("fixed"), rights(0o555)).unwrap();
-    let message = refused_in(&folder, "render scene.toml -o fixed/a.png");
+    let message = failed_in(&folder, "render scene.toml -o fixed/a.png");
     std::fs::set_permissions(folder.path("fixed"), rights(0o755)).unwrap();
     assert!(message.contains("fixed/a.png"), "{message}");
+}
+
+#[test]
+fn an_old_picture_that_is_read_only_stays() {
+    let folder = Folder::with(&endless());
+    folder.write("old.png", "the old picture");
+    let mut rights = std::fs::metadata(folder.path("old.png")).unwrap().permissions();
+    rights.set_readonly(true);
+    std::fs::set_permissions(folder.path("old.png"), rights).unwrap();
+    let message = failed_in(&folder, "render scene.toml -o old.png");
+    assert!(message.contains("old.png: the output is there already and is read-only"), "{message}");
+    assert_eq!(folder.read("old.png"), b"the old picture");
+}
+
+#[test]
+#[cfg(unix)]
+fn a_name_that_is_too_long_is_refused() {
+    let name = "a".repeat(300);
+    assert!(refused(&format!("render scene.toml -o {name}.png")).contains(&name));
+    refused(&format!("render scene.toml --stats {name}.json"));
 }
 
 #[test]
@@ -60,16 +92,22 @@ fn a_folder_as_the_output_is_refused() {
 
 #[test]
 fn a_file_in_the_place_of_the_outputs_folder_is_refused() {
-    assert!(refused("render scene.toml -o old.png/a.png").contains("old.png"));
+    let message = refused("render scene.toml -o old.png/a.png");
+    assert!(message.contains("the output's folder old.png is a file"), "{message}");
+    assert!(refused("bench scene.toml --out old.png/bench").contains("old.png"));
 }
 
 #[test]
 #[cfg(unix)]
 fn a_device_as_the_output_is_refused() {
     let folder = Folder::with(&endless());
-    std::os::unix::fs::symlink("/dev/null", folder.path("null.png")).unwrap();
-    let message = refused_in(&folder, "render scene.toml -o null.png");
-    assert!(message.contains("null.png: the output is a pipe or a device"), "{message}");
+    for device in ["null", "full"] {
+        let link = folder.path(format!("{device}.png"));
+        std::os::unix::fs::symlink(Path::new("/dev").join(device), link).unwrap();
+        let message = refused_in(&folder, &format!("render scene.toml -o {device}.png"));
+        let expected = format!("{device}.png: the output is a pipe or a device");
+        assert!(message.contains(&expected), "{message}");
+    }
 }
 
 #[test]
