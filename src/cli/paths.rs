@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::write::folder_of;
+use crate::write::{folder_of, resolve};
 
 /// Checks that an input exists and is a regular file; a pipe could make the program wait forever.
 ///
@@ -58,7 +58,10 @@ pub fn is_same(a: &Path, b: &Path) -> bool {
 
 /// Returns the canonical path of a file; the folder at least must exist.
 fn canonical(path: &Path) -> PathBuf {
-    let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
+    let in_folder = || {
+        let target = resolve(path).ok()?;
+        Some(folder_of(&target).canonicalize().ok()?.join(target.file_name()?))
+    };
     path.canonicalize().ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 

@@ -7,46 +7,32 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use crate::error::{Error, Result};
+#[cfg(feature = "cli")]
+use crate::write::target::check_replaceable;
+use crate::write::target::{cannot_create, folder_of, kept_permissions, resolve};
 
 /// Creates the temporary file, which is later renamed to `target`: in the same folder, so that the
 /// rename cannot cross file systems.
 fn temporary(target: &Path) -> Result<NamedTempFile> {
-    let folder = folder_of(target);
     let mut builder = Builder::new();
     builder.prefix(".envers-").suffix(".part");
+    // Nobody may read it who may not read the file that it replaces.
+    if let Some(permissions) = kept_permissions(target).or_else(new_permissions) {
+        builder.permissions(permissions);
+    }
+    builder.tempfile_in(folder_of(target)).map_err(|e| cannot_create(target, &e))
+}
+
+/// Returns the permissions of any new file, from which the system takes those of the user's umask;
+/// none where permissions have no bits.
+fn new_permissions() -> Option<fs::Permissions> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The permissions of any new file, by the user's umask, instead of those of temporary files.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        Some(fs::Permissions::from_mode(0o666))
     }
-    builder.tempfile_in(folder).map_err(|e| not_created(target, &e))
-}
-
-/// The error that no file can be made beside `target`.
-fn not_created(target: &Path, error: &io::Error) -> Error {
-    let folder = folder_of(target);
-    let shown = folder.display();
-    match fs::metadata(folder) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => {
-            Error::input(format!("the output's folder {shown} does not exist"))
-                .help(format!("make it first: mkdir -p {shown}"))
-        }
-        Ok(m) if !m.is_dir() => Error::input(format!("the output's folder {shown} is a file"))
-            .help("name another folder"),
-        _ => Error::writing(target, error).help(format!("can files be made in {shown}?")),
-    }
-    .at(target)
-}
-
-/// The folder of a file.
-pub fn folder_of(target: &Path) -> &Path {
-    target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Resolves symbolic links: a link stays, and the file that it names is replaced.
-fn resolve(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+    #[cfg(not(unix))]
+    None
 }
 
 /// Checks that [`write_atomically`] could write to `path`.
@@ -55,22 +41,8 @@ fn resolve(path: &Path) -> PathBuf {
 /// When it could not.
 #[cfg(feature = "cli")]
 pub fn check(path: &Path) -> Result<()> {
-    let target = resolve(path);
-    match fs::metadata(&target) {
-        Ok(m) if m.is_dir() => {
-            Err(Error::input("the output is a folder").at(path).help("name a file in it"))
-        }
-        Ok(m) if !m.is_file() => Err(Error::input("the output is a pipe or a device, not a file")
-            .at(path)
-            .help("name a file: it is written beside its old self, which it then replaces")),
-        Ok(m) if m.permissions().readonly() => {
-            Err(Error::failed("the output is there already and is read-only")
-                .at(path)
-                .help("choose another name, or make it writable"))
-        }
-        Err(e) if e.kind() == io::ErrorKind::InvalidFilename => Err(Error::writing(path, &e)),
-        _ => temporary(&target).map(drop),
-    }
+    let target = check_replaceable(path)?;
+    temporary(&target).map(drop)
 }
 
 /// A file that is being written: a temporary file in the same folder, which is renamed when it is
@@ -84,7 +56,7 @@ pub struct PendingFile {
 impl PendingFile {
     /// Begins a file that is to replace `path`, which is untouched until [`PendingFile::commit`].
     pub fn new(path: &Path) -> Result<Self> {
-        let target = resolve(path);
+        let target = resolve(path)?;
         let file = temporary(&target)?;
         Ok(Self { path: path.to_owned(), target, file })
     }
@@ -99,9 +71,12 @@ impl PendingFile {
         self.file.as_file().try_clone()
     }
 
-    /// Flushes the file to disk and renames it.
+    /// Flushes the file to disk and renames it. It gets the permissions of the file that it replaces.
     pub fn commit(self) -> Result<()> {
         let failed = |e: io::Error| Error::writing(&self.path, &e);
+        if let Some(permissions) = kept_permissions(&self.target) {
+            self.file.as_file().set_permissions(permissions).map_err(failed)?;
+        }
         self.file.as_file().sync_all().map_err(failed)?;
         self.file.persist(&self.target).map_err(|e| failed(e.error))?;
         // The rename itself is flushed with the folder; some systems cannot open or flush folders, and

@@ -14,6 +14,7 @@ mod atomic;
 mod exr;
 mod movie;
 mod png;
+mod target;
 
 use std::path::Path;
 
@@ -21,11 +22,13 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-pub use atomic::write_atomically;
 #[cfg(feature = "cli")]
-pub use atomic::{check as check_file, folder_of};
+pub use atomic::check as check_file;
+pub use atomic::write_atomically;
 pub use movie::Movie;
 pub use png::encode as png_bytes;
+#[cfg(feature = "cli")]
+pub use target::{folder_of, resolve};
 
 /// The format of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -246,6 +246,101 @@ fn a_link_stays_a_link_and_its_target_is_written() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_link_to_a_file_that_is_not_there_yet_creates_it() {
+    let folder = Folder::with(&moving());
+    std::fs::create_dir(folder.path("real")).unwrap();
+    let link = |target: &str, name: &str| {
+        std::os::unix::fs::symlink(target, folder.path(name)).unwrap();
+    };
+    link("real/a.png", "a.png");
+    // A chain of relative links, each from its own folder.
+    link("real/second.gif", "first.gif");
+    link("../third.gif", "real/second.gif");
+    link("real/a.gif", "third.gif");
+    link("real/s.json", "s.json");
+    folder.run("render scene.toml --frames 1 -o a.png -o first.gif --stats s.json").good();
+    for name in ["a.png", "first.gif", "real/second.gif", "third.gif", "s.json"] {
+        assert!(std::fs::symlink_metadata(folder.path(name)).unwrap().is_symlink(), "{name}");
+    }
+    for name in ["real/a.png", "real/a.gif", "real/s.json"] {
+        assert!(std::fs::symlink_metadata(folder.path(name)).unwrap().is_file(), "{name}");
+    }
+    assert_eq!(pixels(&folder.read("real/a.png")).0, (64, 48));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_that_leads_nowhere_is_refused() {
+    let folder = Folder::with(&endless());
+    let link = |target: &str, name: &str| {
+        std::os::unix::fs::symlink(target, folder.path(name)).unwrap();
+    };
+    link("none/a.png", "a.png");
+    let message = refused_in(&folder, "render scene.toml -o a.png");
+    assert!(message.contains("none does not exist"), "{message}");
+    link("c.png", "b.png");
+    link("b.png", "c.png");
+    let message = refused_in(&folder, "render scene.toml -o b.png");
+    assert!(
+        message.contains("b.png: the output is a symbolic link that leads to itself"),
+        "{message}"
+    );
+}
+
+#[test]
+#[cfg(unix)]
+fn a_link_to_another_output_is_that_output() {
+    let folder = Folder::with(&endless());
+    std::os::unix::fs::symlink("a.png", folder.path("link.png")).unwrap();
+    let message = refused_in(&folder, "render scene.toml -o a.png -o link.png");
+    assert!(message.contains("link.png: this output is given twice"), "{message}");
+}
+
+/// The permission bits of a file.
+#[cfg(unix)]
+fn mode(folder: &Folder, name: &str) -> u32 {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::metadata(folder.path(name)).unwrap().permissions().mode() & 0o7777
+}
+
+#[test]
+#[cfg(unix)]
+fn what_is_replaced_keeps_its_permissions() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::with(&moving());
+    let modes = [("a.png", 0o600), ("a.exr", 0o646), ("a.gif", 0o755), ("s.json", 0o220)];
+    for (name, mode) in modes {
+        folder.write(name, "old");
+        let permissions = std::fs::Permissions::from_mode(mode);
+        std::fs::set_permissions(folder.path(name), permissions).unwrap();
+    }
+    let render = "render scene.toml --frames 1 -o a.png -o a.exr -o a.gif --stats s.json";
+    folder.run_script(&format!("umask 027; envers {render}")).good();
+    for (name, expected) in modes {
+        assert_eq!(mode(&folder, name), expected, "{name}");
+        assert_ne!(std::fs::metadata(folder.path(name)).unwrap().len(), 3, "{name} is new");
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn what_is_new_has_the_permissions_of_the_umask() {
+    let folder = Folder::with(&moving());
+    let render = "render scene.toml --frames 1 -o a.png -o a.gif --stats s.json";
+    folder.run_script(&format!("umask 027; envers {render}")).good();
+    for name in ["a.png", "a.gif", "s.json"] {
+        assert_eq!(mode(&folder, name), 0o640, "{name}");
+    }
+}
+
+#[test]
+fn a_name_that_ends_like_a_folder_is_refused() {
+    assert!(refused("render scene.toml -o a.png/").contains("a folder"));
+    assert!(refused("render scene.toml -o old.png/").contains("a folder"));
+}
+
+#[test]
 #[cfg(target_os = "linux")]
 fn names_need_not_be_utf8() {
     use std::os::unix::ffi::OsStrExt;
