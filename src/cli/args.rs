@@ -40,7 +40,8 @@ Examples:
 Exit status:
   0  success
   1  a check or the work failed: an output cannot be written, memory ran out, Embree failed
-  2  the command line or an input is wrong, such as an output whose folder does not exist";
+  2  the command line or an input is wrong, such as an output whose folder does not exist
+A signal that stops envers (Ctrl-C, kill) removes its temporary files; a shell shows 130 or 143.";
 
 #[derive(Subcommand)]
 pub enum Command {

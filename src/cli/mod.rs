@@ -14,6 +14,8 @@ mod render;
 mod render_plan;
 mod render_stats;
 mod scene_args;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod validate;
 
@@ -27,8 +29,8 @@ use args::{Arguments, Command};
 
 /// Runs the command on this process's arguments.
 ///
-/// Exit status 0: success; 1: a check or the work failed; 2: the command line or the input is
-/// invalid.
+/// Exit status 0: success; 1: a check or the work failed; 2: the command line or an input is wrong.
+/// SIGINT, SIGTERM and SIGHUP end it as they would by default, after its temporary files are removed.
 pub fn run() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -41,14 +43,21 @@ pub fn run() -> ExitCode {
         messages::to_stderr(&Arguments::command().render_help().to_string());
         return ExitCode::from(2);
     };
-    exit_code(match command {
-        Command::Render(arguments) => render::run(&arguments),
-        Command::Validate(arguments) => validate::run(&arguments),
-        Command::Stress(arguments) => stress::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Info(arguments) => info::run(&arguments),
-        Command::Diff(arguments) => diff::run(&arguments),
-    })
+    exit_code(run_command(&command))
+}
+
+/// Runs a subcommand.
+fn run_command(command: &Command) -> Result<ExitCode> {
+    #[cfg(unix)]
+    signals::handle()?;
+    match command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
+        Command::Stress(arguments) => stress::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Diff(arguments) => diff::run(arguments),
+    }
 }
 
 /// Prints the help that is asked for, or what is wrong with the command line.

@@ -4,23 +4,18 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
-
 use crate::error::{Error, Result};
 #[cfg(feature = "cli")]
 use crate::write::target::check_replaceable;
 use crate::write::target::{cannot_create, folder_of, kept_permissions, resolve};
+use crate::write::temporary::TemporaryFile;
 
 /// Creates the temporary file, which is later renamed to `target`: in the same folder, so that the
 /// rename cannot cross file systems.
-fn temporary(target: &Path) -> Result<NamedTempFile> {
-    let mut builder = Builder::new();
-    builder.prefix(".envers-").suffix(".part");
+fn temporary(target: &Path) -> Result<TemporaryFile> {
     // Nobody may read it who may not read the file that it replaces.
-    if let Some(permissions) = kept_permissions(target).or_else(new_permissions) {
-        builder.permissions(permissions);
-    }
-    builder.tempfile_in(folder_of(target)).map_err(|e| cannot_create(target, &e))
+    let permissions = kept_permissions(target).or_else(new_permissions);
+    TemporaryFile::create(folder_of(target), permissions).map_err(|e| cannot_create(target, &e))
 }
 
 /// Returns the permissions of any new file, from which the system takes those of the user's umask;
@@ -50,7 +45,7 @@ pub fn check(path: &Path) -> Result<()> {
 pub struct PendingFile {
     path: PathBuf,
     target: PathBuf,
-    file: NamedTempFile,
+    file: TemporaryFile,
 }
 
 impl PendingFile {
@@ -67,18 +62,18 @@ impl PendingFile {
     }
 
     /// A handle for writing.
-    pub fn handle(&self) -> io::Result<File> {
-        self.file.as_file().try_clone()
+    pub fn handle(&mut self) -> io::Result<File> {
+        self.file.file().try_clone()
     }
 
     /// Flushes the file to disk and renames it. It gets the permissions of the file that it replaces.
-    pub fn commit(self) -> Result<()> {
+    pub fn commit(mut self) -> Result<()> {
         let failed = |e: io::Error| Error::writing(&self.path, &e);
         if let Some(permissions) = kept_permissions(&self.target) {
-            self.file.as_file().set_permissions(permissions).map_err(failed)?;
+            self.file.file().set_permissions(permissions).map_err(failed)?;
         }
-        self.file.as_file().sync_all().map_err(failed)?;
-        self.file.persist(&self.target).map_err(|e| failed(e.error))?;
+        self.file.file().sync_all().map_err(failed)?;
+        self.file.rename(&self.target).map_err(failed)?;
         // The rename itself is flushed with the folder; some systems cannot open or flush folders, and
         // there the file is complete all the same.
         if let Ok(folder) = File::open(folder_of(&self.target)) {
@@ -100,7 +95,7 @@ pub fn write_atomically(
 ) -> Result<()> {
     let mut pending = PendingFile::new(path)?;
     let failed = |e: io::Error| Error::writing(path, &e);
-    let mut buffered = BufWriter::new(pending.file.as_file_mut());
+    let mut buffered = BufWriter::new(pending.file.file());
     fill(&mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
     drop(buffered);

@@ -15,6 +15,7 @@ mod exr;
 mod movie;
 mod png;
 mod target;
+mod temporary;
 
 use std::path::Path;
 
@@ -29,6 +30,8 @@ pub use movie::Movie;
 pub use png::encode as png_bytes;
 #[cfg(feature = "cli")]
 pub use target::{folder_of, resolve};
+#[cfg(all(feature = "cli", unix))]
+pub use temporary::remove_all as remove_temporaries;
 
 /// The format of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

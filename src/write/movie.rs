@@ -56,7 +56,7 @@ impl Movie {
     /// When the format is not animated or cannot have such a size, or the file cannot be written.
     pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
         let format = Format::from_path(path)?;
-        let file = PendingFile::new(path)?;
+        let mut file = PendingFile::new(path)?;
         let failed = |e: io::Error| Error::writing(path, &e);
         let handle = file.handle().map_err(failed)?;
         // The header of the format.

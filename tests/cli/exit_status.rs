@@ -5,7 +5,7 @@ use super::*;
 /// A script that runs the command when no file can be written to, as on a full disk.
 #[cfg(unix)]
 fn on_a_full_disk(command: &str) -> String {
-    format!("trap '' XFSZ; ulimit -f 0; envers {command}")
+    format!("ulimit -f 0; envers {command}")
 }
 
 /// The file that a failed write is told with; everything in the folder stays as it was.

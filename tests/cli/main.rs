@@ -10,6 +10,8 @@ mod outputs;
 mod render;
 mod reports;
 mod sandbox_and_limits;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod strict;
 mod tone;
