@@ -39,7 +39,7 @@ Examples:
 
 Exit status:
   0  success
-  1  a check or the work failed: an output cannot be written, memory ran out, Embree failed
+  1  a check or the work failed: an output cannot be written, the scene is empty, memory ran out
   2  the command line or an input is wrong, such as an output whose folder does not exist
 A signal that stops envers (Ctrl-C, kill) removes its temporary files; a shell shows 130 or 143.";
 
@@ -87,6 +87,10 @@ pub struct Render {
     /// the scale of a PNG's values [default: the scene's, or 0.1]
     #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
     pub threshold: Option<f32>,
+    /// Render the background if there is nothing in the scene that a ray can hit; without this flag
+    /// that fails with exit status 1
+    #[arg(long)]
+    pub allow_empty: bool,
     /// Skip frames whose output files exist, to resume an interrupted rendering
     #[arg(long)]
     pub skip_existing: bool,

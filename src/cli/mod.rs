@@ -11,6 +11,7 @@ mod messages;
 mod output;
 mod paths;
 mod render;
+mod render_checks;
 mod render_plan;
 mod render_stats;
 mod scene_args;

@@ -2,6 +2,7 @@
 
 mod adaptive;
 mod bench;
+mod empty_scenes;
 mod exit_status;
 mod frames;
 mod help;
