@@ -4,7 +4,8 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::{args::Diff, check_status, output, paths, scene_args};
+use crate::cli::paths::{self, InputFiles};
+use crate::cli::{args::Diff, check_status, output, scene_args};
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::measure::{Comparison, Picture, compare_pictures, flip::PerceivedImage};
@@ -24,14 +25,10 @@ pub fn run(arguments: &Diff) -> Result<ExitCode> {
     // Check the outputs, and then the inputs, which must be of one format.
     output::check_json(arguments.json.as_ref())?;
     output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
-    for input in [&arguments.a, &arguments.b] {
-        paths::check_input(input)?;
-        if let Some(path) = arguments.heatmap.as_ref().filter(|path| paths::is_same(path, input)) {
-            return Err(Error::input("the heat map would overwrite an image that is compared")
-                .at(path)
-                .help("choose another name"));
-        }
-    }
+    let inputs = [&*arguments.a, &*arguments.b];
+    inputs.into_iter().try_for_each(paths::check_input)?;
+    let outputs = [&arguments.json, &arguments.heatmap].into_iter().flatten();
+    paths::check_outputs(outputs, &InputFiles::named(&inputs))?;
     let format = Format::from_path(&arguments.a)?;
     if format != Format::from_path(&arguments.b)? {
         return Err(Error::input("a PNG and an EXR cannot be compared")

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::cli::args::Render;
 use crate::cli::flag_values::SampleRange;
+use crate::cli::paths::InputFiles;
 use crate::cli::render_plan::RenderPlan;
 use crate::cli::render_stats::{RenderStats, RenderTotals};
 use crate::cli::scene_args::SceneInput;
@@ -25,7 +26,6 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     // Check the flags, then load the scene and apply them.
     let input = &arguments.trace.input;
     let outputs = render_checks::output_paths(arguments)?;
-    output::check_json(arguments.stats.as_ref())?;
     let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
         add_ground(&mut scene);
@@ -34,7 +34,8 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
-    let first = render_checks::check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
+    render_checks::check_files(arguments, &plan, &InputFiles::of_scene(&scene, &report))?;
+    let first = render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     let is_empty = render_checks::is_empty(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     if is_empty && !arguments.allow_empty {
         return Err(render_checks::nothing_to_render(&report).at(&input.scene));

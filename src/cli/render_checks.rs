@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use crate::cli::args::Render;
+use crate::cli::paths::{self, InputFiles};
 use crate::cli::render_plan::RenderPlan;
 use crate::cli::render_stats::Geometry;
-use crate::cli::{load_report, paths};
+use crate::cli::{load_report, output};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::load::LoadReport;
@@ -23,13 +24,11 @@ pub fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
         path.as_mut_os_string().push(".png");
         outputs.push(path);
     }
-    // All of them distinct, writable, and of a format that the flags apply to.
-    for (i, path) in outputs.iter().enumerate() {
-        write::check(path)?;
-        if outputs[..i].iter().any(|other| paths::is_same(other, path)) {
-            return Err(Error::input("this output is given twice").at(path).help("give it once"));
-        }
-    }
+    // All of them writable, and of a format that the flags apply to.
+    outputs.iter().try_for_each(|path| write::check(path))?;
+    output::check_json(arguments.stats.as_ref())?;
+    let all = outputs.iter().chain(&arguments.stats);
+    paths::check_outputs(all, &InputFiles::named(&[&arguments.trace.input.scene]))?;
     let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
     check_format_flags(arguments, &formats)?;
     Ok(outputs)
@@ -65,19 +64,24 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
     }
 }
 
-/// Poses every frame and checks its files before any frame is rendered. Returns the scene of the
-/// first frame. Numbers that are out of bounds in a pose are only found when it is rendered.
-pub fn check_frames(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
+/// Checks the files of all frames, and the others, before any frame is rendered.
+///
+/// # Errors
+/// When one cannot be written, is an input, or is also the file of another frame.
+pub fn check_files(arguments: &Render, plan: &RenderPlan, inputs: &InputFiles) -> Result<()> {
+    let files = || plan.frames.iter().flat_map(|frame| plan.files(frame.number));
+    write::check_files(files())?;
+    let others = plan.movies.iter().chain(&arguments.stats).cloned();
+    paths::check_outputs(files().chain(others), inputs)
+}
+
+/// Poses every frame before any is rendered. Returns the scene of the first frame. Numbers that are out
+/// of bounds in a pose are only found when it is rendered.
+pub fn check_poses(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
     let mut poses = PosedScene::new(scene);
-    for (i, frame) in plan.frames.iter().enumerate() {
+    for frame in &plan.frames {
         poses.pose(frame.time)?;
-        let files: Vec<PathBuf> = plan.files(frame.number).collect();
-        paths::check_not_a_texture(scene, &files)?;
-        if i == 0 {
-            files.iter().try_for_each(|path| write::check(path))?;
-        }
     }
-    paths::check_not_a_texture(scene, &plan.movies)?;
     poses.pose(plan.frames.first().map_or(0.0, |frame| frame.time))?;
     Ok(poses.into_scene())
 }

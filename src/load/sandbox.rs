@@ -4,7 +4,7 @@
 //! another file names must be beside or below it, since that other file may come from a stranger. Only
 //! regular files are opened: a pipe could keep the program waiting, a device could do anything.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub struct Sandbox {
 #[derive(Default)]
 struct ReadFiles {
     /// Their canonical paths.
-    identities: HashSet<PathBuf>,
+    identities: BTreeSet<PathBuf>,
     /// The bytes that they have together, without those that images have accounted for.
     bytes_left: u64,
 }
@@ -174,6 +174,11 @@ impl Sandbox {
             FREE_PIXELS_PER_BYTE * needed
         };
         self.consume(Limit::Pixels, pixels.saturating_sub(free))
+    }
+
+    /// Returns the canonical paths of the files that were read so far.
+    pub fn files_read(&self) -> BTreeSet<PathBuf> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner).identities.clone()
     }
 
     /// Counts a file that is read.

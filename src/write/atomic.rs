@@ -1,5 +1,7 @@
 //! The atomic replacement of files: at any moment a file is the complete old or the complete new one.
 
+#[cfg(feature = "cli")]
+use std::collections::HashSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -30,14 +32,21 @@ fn new_permissions() -> Option<fs::Permissions> {
     None
 }
 
-/// Checks that [`write_atomically`] could write to `path`.
+/// Checks that [`write_atomically`] could write to these paths. Each folder is tried once, so that
+/// thousands of paths take no time.
 ///
 /// # Errors
 /// When it could not.
 #[cfg(feature = "cli")]
-pub fn check(path: &Path) -> Result<()> {
-    let target = check_replaceable(path)?;
-    temporary(&target).map(drop)
+pub fn check(paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Result<()> {
+    let mut tried = HashSet::new();
+    for path in paths {
+        let target = check_replaceable(path.as_ref())?;
+        if tried.insert(folder_of(&target).to_owned()) {
+            temporary(&target)?;
+        }
+    }
+    Ok(())
 }
 
 /// A file that is being written: a temporary file in the same folder, which is renamed when it is
@@ -148,7 +157,7 @@ mod tests {
     #[test]
     fn missing_folder_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let error = check(&folder.path().join("no/a.png")).unwrap_err();
+        let error = PendingFile::new(&folder.path().join("no/a.png")).err().unwrap();
         assert!(error.to_string().contains("does not exist"), "{error}");
     }
 }

@@ -24,7 +24,7 @@ use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
 #[cfg(feature = "cli")]
-pub use atomic::check as check_file;
+pub use atomic::check as check_files;
 pub use atomic::write_atomically;
 pub use movie::Movie;
 pub use png::encode as png_bytes;
@@ -113,7 +113,7 @@ impl Format {
 #[cfg(feature = "cli")]
 pub fn check(path: &Path) -> Result<()> {
     Format::from_path(path)?;
-    atomic::check(path)
+    atomic::check([path])
 }
 
 /// Writes a film in the format that the extension names; an animated format then has one frame.

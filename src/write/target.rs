@@ -24,7 +24,7 @@ pub fn resolve(path: &Path) -> Result<PathBuf> {
     for _ in 0..=MAX_LINKS {
         match fs::read_link(&target) {
             // A relative link begins in its own folder; an absolute one replaces the path.
-            Ok(next) => target = folder_of(&target).join(next),
+            Ok(next) => target.set_file_name(next),
             Err(_) => return Ok(target),
         }
     }

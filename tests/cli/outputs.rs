@@ -165,9 +165,46 @@ fn an_output_in_the_place_of_a_texture_is_refused() {
     // Without -o the picture would be cube.png, too.
     for output in ["", "-o cube.png", "-o ./cube.png"] {
         let message = refused_in(&folder, &format!("render cube.obj {output}"));
-        assert!(message.contains("cube.png") && message.contains("texture"), "{message}");
+        assert!(message.contains("cube.png: this output is an input file"), "{message}");
         assert_eq!(folder.read("cube.png"), png);
     }
+}
+
+/// Every name that an output may have, as a link to a file that was read.
+#[test]
+#[cfg(unix)]
+fn a_link_to_an_input_file_is_refused_as_an_output() {
+    let folder = Folder::with_everything();
+    let inputs = ["scene.toml", "tetrahedron.obj", "triangle.glb"];
+    let before = inputs.map(|name| folder.read(name));
+    let commands = [
+        ("a.png", "render scene.toml -o a.png"),
+        ("s.json", "render scene.toml -o b.png --stats s.json"),
+        ("s.json", "info scene.toml --json s.json"),
+        ("s.json", "validate scene.toml --json s.json"),
+        ("h.png", "validate scene.toml --heatmap h.png"),
+        ("bench.csv", "bench scene.toml --out ."),
+    ];
+    for input in inputs {
+        for (link, command) in commands {
+            std::os::unix::fs::symlink(input, folder.path(link)).unwrap();
+            let message = refused_in(&folder, command);
+            assert!(message.contains("this output is an input file"), "{command}: {message}");
+            std::fs::remove_file(folder.path(link)).unwrap();
+        }
+    }
+    assert_eq!(inputs.map(|name| folder.read(name)), before);
+}
+
+#[test]
+#[cfg(unix)]
+fn a_report_that_is_a_link_to_a_picture_that_is_compared_is_refused() {
+    let folder = Folder::new();
+    let png = envers_testing::png(&[[1, 2, 3, 255]]);
+    folder.write("a.png", &png);
+    std::os::unix::fs::symlink("a.png", folder.path("s.json")).unwrap();
+    refused_in(&folder, "diff a.png a.png --json s.json");
+    assert_eq!(folder.read("a.png"), png);
 }
 
 #[test]
@@ -294,7 +331,7 @@ fn a_link_to_another_output_is_that_output() {
     let folder = Folder::with(&endless());
     std::os::unix::fs::symlink("a.png", folder.path("link.png")).unwrap();
     let message = refused_in(&folder, "render scene.toml -o a.png -o link.png");
-    assert!(message.contains("link.png: this output is given twice"), "{message}");
+    assert!(message.contains("link.png: two outputs are this file"), "{message}");
 }
 
 /// The permission bits of a file.
