@@ -22,25 +22,27 @@ struct DiffResult {
 }
 
 pub fn run(arguments: &Diff) -> Result<ExitCode> {
-    // Check the outputs, and then the inputs, which must be of one format.
+    // Check the outputs, and then the inputs, which must be of one kind.
     output::check_json(arguments.json.as_ref())?;
     output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     let inputs = [&*arguments.a, &*arguments.b];
     inputs.into_iter().try_for_each(paths::check_input)?;
     let outputs = [&arguments.json, &arguments.heatmap].into_iter().flatten();
     paths::check_outputs(outputs, &InputFiles::named(&inputs))?;
-    let format = Format::from_path(&arguments.a)?;
-    if format != Format::from_path(&arguments.b)? {
-        return Err(Error::input("a PNG and an EXR cannot be compared")
-            .at(&arguments.b)
-            .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
+    let [is_exr, other_is_exr] =
+        inputs.map(|path| Format::from_path(path).map(|format| format == Format::Exr));
+    let is_exr = is_exr?;
+    if is_exr != other_is_exr? {
+        return Err(Error::input("an EXR can be compared with an EXR only").at(&arguments.b).help(
+            "compare PNG, JPEG and WebP with each other, and an EXR with one of the same view",
+        ));
     }
     // Compare the values, and what a viewer perceives of them.
     let limits = scene_args::limits(&arguments.limit);
     let [a, b] = Picture::read_pair(&arguments.a, &arguments.b, limits)?;
     let comparison =
         compare_pictures(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
-    let transfer = if format == Format::Png { Transfer::Srgb } else { Transfer::None };
+    let transfer = if is_exr { Transfer::None } else { Transfer::Srgb };
     let [first, second] = [&a, &b].map(|p| PerceivedImage::from_picture(p, transfer));
     let flip = first.zip(second).map(|(a, b)| a.flip(&b).mean);
 

@@ -34,6 +34,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
+    render_checks::check_sizes(&plan, scene.film.size)?;
     render_checks::check_files(arguments, &plan, &InputFiles::of_scene(&scene, &report))?;
     let first = render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     let is_empty = render_checks::is_empty(&scene, &plan).map_err(|e| e.at(&input.scene))?;
@@ -60,7 +61,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
 
     // Render the frames, and write each when it is done.
     let bar = messages::progress_bar(input.quiet);
-    let mut writer = FrameWriter::new(&plan, &scene, &options, arguments.half)?;
+    let mut writer = FrameWriter::new(&plan, &scene, &options, arguments)?;
     let times: Vec<f64> = plan.frames.iter().map(|frame| frame.time).collect();
     Renderer::new(&scene)
         .options(options.clone())
@@ -123,7 +124,7 @@ impl<'a> FrameWriter<'a> {
         plan: &'a RenderPlan,
         scene: &Scene,
         options: &RenderOptions,
-        half: bool,
+        arguments: &Render,
     ) -> Result<Self> {
         let frames = plan.frames.len();
         // The animated images, each of which is one file for all frames.
@@ -136,7 +137,8 @@ impl<'a> FrameWriter<'a> {
             write: Duration::ZERO,
         };
         let settings = Settings {
-            half,
+            half: arguments.half,
+            quality: arguments.quality.unwrap_or(Settings::JPEG_QUALITY),
             metadata: metadata(scene, options),
             ..Settings::from_film(&scene.film)
         };

@@ -39,13 +39,16 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
     let has_exr = formats.contains(&Format::Exr);
     let has_other = formats.iter().any(|&format| format != Format::Exr);
     let is_beauty = arguments.view == View::Beauty;
+    let has_jpeg = formats.contains(&Format::Jpeg);
+    let for_jpeg = "applies to JPEG, and no output is a .jpg";
     let for_exr = "applies to EXR, and no output is an .exr";
     let not_for_exr = "does not apply to EXR, which stores the radiance itself";
     let for_beauty = "applies to the beauty view only: other views are one sample of raw values";
-    let Render { half, exposure, tone, adaptive, threshold, .. } = arguments;
+    let Render { half, quality, exposure, tone, adaptive, threshold, .. } = arguments;
     // Each flag, whether it is given, whether it has an effect, and why it has none otherwise.
     let flags = [
         ("--half", *half, has_exr, for_exr),
+        ("--quality", quality.is_some(), has_jpeg, for_jpeg),
         ("--exposure", exposure.is_some(), has_other, not_for_exr),
         ("--tone", tone.is_some(), has_other, not_for_exr),
         ("--exposure", exposure.is_some(), is_beauty, for_beauty),
@@ -62,6 +65,15 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
         }
         None => Ok(()),
     }
+}
+
+/// Checks that the formats of all outputs can have pictures of this size.
+///
+/// # Errors
+/// When one cannot.
+pub fn check_sizes(plan: &RenderPlan, size: [u32; 2]) -> Result<()> {
+    let mut outputs = plan.stills.iter().chain(&plan.movies);
+    outputs.try_for_each(|path| Format::from_path(path)?.check_size(size, path))
 }
 
 /// Checks the files of all frames, and the others, before any frame is rendered.

@@ -25,7 +25,7 @@ fn assert_full_disk_is_told(folder: &Folder, command: &str, file: &str) {
 #[cfg(unix)]
 fn a_full_disk_fails_the_picture_and_the_old_one_stays() {
     let folder = Folder::with(SPHERE);
-    for name in ["a.png", "a.exr"] {
+    for name in ["a.png", "a.jpg", "a.webp", "a.exr"] {
         folder.write(name, "old");
         assert_full_disk_is_told(&folder, &format!("render scene.toml -o {name}"), name);
     }

@@ -4,6 +4,7 @@ mod adaptive;
 mod bench;
 mod empty_scenes;
 mod exit_status;
+mod formats;
 mod frames;
 mod help;
 mod inputs;

@@ -117,7 +117,7 @@ fn a_folder_named_after_a_device_does_not_exist() {
 
 #[test]
 fn an_extension_that_is_not_written_is_refused_with_those_that_are() {
-    for name in ["a.jpg", "a", "a.png.bak", "-"] {
+    for name in ["a.tiff", "a", "a.png.bak", "-"] {
         let message = refused(&format!("render scene.toml -o {name}"));
         assert!(message.contains(".png") && message.contains(".exr"), "{message}");
     }
@@ -228,6 +228,7 @@ fn a_heat_map_that_is_no_png_is_refused() {
 #[test]
 fn flags_without_an_output_that_they_are_about_are_refused() {
     assert!(refused("render scene.toml -o a.png --half").contains("--half"));
+    assert!(refused("render scene.toml -o a.png --quality 80").contains("--quality"));
     assert!(refused("render scene.toml -o a.exr --exposure 1").contains("--exposure"));
     assert!(refused("render scene.toml -o a.exr --tone aces").contains("--tone"));
 }
