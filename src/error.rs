@@ -12,14 +12,17 @@
 //! ```
 
 use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The kind of an [`Error`], which decides the command's exit status.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The input or the request is wrong: a file, a key, a flag, an output that cannot be written.
+    /// The input or the request is wrong: a file, a key, a flag, an output whose folder does not
+    /// exist.
     Input,
-    /// The request was fine and the work failed: Embree, the disk, memory.
+    /// The request was fine and the work failed: Embree, memory, a full disk, a folder or a file that
+    /// is read-only.
     Failed,
 }
 
@@ -138,9 +141,23 @@ impl Error {
         Self::new(ErrorKind::Failed, message)
     }
 
-    /// An error of reading or writing a file; `verb` is "read", "write", "create" …
-    pub fn io(verb: &str, path: &Path, error: &std::io::Error) -> Self {
-        Self::input(format!("cannot {verb} it: {error}")).at(path)
+    /// An error of reading a file: an error in the input, unless memory ran out.
+    pub fn reading(path: &Path, error: &io::Error) -> Self {
+        let kind = match error.kind() {
+            io::ErrorKind::OutOfMemory => ErrorKind::Failed,
+            _ => ErrorKind::Input,
+        };
+        Self::new(kind, format!("cannot read it: {error}")).at(path)
+    }
+
+    /// An error of writing a file or making a folder: a failure, unless no file can have such a path.
+    pub fn writing(path: &Path, error: &io::Error) -> Self {
+        use io::ErrorKind::{InvalidFilename, IsADirectory, NotADirectory};
+        let kind = match error.kind() {
+            InvalidFilename | IsADirectory | NotADirectory => ErrorKind::Input,
+            _ => ErrorKind::Failed,
+        };
+        Self::new(kind, format!("cannot write it: {error}")).at(path)
     }
 
     fn new(kind: ErrorKind, message: impl Into<String>) -> Self {

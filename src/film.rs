@@ -2,6 +2,8 @@
 
 use rayon::iter::ParallelIterator;
 
+use crate::error::{Error, Result};
+
 /// The quantity that a picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
@@ -56,6 +58,22 @@ impl Film {
         let mut pixels = chunks.into_flattened();
         pixels.truncate(count);
         Self { size, view, pixels }
+    }
+
+    /// Checks that there is memory for a film of this size.
+    ///
+    /// # Errors
+    /// When there is not.
+    pub(crate) fn check_memory(size: [u32; 2]) -> Result<()> {
+        let [width, height] = size;
+        let count = width as usize * height as usize;
+        Vec::<Pixel>::new().try_reserve_exact(count).map_err(|_| {
+            let bytes = count * size_of::<Pixel>();
+            Error::failed(format!(
+                "there is not enough memory for {width}x{height} pixels, which take {bytes} bytes"
+            ))
+            .help("render a smaller picture")
+        })
     }
 
     /// Returns the pixel in column `x` and row `y`.

@@ -2,7 +2,7 @@
 //!
 //! A [`Scene`] holds analytic spheres, infinite planes and triangle meshes, and is [loaded](load) from
 //! glTF, OBJ or a scene file, or built by hand. A [`Renderer`] makes a picture of it, which is saved as
-//! PNG or EXR. An [`Intersector`] finds hits without a picture: [Intel Embree], or [`Bvh`], in pure
+//! PNG, JPEG, WebP or EXR. An [`Intersector`] finds hits without a picture: [Intel Embree], or [`Bvh`], in pure
 //! Rust; in [`Precision::Certified`] every hit is the one that exact arithmetic finds.
 //!
 //! Render a scene that is built by hand:

@@ -37,7 +37,11 @@ Examples:
   envers bench scene.toml --out out/bench
   envers diff a.exr b.exr --tolerance 0.004
 
-Exit status: 0 success, 1 a check or the work failed, 2 the command line or the input is invalid.";
+Exit status:
+  0  success
+  1  a check or the work failed: an output cannot be written, the scene is empty, memory ran out
+  2  the command line or an input is wrong, such as an output whose folder does not exist
+A signal that stops envers (Ctrl-C, kill) removes its temporary files; a shell shows 130 or 143.";
 
 #[derive(Subcommand)]
 pub enum Command {
@@ -71,8 +75,8 @@ Examples:
 pub struct Render {
     #[command(flatten)]
     pub trace: TraceArgs,
-    /// Output file: .png or .exr, for an animation also .gif or .apng; can be given several times.
-    /// #### stands for the frame number [default: NAME.png in the current folder]
+    /// Output file: .png, .jpg, .webp (lossless) or .exr, for an animation also .gif or .apng; can be
+    /// given several times. #### stands for the frame number [default: NAME.png in the current folder]
     #[arg(short, long, value_name = "FILE")]
     pub output: Vec<PathBuf>,
     /// Frames of an animation to render: one (7), a range (1-120) or every n-th frame of a range
@@ -87,6 +91,10 @@ pub struct Render {
     /// the scale of a PNG's values [default: the scene's, or 0.1]
     #[arg(long, value_name = "X", value_parser = share, allow_negative_numbers = true)]
     pub threshold: Option<f32>,
+    /// Render the background if there is nothing in the scene that a ray can hit; without this flag
+    /// that fails with exit status 1
+    #[arg(long)]
+    pub allow_empty: bool,
     /// Skip frames whose output files exist, to resume an interrupted rendering
     #[arg(long)]
     pub skip_existing: bool,
@@ -101,19 +109,23 @@ pub struct Render {
     #[arg(long)]
     pub ground: bool,
     /// Quantity to show: beauty is the rendered image, id numbers the objects. Normals, depths and
-    /// ids are raw values in EXR and colours in PNG
+    /// ids are raw values in EXR and colours in other formats
     #[arg(long, value_name = "VIEW", value_parser = choice(VIEWS), default_value = "beauty")]
     pub view: View,
-    /// Exposure of the PNG in stops: multiplies the radiance by 2^EV. An EXR is never changed
-    /// [default: the scene's]
+    /// Exposure in stops: multiplies the radiance by 2^EV in all formats but EXR, which is never
+    /// changed [default: the scene's]
     #[arg(long, value_name = "EV", value_parser = finite, allow_negative_numbers = true)]
     pub exposure: Option<f64>,
-    /// Tone mapping curve of the PNG. An EXR is never changed [default: the scene's]
+    /// Tone mapping curve of all formats but EXR, which is never changed [default: the scene's]
     #[arg(long, value_name = "CURVE", value_parser = choice(TONES))]
     pub tone: Option<Tone>,
     /// Store 16-bit instead of 32-bit floats in the EXR; larger values become 65504
     #[arg(long)]
     pub half: bool,
+    /// Quality of the JPEG, from 1 (smallest file) to 100 (nearest to the pixels of a PNG)
+    /// [default: 90]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=100), allow_negative_numbers = true)]
+    pub quality: Option<u8>,
     /// Write statistics (counts, times, memory) as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
@@ -268,12 +280,12 @@ difference, and FLIP (Andersson et al. 2020): the difference that a viewer perce
 between the images, from 0 to 1, at 67 pixels per degree. For FLIP an EXR is shown as sRGB, clamped \
 to [0, 1]. Images of views other than beauty have no FLIP.")]
 pub struct Diff {
-    /// First image, .png or .exr
+    /// First image: .png, .jpg, .webp or .exr
     pub a: PathBuf,
-    /// Second image, of the same format and size
+    /// Second image, of the same size; an .exr can be compared with an .exr only
     pub b: PathBuf,
     /// Largest difference of two values that counts as equal, as a number or a fraction such as 1/255: the
-    /// values of 8-bit images are from 0 to 1, in steps of 1/255
+    /// values of all formats but EXR are from 0 to 1, in steps of 1/255
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = tolerance, allow_negative_numbers = true)]
     pub tolerance: f32,
     /// Write the result as JSON; - is standard output

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use crate::cli::paths::{self, InputFiles};
 use crate::cli::{args::Bench, flag_values::SampleRange, messages, output, scene_args::SceneInput};
 use crate::error::{Error, Result};
 use crate::intersect::{Backend, Precision};
@@ -28,8 +29,9 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
     // Make the folder, and check that all files of the report can be written.
     let files = ["bench.json", "bench.csv", "time-vs-error.svg", "report.html"];
     let files = files.map(|name| out.join(name));
-    std::fs::create_dir_all(out).map_err(|e| Error::io("create", out, &e))?;
-    files.iter().try_for_each(|path| write::check_file(path))?;
+    std::fs::create_dir_all(out).map_err(|e| Error::writing(out, &e))?;
+    write::check_files(&files)?;
+    paths::check_outputs(&files, &InputFiles::of_scene(&scene, &report))?;
     // Warn of lost precision, and of meshes that coincide if any mode has f32 rays.
     if !input.quiet {
         let has_f32_rays =

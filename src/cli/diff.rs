@@ -4,7 +4,8 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::{args::Diff, check_status, output, paths, scene_args};
+use crate::cli::paths::{self, InputFiles};
+use crate::cli::{args::Diff, check_status, output, scene_args};
 use crate::error::{Error, Result};
 use crate::film::{Film, View};
 use crate::measure::{Comparison, Picture, compare_pictures, flip::PerceivedImage};
@@ -21,24 +22,22 @@ struct DiffResult {
 }
 
 pub fn run(arguments: &Diff) -> Result<ExitCode> {
-    // Check the outputs, and then the inputs, which must be of one format.
+    // Check the outputs, and then the inputs, which must be of one kind.
     output::check_json(arguments.json.as_ref())?;
     output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
-    for input in [&arguments.a, &arguments.b] {
-        paths::check_input(input)?;
-        if let Some(path) = arguments.heatmap.as_ref().filter(|path| paths::is_same(path, input)) {
-            return Err(Error::input("the heat map would overwrite an image that is compared")
-                .at(path)
-                .help("choose another name"));
-        }
+    let inputs = [&*arguments.a, &*arguments.b];
+    inputs.into_iter().try_for_each(paths::check_input)?;
+    let outputs = [&arguments.json, &arguments.heatmap].into_iter().flatten();
+    paths::check_outputs(outputs, &InputFiles::named(&inputs))?;
+    let [is_exr, other_is_exr] =
+        inputs.map(|path| Format::from_path(path).map(|format| format == Format::Exr));
+    let is_exr = is_exr?;
+    if is_exr != other_is_exr? {
+        return Err(Error::input("an EXR can be compared with an EXR only").at(&arguments.b).help(
+            "compare PNG, JPEG and WebP with each other, and an EXR with one of the same view",
+        ));
     }
-    let format = Format::from_path(&arguments.a)?;
-    if format != Format::from_path(&arguments.b)? {
-        return Err(Error::input("a PNG and an EXR cannot be compared")
-            .at(&arguments.b)
-            .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
-    }
-    if format != Format::Exr && arguments.tolerance >= 1.0 {
+    if !is_exr && arguments.tolerance >= 1.0 {
         let message = format!(
             "--tolerance {}: the values of an 8-bit image are from 0 to 1, so any two images would pass",
             arguments.tolerance
@@ -51,7 +50,7 @@ pub fn run(arguments: &Diff) -> Result<ExitCode> {
     let [a, b] = Picture::read_pair(&arguments.a, &arguments.b, limits)?;
     let comparison =
         compare_pictures(&a, &b, arguments.tolerance).map_err(|e| e.at(&arguments.b))?;
-    let transfer = if format == Format::Png { Transfer::Srgb } else { Transfer::None };
+    let transfer = if is_exr { Transfer::None } else { Transfer::Srgb };
     let [first, second] = [&a, &b].map(|p| PerceivedImage::from_picture(p, transfer));
     let flip = first.zip(second).map(|(a, b)| a.flip(&b).mean);
 

@@ -210,9 +210,10 @@ mod tests {
     }
 
     #[test]
-    fn size_is_two_numbers_with_an_x() {
-        assert_eq!(size("640x480"), Ok([640, 480]));
-        for bad in ["640", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
+    fn size_is_two_numbers_with_an_x_or_the_width() {
+        assert_eq!(size("640x480"), Ok(Size::Exact([640, 480])));
+        assert_eq!(size("640"), Ok(Size::Width(640)));
+        for bad in ["0", "", "640x", "x480", "-1x5", "0x480", "1000000x1000000", "6.5x4"] {
             assert!(size(bad).is_err(), "{bad}");
         }
     }

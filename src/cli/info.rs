@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use serde::Serialize;
 
 use crate::cli::load_report::{self, LoadSummary};
-use crate::cli::{args::Info, messages, output, paths, render_stats::Geometry};
+use crate::cli::paths::{self, InputFiles};
+use crate::cli::{args::Info, messages, output, render_stats::Geometry};
 use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
@@ -97,6 +98,7 @@ pub fn run(arguments: &Info) -> Result<ExitCode> {
     output::check_json(arguments.json.as_ref())?;
     paths::check_input(&arguments.scene)?;
     let Loaded { scene, report } = arguments.load.options().load(&arguments.scene)?;
+    paths::check_outputs(&arguments.json, &InputFiles::of_scene(&scene, &report))?;
     let animation = scene.animation.as_ref().map(AnimationSummary::new);
     // All but the animation is that of the first frame.
     // On a thread of the pool, where parallel loops over many small meshes cost nothing.

@@ -41,17 +41,21 @@ impl From<&LoadReport> for LoadSummary {
 /// When anything in the files was dropped, unsupported or replaced by a placeholder; the error lists
 /// all of it.
 pub fn check_strictly(report: &LoadReport, path: &Path) -> Result<()> {
-    let LoadReport { dropped, unsupported, placeholders, .. } = report;
     if report.is_clean() {
         return Ok(());
     }
+    Err(Error::input("--strict: the files cannot be shown completely")
+        .listing(losses(report))
+        .at(path)
+        .help("correct the files, or leave out --strict to render without these parts"))
+}
+
+/// Returns what was dropped, unsupported or replaced by a placeholder, each in a line.
+pub fn losses(report: &LoadReport) -> Vec<String> {
+    let LoadReport { dropped, unsupported, placeholders, .. } = report;
     let dropped =
         dropped.iter().map(|(reason, count)| format!("dropped: {count} {}", reason.name()));
     let unsupported = unsupported.iter().map(|what| format!("not supported: {what}"));
     let placeholders = placeholders.iter().map(|what| format!("placeholder: {what}"));
-    let list = dropped.chain(unsupported).chain(placeholders);
-    Err(Error::input("--strict: the files cannot be shown completely")
-        .listing(list.collect())
-        .at(path)
-        .help("correct the files, or leave out --strict to render without these parts"))
+    dropped.chain(unsupported).chain(placeholders).collect()
 }

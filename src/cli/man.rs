@@ -10,7 +10,7 @@ use crate::write;
 
 pub fn run(arguments: &Man) -> Result<ExitCode> {
     let folder = &arguments.folder;
-    std::fs::create_dir_all(folder).map_err(|e| Error::io("create", folder, &e))?;
+    std::fs::create_dir_all(folder).map_err(|e| Error::writing(folder, &e))?;
     // A page for the command, and one for each subcommand, such as envers-render(1).
     let mut command = Arguments::command().disable_help_subcommand(true);
     command.build();

@@ -13,13 +13,17 @@ mod messages;
 mod output;
 mod paths;
 mod render;
+mod render_checks;
 mod render_plan;
 mod render_stats;
 mod scene_args;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod usage_errors;
 mod validate;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser};
@@ -29,11 +33,13 @@ use args::{Arguments, Command};
 
 /// Runs the command on this process's arguments.
 ///
-/// Exit status 0: success; 1: a check or the work failed; 2: the command line or the input is
-/// invalid.
+/// Exit status 0: success; 1: a check or the work failed; 2: the command line or an input is wrong.
+/// SIGINT, SIGTERM and SIGHUP end it as they would by default, after its temporary files are removed.
 pub fn run() -> ExitCode {
-    let arguments = Arguments::try_parse();
-    let arguments = arguments.unwrap_or_else(|error| usage_errors::correct_tips(error).exit());
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(message) => return exit_code(help_or_mistake(&usage_errors::correct_tips(message))),
+    };
     if arguments.version {
         return exit_code(output::print(&format!("{}\n", version())).map(|()| ExitCode::SUCCESS));
     }
@@ -41,16 +47,36 @@ pub fn run() -> ExitCode {
         messages::to_stderr(&Arguments::command().render_help().to_string());
         return ExitCode::from(2);
     };
-    exit_code(match command {
-        Command::Render(arguments) => render::run(&arguments),
-        Command::Validate(arguments) => validate::run(&arguments),
-        Command::Stress(arguments) => stress::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Info(arguments) => info::run(&arguments),
-        Command::Diff(arguments) => diff::run(&arguments),
-        Command::Completions(arguments) => completions::run(&arguments),
-        Command::Man(arguments) => man::run(&arguments),
-    })
+    exit_code(run_command(&command))
+}
+
+/// Runs a subcommand.
+fn run_command(command: &Command) -> Result<ExitCode> {
+    #[cfg(unix)]
+    signals::handle()?;
+    match command {
+        Command::Render(arguments) => render::run(arguments),
+        Command::Validate(arguments) => validate::run(arguments),
+        Command::Stress(arguments) => stress::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
+        Command::Info(arguments) => info::run(arguments),
+        Command::Diff(arguments) => diff::run(arguments),
+        Command::Completions(arguments) => completions::run(arguments),
+        Command::Man(arguments) => man::run(arguments),
+    }
+}
+
+/// Prints the help that is asked for, or what is wrong with the command line.
+///
+/// # Errors
+/// When the help cannot be printed.
+fn help_or_mistake(message: &clap::Error) -> Result<ExitCode> {
+    let printed = message.print();
+    if message.use_stderr() {
+        return Ok(ExitCode::from(2));
+    }
+    output::check_printed(printed.and_then(|()| std::io::stdout().flush()))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the error, if there is one, and returns the exit status.

@@ -29,7 +29,7 @@ pub fn check_json(path: Option<&PathBuf>) -> Result<()> {
             .at(path)
             .help("name it .json, or - for standard output"));
     }
-    write::check_file(path)
+    write::check_files([path])
 }
 
 /// Checks that a file can be written to `path`, and is named with an extension.
@@ -41,7 +41,7 @@ pub fn check_extension(path: Option<&PathBuf>, extension: &str, message: &str) -
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension)) {
         return Err(Error::input(message).at(path).help(format!("name it .{extension}")));
     }
-    write::check_file(path)
+    write::check_files([path])
 }
 
 /// Prints the text of a result, unless its JSON is printed, and writes its JSON if that is asked for.
@@ -75,7 +75,15 @@ pub fn write_json(path: &Path, value: &impl Serialize) -> Result<()> {
 /// When it cannot be written for another reason.
 pub fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    check_printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// Checks that something could be printed to standard output; see [`print`].
+///
+/// # Errors
+/// When it could not, for another reason than a closed pipe.
+pub fn check_printed(printed: std::io::Result<()>) -> Result<()> {
+    match printed {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Error::failed(format!("cannot write to standard output: {e}")))
         }

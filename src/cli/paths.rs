@@ -1,10 +1,12 @@
 //! Checks of paths on the command line: inputs exist, and outputs overwrite none of them.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::load::LoadReport;
 use crate::scene::Scene;
-use crate::write::folder_of;
+use crate::write::{folder_of, resolve};
 
 /// Checks that an input exists and is a regular file; a pipe could make the program wait forever.
 ///
@@ -21,7 +23,7 @@ pub fn check_input(path: &Path) -> Result<()> {
                 _ => error,
             });
         }
-        Err(e) => return Err(Error::io("read", path, &e)),
+        Err(e) => return Err(Error::reading(path, &e)),
         Ok(metadata) => metadata,
     };
     if metadata.is_file() {
@@ -31,34 +33,55 @@ pub fn check_input(path: &Path) -> Result<()> {
     Err(Error::input(format!("this is {what}, not a file")).at(path).help("name a file"))
 }
 
-/// Checks that no output would overwrite a texture of the scene.
-///
-/// # Errors
-/// When one would.
-pub fn check_not_a_texture<'a>(
-    scene: &Scene,
-    outputs: impl IntoIterator<Item = &'a PathBuf>,
-) -> Result<()> {
-    let is_texture =
-        |path: &Path| scene.textures.iter().any(|t| is_same(Path::new(&t.image.name), path));
-    match outputs.into_iter().find(|path| path.exists() && is_texture(path)) {
-        None => Ok(()),
-        Some(path) => {
-            Err(Error::input("the output is a texture of the scene, and would overwrite it")
-                .at(path)
-                .help("choose another name with -o"))
-        }
+/// The input files of a command, which no output may overwrite.
+pub struct InputFiles(HashSet<PathBuf>);
+
+impl InputFiles {
+    /// The files that are named on the command line.
+    pub fn named(paths: &[&Path]) -> Self {
+        Self(paths.iter().map(|path| canonical(path)).collect())
+    }
+
+    /// The files of a scene: those that were read, and the textures that no material needed.
+    pub fn of_scene(scene: &Scene, report: &LoadReport) -> Self {
+        let textures = scene.textures.iter().map(|texture| Path::new(&texture.image.name));
+        let textures = textures.filter_map(|path| path.canonicalize().ok());
+        Self(report.files.iter().cloned().chain(textures).collect())
     }
 }
 
-/// True if two paths name the same file, which need not exist yet.
-pub fn is_same(a: &Path, b: &Path) -> bool {
-    a == b || canonical(a) == canonical(b)
+/// Checks that outputs are distinct files, and none of them is an input file.
+///
+/// # Errors
+/// When two are the same file, or one is an input.
+pub fn check_outputs(
+    outputs: impl IntoIterator<Item = impl AsRef<Path>>,
+    inputs: &InputFiles,
+) -> Result<()> {
+    let mut seen = HashSet::new();
+    for output in outputs {
+        let path = output.as_ref();
+        let file = canonical(path);
+        if inputs.0.contains(&file) {
+            return Err(Error::input("this output is an input file, and would overwrite it")
+                .at(path)
+                .help("choose another name"));
+        }
+        if !seen.insert(file) {
+            return Err(Error::input("two outputs are this file")
+                .at(path)
+                .help("choose another name for one of them"));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the canonical path of a file; the folder at least must exist.
 fn canonical(path: &Path) -> PathBuf {
-    let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
+    let in_folder = || {
+        let target = resolve(path).ok()?;
+        Some(folder_of(&target).canonicalize().ok()?.join(target.file_name()?))
+    };
     path.canonicalize().ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())
 }
 
@@ -70,10 +93,10 @@ mod tests {
     fn one_file_has_several_paths() {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name);
-        assert!(is_same(&path("a"), &path("./a")));
-        assert!(!is_same(&path("a"), &path("b")));
+        assert_eq!(canonical(&path("a")), canonical(&path("./a")));
+        assert_ne!(canonical(&path("a")), canonical(&path("b")));
         std::fs::write(path("a"), "").unwrap();
         std::fs::create_dir(path("c")).unwrap();
-        assert!(is_same(&path("a"), &path("c/../a")));
+        assert_eq!(canonical(&path("a")), canonical(&path("c/../a")));
     }
 }

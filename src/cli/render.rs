@@ -5,26 +5,26 @@ use std::process::ExitCode;
 
 use crate::cli::args::Render;
 use crate::cli::flag_values::SampleRange;
+use crate::cli::paths::InputFiles;
 use crate::cli::render_plan::RenderPlan;
 use crate::cli::render_stats::{RenderStats, RenderTotals};
 use crate::cli::scene_args::SceneInput;
-use crate::cli::{messages, output, paths};
+use crate::cli::{messages, output, render_checks};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::integrator::{MAX_LAYERS, NotFinite};
 use crate::intersect::{Backend, Precision};
 use crate::load::add_ground;
 use crate::render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics, Stopwatch};
-use crate::scene::{AdaptiveSampling, FilmSettings, Scene, animation::PosedScene};
-use crate::write::{self, Format, Movie, Settings};
+use crate::scene::{AdaptiveSampling, FilmSettings, Scene};
+use crate::write::{self, Movie, Settings};
 
 pub fn run(arguments: &Render) -> Result<ExitCode> {
     let stopwatch = Stopwatch::start();
 
     // Check the flags, then load the scene and apply them.
     let input = &arguments.trace.input;
-    let outputs = output_paths(arguments)?;
-    output::check_json(arguments.stats.as_ref())?;
+    let outputs = render_checks::output_paths(arguments)?;
     let SceneInput { mut scene, report, camera } = arguments.trace.load()?;
     if arguments.ground {
         add_ground(&mut scene, input.up.unwrap_or_default().direction());
@@ -33,7 +33,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
-    let first = check_frames(&scene, &plan).map_err(|e| e.at(&input.scene))?;
+    render_checks::check_sizes(&plan, scene.film.size)?;
+    render_checks::check_files(arguments, &plan, &InputFiles::of_scene(&scene, &report))?;
+    let first = render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
+    let is_empty = render_checks::is_empty(&scene, &plan).map_err(|e| e.at(&input.scene))?;
+    if is_empty && !arguments.allow_empty {
+        return Err(render_checks::nothing_to_render(&report).at(&input.scene));
+    }
     let load = stopwatch.elapsed();
 
     // Open the backend before anything is built for it. Warn of what the picture may suffer from.
@@ -59,7 +65,7 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
 
     // Render the frames, and write each when it is done.
     let bar = messages::progress_bar(input.quiet);
-    let mut writer = FrameWriter::new(&plan, &scene, &options, arguments.half)?;
+    let mut writer = FrameWriter::new(&plan, &scene, &options, arguments)?;
     let times: Vec<f64> = plan.frames.iter().map(|frame| frame.time).collect();
     Renderer::new(&scene)
         .options(options.clone())
@@ -69,21 +75,21 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     bar.finish_and_clear();
     let totals = writer.into_totals()?;
 
-    // Report what the frames brought to light, the summary and the statistics.
+    // Report what the frames brought to light, the statistics and the summary.
     let before = warnings.len();
     warnings.extend(not_finite_warnings(&totals.statistics.counts.not_finite));
     warnings.extend(layers_warning(totals.statistics.counts.beyond_layers));
-    warnings.extend(image_warning(&first, &options, &totals));
+    warnings.extend(image_warning(&first, is_empty, &options, &totals));
     let total = stopwatch.elapsed();
     if !input.quiet {
         warnings.iter().skip(before).for_each(|w| messages::warning(w));
-        if output::stdout_is_free(arguments.stats.as_ref()) {
-            output::print(&plan.summary(total.wall.as_secs_f64()))?;
-        }
     }
     if let Some(path) = &arguments.stats {
         let stats = RenderStats::new(&first, &report, &totals, [load, total], warnings);
         output::write_json(path, &stats)?;
+    }
+    if !input.quiet && output::stdout_is_free(arguments.stats.as_ref()) {
+        output::print(&plan.summary(total.wall.as_secs_f64()))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -108,23 +114,6 @@ fn set_samples(film: &mut FilmSettings, arguments: &Render) -> Result<()> {
     Ok(())
 }
 
-/// Poses every frame and checks its files before any frame is rendered. Returns the scene of the
-/// first frame. Numbers that are out of bounds in a pose are only found when it is rendered.
-fn check_frames(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
-    let mut poses = PosedScene::new(scene);
-    for (i, frame) in plan.frames.iter().enumerate() {
-        poses.pose(frame.time)?;
-        let files: Vec<PathBuf> = plan.files(frame.number).collect();
-        paths::check_not_a_texture(scene, &files)?;
-        if i == 0 {
-            files.iter().try_for_each(|path| write::check(path))?;
-        }
-    }
-    paths::check_not_a_texture(scene, &plan.movies)?;
-    poses.pose(plan.frames.first().map_or(0.0, |frame| frame.time))?;
-    Ok(poses.into_scene())
-}
-
 /// The writer of all frames.
 struct FrameWriter<'a> {
     plan: &'a RenderPlan,
@@ -139,7 +128,7 @@ impl<'a> FrameWriter<'a> {
         plan: &'a RenderPlan,
         scene: &Scene,
         options: &RenderOptions,
-        half: bool,
+        arguments: &Render,
     ) -> Result<Self> {
         let frames = plan.frames.len();
         // The animated images, each of which is one file for all frames.
@@ -152,7 +141,8 @@ impl<'a> FrameWriter<'a> {
             write: Elapsed::default(),
         };
         let settings = Settings {
-            half,
+            half: arguments.half,
+            quality: arguments.quality.unwrap_or(Settings::JPEG_QUALITY),
             metadata: metadata(scene, options),
             ..Settings::from_film(&scene.film)
         };
@@ -196,59 +186,6 @@ impl<'a> FrameWriter<'a> {
     }
 }
 
-/// Returns the output files, after checking that they are distinct, writable, and of formats to
-/// which the other flags apply.
-fn output_paths(arguments: &Render) -> Result<Vec<PathBuf>> {
-    // Without -o, a PNG in the current folder that is called like the scene.
-    let mut outputs = arguments.output.clone();
-    if outputs.is_empty() {
-        let stem = arguments.trace.input.scene.file_stem().unwrap_or("out".as_ref());
-        let mut path = PathBuf::from(stem);
-        path.as_mut_os_string().push(".png");
-        outputs.push(path);
-    }
-    // All of them distinct, writable, and of a format that the flags apply to.
-    for (i, path) in outputs.iter().enumerate() {
-        write::check(path)?;
-        if outputs[..i].iter().any(|other| paths::is_same(other, path)) {
-            return Err(Error::input("this output is given twice").at(path).help("give it once"));
-        }
-    }
-    let formats = outputs.iter().map(|path| Format::from_path(path)).collect::<Result<Vec<_>>>()?;
-    check_format_flags(arguments, &formats)?;
-    Ok(outputs)
-}
-
-/// Checks that flags for one format, or for the beauty view, have an effect.
-fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
-    let has_exr = formats.contains(&Format::Exr);
-    let has_other = formats.iter().any(|&format| format != Format::Exr);
-    let is_beauty = arguments.view == View::Beauty;
-    let for_exr = "applies to EXR, and no output is an .exr";
-    let not_for_exr = "does not apply to EXR, which stores the radiance itself";
-    let for_beauty = "applies to the beauty view only: other views are one sample of raw values";
-    let Render { half, exposure, tone, adaptive, threshold, .. } = arguments;
-    // Each flag, whether it is given, whether it has an effect, and why it has none otherwise.
-    let flags = [
-        ("--half", *half, has_exr, for_exr),
-        ("--exposure", exposure.is_some(), has_other, not_for_exr),
-        ("--tone", tone.is_some(), has_other, not_for_exr),
-        ("--exposure", exposure.is_some(), is_beauty, for_beauty),
-        ("--tone", tone.is_some(), is_beauty, for_beauty),
-        ("--half", *half, is_beauty, for_beauty),
-        ("--spp", arguments.trace.spp.is_some(), is_beauty, for_beauty),
-        ("--adaptive", adaptive.is_some(), is_beauty, for_beauty),
-        ("--threshold", threshold.is_some(), is_beauty, for_beauty),
-        ("--max-depth", arguments.trace.max_depth.is_some(), is_beauty, for_beauty),
-    ];
-    match flags.into_iter().find(|&(_, is_given, applies, _)| is_given && !applies) {
-        Some((flag, .., reason)) => {
-            Err(Error::input(format!("{flag} {reason}")).help(format!("leave out {flag}")))
-        }
-        None => Ok(()),
-    }
-}
-
 /// Returns a warning if rays are traced in Rust because Embree, which is built in, cannot be opened.
 fn fallback_warning() -> Option<String> {
     #[cfg(feature = "embree")]
@@ -260,27 +197,37 @@ fn fallback_warning() -> Option<String> {
 }
 
 /// Returns a warning if the image is empty or black, with the likely cause.
-fn image_warning(scene: &Scene, options: &RenderOptions, totals: &RenderTotals) -> Option<String> {
+fn image_warning(
+    scene: &Scene,
+    is_empty: bool,
+    options: &RenderOptions,
+    totals: &RenderTotals,
+) -> Option<String> {
     // Nothing was hit.
     let counts = &totals.statistics.counts;
     if counts.rays.primary == 0 {
         return None; // Every frame was skipped.
     }
     if counts.hits == 0 {
+        if is_empty {
+            return Some("the image is empty: there is nothing in the scene".to_owned());
+        }
+        let camera = scene.cameras[options.camera].position;
         let bounds = scene.bounds();
-        return Some(if counts.work.culling > 0 {
-            "the image is empty: all that the camera sees is the back of one-sided materials \
-             (`--double-sided` shows it)"
-                .to_owned()
-        } else if bounds.is_empty() && scene.planes.is_empty() {
-            "the image is empty: there is nothing in the scene".to_owned()
-        } else {
-            format!(
-                "the image is empty: the camera at {} sees nothing of the scene, whose centre is {}",
-                scene.cameras[options.camera].position,
-                bounds.center()
-            )
-        });
+        if counts.work.culling > 0 {
+            return Some(
+                "the image is empty: all that the camera sees is the back of one-sided materials \
+                 (`--double-sided` shows it)"
+                    .to_owned(),
+            );
+        }
+        let center = match bounds.is_empty() {
+            true => String::new(),
+            false => format!(", whose centre is {}", bounds.center()),
+        };
+        return Some(format!(
+            "the image is empty: the camera at {camera} sees nothing of the scene{center}"
+        ));
     }
     // Something was hit, and is black for want of light.
     if options.view != View::Beauty {

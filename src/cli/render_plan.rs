@@ -120,7 +120,7 @@ impl RenderPlan {
         }
         let Some(path) = self.movies.first() else { return Ok(()) };
         let message = format!("an animated image needs an animation, and {reason}");
-        Err(Error::input(message).at(path).help("choose .png or .exr"))
+        Err(Error::input(message).at(path).help("choose .png, .jpg, .webp or .exr"))
     }
 
     /// Removes the frames whose files exist.

@@ -104,6 +104,11 @@ impl Geometry {
             instances: scene.instances.len(),
         }
     }
+
+    /// True if there is nothing that a ray can hit.
+    pub fn is_empty(&self) -> bool {
+        self.spheres == 0 && self.planes == 0 && self.triangles == 0
+    }
 }
 
 /// The work of building the intersectors of all frames.

@@ -2,8 +2,9 @@
 
 use std::process::ExitCode;
 
-use crate::cli::{args::Stress, check_status, messages, output, paths};
-use crate::error::{Error, Result};
+use crate::cli::paths::{self, InputFiles};
+use crate::cli::{args::Stress, check_status, messages, output};
+use crate::error::Result;
 use crate::measure::stress::{self, StressOptions, Table, plot};
 use crate::write;
 
@@ -16,13 +17,8 @@ pub fn run(arguments: &Stress) -> Result<ExitCode> {
     output::check_extension(arguments.plot.as_ref(), "svg", "a plot must be an SVG")?;
     let message = "finished test cases are recorded as JSON lines";
     output::check_extension(arguments.resume.as_ref(), "jsonl", message)?;
-    if let (Some(json), Some(resume)) = (&arguments.json, &arguments.resume)
-        && paths::is_same(json, resume)
-    {
-        return Err(Error::input("--json would overwrite the file of --resume")
-            .at(json)
-            .help("name two different files"));
-    }
+    let outputs = [&arguments.json, &arguments.plot, &arguments.resume];
+    paths::check_outputs(outputs.into_iter().flatten(), &InputFiles::named(&[]))?;
     // Run the sweeps of the goals that are asked for, or of all.
     let mut options = StressOptions {
         rays: if arguments.quick { StressOptions::QUICK } else { StressOptions::FULL },

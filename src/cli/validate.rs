@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use serde::Serialize;
 
-use crate::cli::{args::Validate, check_status, messages, output, paths, scene_args::SceneInput};
+use crate::cli::paths::{self, InputFiles};
+use crate::cli::{args::Validate, check_status, messages, output, scene_args::SceneInput};
 use crate::error::Result;
 use crate::intersect::Precision;
 use crate::measure::{self, Validation};
@@ -26,6 +27,8 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     let input = &arguments.trace.input;
     let SceneInput { scene, report, camera } = arguments.trace.load()?;
+    let outputs = [&arguments.json, &arguments.heatmap].into_iter().flatten();
+    paths::check_outputs(outputs, &InputFiles::of_scene(&scene, &report))?;
     let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
         let replay = measure::replay(&scene, ray, Some(&input.scene))?;
@@ -34,7 +37,6 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     }
 
     // Warn of what the comparison may find for reasons of precision.
-    paths::check_not_a_texture(&scene, &arguments.heatmap)?;
     let precision = arguments.trace.precision;
     let warnings = messages::scene_warnings(&report, &scene, precision == Precision::Fast);
     if !input.quiet {

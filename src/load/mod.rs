@@ -169,6 +169,7 @@ impl LoadOptions {
         // What is handed on is valid.
         scene.check().map_err(|e| e.at(path))?;
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
+        report.files = sandbox.files_read();
         Ok(Loaded { scene, report })
     }
 }

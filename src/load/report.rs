@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::path::PathBuf;
 
 use crate::scene::Scene;
 
@@ -39,6 +40,8 @@ pub struct LoadReport {
     pub placeholders: Vec<String>,
     /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
     pub variants: BTreeSet<String>,
+    /// The canonical paths of the files that were read.
+    pub files: BTreeSet<PathBuf>,
 }
 
 /// The reason why a face is not in the scene.
@@ -125,6 +128,7 @@ impl LoadReport {
         self.unsupported.extend(other.unsupported);
         self.placeholders.extend(other.placeholders);
         self.variants.extend(other.variants);
+        self.files.extend(other.files);
     }
 }
 

@@ -4,7 +4,7 @@
 //! another file names must be beside or below it, since that other file may come from a stranger. Only
 //! regular files are opened: a pipe could keep the program waiting, a device could do anything.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub struct Sandbox {
 #[derive(Default)]
 struct ReadFiles {
     /// Their canonical paths.
-    identities: HashSet<PathBuf>,
+    identities: BTreeSet<PathBuf>,
     /// The bytes that they have together, without those that images have accounted for.
     bytes_left: u64,
 }
@@ -76,7 +76,7 @@ impl Sandbox {
     /// When the folder of the file is not there.
     pub fn new(path: &Path, allow_outside: bool, limits: Limits) -> Result<Self> {
         let folder = (!allow_outside).then(|| parent(path).canonicalize()).transpose();
-        let folder = folder.map_err(|error| Error::io("read", path, &error))?;
+        let folder = folder.map_err(|error| Error::reading(path, &error))?;
         Ok(Self { folder, limits, used: Default::default(), files: Mutex::default() })
     }
 
@@ -116,7 +116,7 @@ impl Sandbox {
     /// Returns the error that the file at a path is not opened.
     fn error(&self, path: &Path, error: &OpenError) -> Error {
         match error {
-            OpenError::Io(error) => Error::input(Error::io("read", path, error).message()),
+            OpenError::Io(error) => Error::input(Error::reading(path, error).message()),
             OpenError::NotRegular(what) => Error::input(format!("this is {what}, not a file")),
             OpenError::Outside => {
                 let folder = self.folder.as_deref().unwrap_or(Path::new("/"));
@@ -176,6 +176,11 @@ impl Sandbox {
         self.consume(Limit::Pixels, pixels.saturating_sub(free))
     }
 
+    /// Returns the canonical paths of the files that were read so far.
+    pub fn files_read(&self) -> BTreeSet<PathBuf> {
+        self.files.lock().unwrap_or_else(PoisonError::into_inner).identities.clone()
+    }
+
     /// Counts a file that is read.
     fn count_file(&self, identity: PathBuf, bytes: u64) {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
@@ -200,7 +205,7 @@ impl OpenedFile {
         sandbox.consume(Limit::Bytes, self.length).map_err(|e| e.at(&path))?;
         sandbox.count_file(self.identity, self.length);
         let mut bytes = Vec::new();
-        let fail = |error: io::Error| Error::io("read", &path, &error);
+        let fail = |error: io::Error| Error::reading(&path, &error);
         bytes.try_reserve_exact(self.length as usize).map_err(|e| fail(e.into()))?;
         // Bytes that are written to it from now on are left out.
         self.file.take(self.length).read_to_end(&mut bytes).map_err(fail)?;

@@ -11,14 +11,14 @@ use crate::error::{Error, Result};
 use crate::load::{self, Limits};
 use crate::write::Format;
 
-/// A picture as it is stored in a PNG or EXR file.
+/// A picture as it is stored in a PNG, JPEG, WebP or EXR file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     /// The width and height in pixels.
     pub size: [u32; 2],
     /// The channels' names, in the order of their values.
     pub channels: Vec<String>,
-    /// The values of each pixel's channels: a PNG's bytes over 255, an EXR's floats.
+    /// The values of each pixel's channels: an EXR's floats, or else bytes over 255.
     pub values: Vec<f32>,
 }
 
@@ -37,10 +37,10 @@ pub struct Comparison {
 }
 
 impl Picture {
-    /// Reads a PNG or an EXR, within the default limits.
+    /// Reads a PNG, JPEG, WebP or EXR, within the default limits.
     ///
     /// # Errors
-    /// When the file cannot be read, is neither, or exceeds a limit.
+    /// When the file cannot be read, is none of these, or exceeds a limit.
     pub fn read(path: &Path) -> Result<Self> {
         let [bytes] = load::read_for_comparison([path], Limits::default())?;
         Self::decode(path, &bytes)
@@ -49,7 +49,7 @@ impl Picture {
     /// Reads two pictures, within limits on both together.
     ///
     /// # Errors
-    /// When a file cannot be read, is neither a PNG nor an EXR, or they exceed a limit.
+    /// When a file cannot be read, is none of these formats, or they exceed a limit.
     pub fn read_pair(a: &Path, b: &Path, limits: Limits) -> Result<[Self; 2]> {
         // The memory for both is counted before either is decoded.
         let [first, second] = load::read_for_comparison([a, b], limits)?;
@@ -62,21 +62,25 @@ impl Picture {
             Error::input(format!("the picture cannot be decoded: {e}")).at(path)
         };
         // Only the kinds that are written can be compared, so the same names count; the advice differs.
-        let format = Format::from_path(path)
-            .map_err(|_| Error::input("only PNG and EXR pictures can be compared").at(path))?;
+        let format = Format::from_path(path).map_err(|_| {
+            Error::input("only PNG, JPEG, WebP and EXR pictures can be compared").at(path)
+        })?;
+        let of_bytes = |format: ImageFormat| {
+            let image = image::load_from_memory_with_format(bytes, format);
+            let image = image.map_err(|e| damaged(&e))?.into_rgb8();
+            Ok(Self {
+                size: image.dimensions().into(),
+                channels: ["R", "G", "B"].map(String::from).into(),
+                values: image.as_raw().iter().map(|&b| f32::from(b) / 255.0).collect(),
+            })
+        };
         match format {
             Format::Gif | Format::Apng => Err(Error::input("animated pictures cannot be compared")
                 .at(path)
                 .help("compare their frames: render them as `-o frame-####.png`")),
-            Format::Png => {
-                let image = image::load_from_memory_with_format(bytes, ImageFormat::Png);
-                let image = image.map_err(|e| damaged(&e))?.into_rgb8();
-                Ok(Self {
-                    size: image.dimensions().into(),
-                    channels: ["R", "G", "B"].map(String::from).into(),
-                    values: image.as_raw().iter().map(|&b| f32::from(b) / 255.0).collect(),
-                })
-            }
+            Format::Png => of_bytes(ImageFormat::Png),
+            Format::Jpeg => of_bytes(ImageFormat::Jpeg),
+            Format::WebP => of_bytes(ImageFormat::WebP),
             Format::Exr => {
                 let image = exr::prelude::read()
                     .no_deep_data()
@@ -119,7 +123,7 @@ pub fn compare_pictures(a: &Picture, b: &Picture, tolerance: f32) -> Result<Comp
     if a.channels != b.channels {
         let (a, b) = (a.channels.join(", "), b.channels.join(", "));
         return Err(Error::input(format!("channels {a} and channels {b} cannot be compared"))
-            .help("compare a PNG with a PNG, and an EXR with an EXR of the same view"));
+            .help("compare EXRs of the same view"));
     }
     // The same infinity or NaN in both does not differ.
     let difference = |(x, y): (&f32, &f32)| {

@@ -9,7 +9,7 @@ mod trace;
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
-use crate::film::View;
+use crate::film::{Film, View};
 use crate::intersect::{
     Backend, BuildQuality, BuildStats, Intersector, IntersectorBuilder, Precision,
 };
@@ -122,6 +122,7 @@ impl<'s> Renderer<'s> {
         let (scene, options) = (&*self.scene, &self.options);
         scene.check()?;
         check_camera(scene, options.camera)?;
+        Film::check_memory(scene.film.size)?;
         let posed = scene.animation.is_some().then(|| scene.at_time(0.0)).transpose()?;
         let scene = posed.as_ref().unwrap_or(scene);
         in_pool(options.threads, || {
@@ -152,6 +153,7 @@ impl<'s> Renderer<'s> {
         let (scene, options) = (&*self.scene, &self.options);
         scene.check()?;
         check_camera(scene, options.camera)?;
+        Film::check_memory(scene.film.size)?;
         in_pool(options.threads, || {
             let (backend, precision) = (options.backend(), options.precision);
             let threads = rayon::current_num_threads();

@@ -23,10 +23,10 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Saves the picture as PNG or EXR, by the extension of `path`.
+    /// Saves the picture as PNG, JPEG, WebP or EXR, by the extension of `path`.
     ///
     /// # Errors
-    /// When the extension names no format, or the file cannot be written; an old file at `path` is
+    /// When the extension names no format or one that cannot hold such a size, or the file cannot be written; an old file at `path` is
     /// left as it was.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         write::write(&self.film, path.as_ref(), &self.settings)

@@ -1,68 +1,52 @@
 //! The atomic replacement of files: at any moment a file is the complete old or the complete new one.
 
+#[cfg(feature = "cli")]
+use std::collections::HashSet;
 use std::fs::{self, File};
-use std::io::{BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use tempfile::{Builder, NamedTempFile};
-
 use crate::error::{Error, Result};
+#[cfg(feature = "cli")]
+use crate::write::target::check_replaceable;
+use crate::write::target::{cannot_create, folder_of, kept_permissions, resolve};
+use crate::write::temporary::TemporaryFile;
 
 /// Creates the temporary file, which is later renamed to `target`: in the same folder, so that the
 /// rename cannot cross file systems.
-fn temporary(target: &Path) -> Result<NamedTempFile> {
-    let folder = folder_of(target);
-    let mut builder = Builder::new();
-    builder.prefix(".envers-").suffix(".part");
+fn temporary(target: &Path) -> Result<TemporaryFile> {
+    // Nobody may read it who may not read the file that it replaces.
+    let permissions = kept_permissions(target).or_else(new_permissions);
+    TemporaryFile::create(folder_of(target), permissions).map_err(|e| cannot_create(target, &e))
+}
+
+/// Returns the permissions of any new file, from which the system takes those of the user's umask;
+/// none where permissions have no bits.
+fn new_permissions() -> Option<fs::Permissions> {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        // The permissions of any new file, by the user's umask, instead of those of temporary files.
-        builder.permissions(fs::Permissions::from_mode(0o666));
+        Some(fs::Permissions::from_mode(0o666))
     }
-    builder.tempfile_in(folder).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound if !folder.exists() => {
-            let folder = folder.display();
-            Error::input(format!("the output's folder {folder} does not exist"))
-                .at(target)
-                .help(format!("make it first: mkdir -p {folder}"))
-        }
-        _ => Error::io("write", target, &e)
-            .help(format!("can files be made in {}?", folder.display())),
-    })
+    #[cfg(not(unix))]
+    None
 }
 
-/// The folder of a file.
-pub fn folder_of(target: &Path) -> &Path {
-    target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
-}
-
-/// Resolves symbolic links: a link stays, and the file that it names is replaced.
-fn resolve(path: &Path) -> PathBuf {
-    fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
-}
-
-/// Checks that [`write_atomically`] could write to `path`.
+/// Checks that [`write_atomically`] could write to these paths. Each folder is tried once, so that
+/// thousands of paths take no time.
 ///
 /// # Errors
 /// When it could not.
 #[cfg(feature = "cli")]
-pub fn check(path: &Path) -> Result<()> {
-    let target = resolve(path);
-    match fs::metadata(&target) {
-        Ok(m) if m.is_dir() => {
-            Err(Error::input("the output is a folder").at(path).help("name a file in it"))
+pub fn check(paths: impl IntoIterator<Item = impl AsRef<Path>>) -> Result<()> {
+    let mut tried = HashSet::new();
+    for path in paths {
+        let target = check_replaceable(path.as_ref())?;
+        if tried.insert(folder_of(&target).to_owned()) {
+            temporary(&target)?;
         }
-        Ok(m) if !m.is_file() => Err(Error::input("the output is a pipe or a device, not a file")
-            .at(path)
-            .help("name a file: it is written beside its old self, which it then replaces")),
-        Ok(m) if m.permissions().readonly() => {
-            Err(Error::input("the output is there already and is read-only")
-                .at(path)
-                .help("choose another name, or make it writable"))
-        }
-        _ => temporary(&target).map(drop),
     }
+    Ok(())
 }
 
 /// A file that is being written: a temporary file in the same folder, which is renamed when it is
@@ -70,13 +54,13 @@ pub fn check(path: &Path) -> Result<()> {
 pub struct PendingFile {
     path: PathBuf,
     target: PathBuf,
-    file: NamedTempFile,
+    file: TemporaryFile,
 }
 
 impl PendingFile {
     /// Begins a file that is to replace `path`, which is untouched until [`PendingFile::commit`].
     pub fn new(path: &Path) -> Result<Self> {
-        let target = resolve(path);
+        let target = resolve(path)?;
         let file = temporary(&target)?;
         Ok(Self { path: path.to_owned(), target, file })
     }
@@ -87,15 +71,18 @@ impl PendingFile {
     }
 
     /// A handle for writing.
-    pub fn handle(&self) -> std::io::Result<File> {
-        self.file.as_file().try_clone()
+    pub fn handle(&mut self) -> io::Result<File> {
+        self.file.file().try_clone()
     }
 
-    /// Flushes the file to disk and renames it.
-    pub fn commit(self) -> Result<()> {
-        let failed = |e: std::io::Error| Error::io("write", &self.path, &e);
-        self.file.as_file().sync_all().map_err(failed)?;
-        self.file.persist(&self.target).map_err(|e| failed(e.error))?;
+    /// Flushes the file to disk and renames it. It gets the permissions of the file that it replaces.
+    pub fn commit(mut self) -> Result<()> {
+        let failed = |e: io::Error| Error::writing(&self.path, &e);
+        if let Some(permissions) = kept_permissions(&self.target) {
+            self.file.file().set_permissions(permissions).map_err(failed)?;
+        }
+        self.file.file().sync_all().map_err(failed)?;
+        self.file.rename(&self.target).map_err(failed)?;
         // The rename itself is flushed with the folder; some systems cannot open or flush folders, and
         // there the file is complete all the same.
         if let Ok(folder) = File::open(folder_of(&self.target)) {
@@ -113,11 +100,11 @@ impl PendingFile {
 /// was.
 pub fn write_atomically(
     path: &Path,
-    fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
+    fill: impl FnOnce(&mut (dyn WriteSeek + '_)) -> io::Result<()>,
 ) -> Result<()> {
     let mut pending = PendingFile::new(path)?;
-    let failed = |e: std::io::Error| Error::io("write", path, &e);
-    let mut buffered = BufWriter::new(pending.file.as_file_mut());
+    let failed = |e: io::Error| Error::writing(path, &e);
+    let mut buffered = BufWriter::new(pending.file.file());
     fill(&mut buffered).map_err(failed)?;
     buffered.flush().map_err(failed)?;
     drop(buffered);
@@ -131,7 +118,6 @@ impl<T: Write + Seek> WriteSeek for T {}
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io;
 
     #[test]
     fn failure_leaves_the_old_file_and_no_other() {
@@ -171,7 +157,7 @@ mod tests {
     #[test]
     fn missing_folder_is_named() {
         let folder = tempfile::tempdir().unwrap();
-        let error = check(&folder.path().join("no/a.png")).unwrap_err();
+        let error = PendingFile::new(&folder.path().join("no/a.png")).err().unwrap();
         assert!(error.to_string().contains("does not exist"), "{error}");
     }
 }

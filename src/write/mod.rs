@@ -1,4 +1,5 @@
-//! The output files: a film written as PNG, EXR, GIF or animated PNG, completely or not at all.
+//! The output files: a film written as PNG, JPEG, WebP, EXR, GIF or animated PNG, completely or not at
+//! all.
 //!
 //! ```
 //! use envers::{Film, View};
@@ -11,9 +12,12 @@
 //! ```
 
 mod atomic;
+mod bytes;
 mod exr;
 mod movie;
-mod png;
+mod still;
+mod target;
+mod temporary;
 
 use std::path::Path;
 
@@ -21,11 +25,15 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::scene::{FilmSettings, Tone, Transfer};
 
-pub use atomic::write_atomically;
 #[cfg(feature = "cli")]
-pub use atomic::{check as check_file, folder_of};
+pub use atomic::check as check_files;
+pub use atomic::write_atomically;
+pub use bytes::encode as png_bytes;
 pub use movie::Movie;
-pub use png::encode as png_bytes;
+#[cfg(feature = "cli")]
+pub use target::{folder_of, resolve};
+#[cfg(all(feature = "cli", unix))]
+pub use temporary::remove_all as remove_temporaries;
 
 /// The format of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +41,10 @@ pub use png::encode as png_bytes;
 pub enum Format {
     /// PNG: 8 bits per channel, clamped.
     Png,
+    /// JPEG: 8 bits per channel, compressed with loss.
+    Jpeg,
+    /// WebP: 8 bits per channel, compressed without loss.
+    WebP,
     /// OpenEXR: linear floats, unclamped.
     Exr,
     /// GIF: an animation with 256 colours per frame.
@@ -41,9 +53,9 @@ pub enum Format {
     Apng,
 }
 
-/// The settings of an output file. `exposure`, `tone` and `transfer` map radiance to the bytes of a
-/// PNG; an EXR always holds the radiance itself.
-#[derive(Clone, Debug, Default)]
+/// The settings of an output file. `exposure`, `tone` and `transfer` map radiance to the bytes of
+/// all formats but EXR, which always holds the radiance itself.
+#[derive(Clone, Debug)]
 pub struct Settings {
     /// The exposure in stops: radiance is multiplied by 2 to the power of this.
     pub exposure: f64,
@@ -53,18 +65,31 @@ pub struct Settings {
     pub transfer: Transfer,
     /// True if an EXR stores 16-bit floats rather than 32-bit ones.
     pub half: bool,
+    /// The quality of a JPEG, from 1 (smallest file) to 100 (nearest to the pixels).
+    pub quality: u8,
     /// The metadata of an EXR: names and values of what determines the picture.
     pub metadata: Vec<(String, String)>,
 }
 
+impl Default for Settings {
+    fn default() -> Self {
+        let (exposure, tone, transfer) = (0.0, Tone::default(), Transfer::default());
+        let (half, quality, metadata) = (false, Self::JPEG_QUALITY, Vec::new());
+        Self { exposure, tone, transfer, half, quality, metadata }
+    }
+}
+
 impl Settings {
-    /// The settings of a scene's film, with 32 bits and no metadata.
+    /// The quality of a JPEG unless another one is asked for.
+    pub const JPEG_QUALITY: u8 = 90;
+
+    /// The settings of a scene's film, with 32 bits, the default quality and no metadata.
     pub fn from_film(film: &FilmSettings) -> Self {
         let &FilmSettings { exposure, tone, transfer, .. } = film;
-        Self { exposure, tone, transfer, half: false, metadata: Vec::new() }
+        Self { exposure, tone, transfer, ..Self::default() }
     }
 
-    /// The byte of a PNG for the radiance of one channel, computed in f64:
+    /// The byte for the radiance of one channel, computed in f64:
     /// round(255 · transfer(tone(2^exposure · radiance))).
     pub fn byte(&self, radiance: f32) -> u8 {
         let toned = self.tone.apply(f64::from(radiance) * self.exposure.exp2());
@@ -80,6 +105,8 @@ impl Format {
     pub fn from_path(path: &Path) -> Result<Self> {
         match path.extension().unwrap_or_default().to_string_lossy().to_lowercase().as_str() {
             "png" => Ok(Format::Png),
+            "jpg" | "jpeg" => Ok(Format::Jpeg),
+            "webp" => Ok(Format::WebP),
             "exr" => Ok(Format::Exr),
             "gif" => Ok(Format::Gif),
             "apng" => Ok(Format::Apng),
@@ -87,13 +114,34 @@ impl Format {
             other => Err(format!("pictures that end in .{other} are not written")),
         }
         .map_err(|message| {
-            let help = "name it .png (8 bits), .exr (floats), .gif or .apng (animated)";
+            let help =
+                "name it .png, .jpg or .webp (8 bits), .exr (floats), .gif or .apng (animated)";
             Error::input(message).at(path).help(help)
         })
     }
 
+    /// Checks that a picture of this format can be so large.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub fn check_size(self, [width, height]: [u32; 2], path: &Path) -> Result<()> {
+        // The sides of a GIF and a JPEG have 16 bits. 16383 is the most that libwebp reads.
+        let (name, limit) = match self {
+            Format::Gif => ("a GIF", u32::from(u16::MAX)),
+            Format::Jpeg => ("a JPEG", u32::from(u16::MAX)),
+            Format::WebP => ("a WebP", 16383),
+            Format::Png | Format::Exr | Format::Apng => return Ok(()),
+        };
+        if width.max(height) <= limit {
+            return Ok(());
+        }
+        let other = if self.is_animated() { "an .apng" } else { "a .png" };
+        Err(Error::input(format!("{name} cannot have {width}x{height} pixels"))
+            .at(path)
+            .help(format!("at most {limit} on a side; {other} can have more")))
+    }
+
     /// True if it can hold several frames.
-    #[cfg(feature = "cli")]
     pub fn is_animated(self) -> bool {
         matches!(self, Format::Gif | Format::Apng)
     }
@@ -107,7 +155,7 @@ impl Format {
 #[cfg(feature = "cli")]
 pub fn check(path: &Path) -> Result<()> {
     Format::from_path(path)?;
-    atomic::check(path)
+    atomic::check([path])
 }
 
 /// Writes a film in the format that the extension names; an animated format then has one frame.
@@ -116,8 +164,10 @@ pub fn check(path: &Path) -> Result<()> {
 /// # Errors
 /// When the file cannot be written; an older file then stays as it was.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
-    match Format::from_path(path)? {
-        Format::Png => png::write(film, path, settings),
+    let format = Format::from_path(path)?;
+    format.check_size(film.size, path)?;
+    match format {
+        Format::Png | Format::Jpeg | Format::WebP => still::write(film, path, settings, format),
         Format::Exr => exr::write(film, path, settings),
         Format::Gif | Format::Apng => {
             let mut movie = Movie::create(path, film.size, 1, 1.0)?;

@@ -17,8 +17,6 @@ use crate::write::{Format, Settings, atomic::PendingFile, png_bytes};
 const GIF_SAMPLING: i32 = 10;
 /// The least delay of a GIF's frame, in hundredths of a second: browsers turn a shorter one into 10.
 const GIF_MIN_DELAY: u16 = 2;
-/// The longest side of a GIF, in pixels.
-const GIF_MAX_SIDE: u32 = u16::MAX as u32;
 
 /// An animation that is being written; the file appears when it is finished.
 pub struct Movie {
@@ -56,20 +54,15 @@ impl Movie {
     /// When the format is not animated or cannot have such a size, or the file cannot be written.
     pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
         let format = Format::from_path(path)?;
-        let file = PendingFile::new(path)?;
-        let failed = |e: io::Error| Error::io("write", path, &e);
+        format.check_size(size, path)?;
+        let mut file = PendingFile::new(path)?;
+        let failed = |e: io::Error| Error::writing(path, &e);
         let handle = file.handle().map_err(failed)?;
         // The header of the format.
-        let [width, height] = size;
         let encoder = match format {
-            Format::Gif if width.max(height) > GIF_MAX_SIDE => {
-                return Err(Error::input(format!("a GIF cannot have {width}x{height} pixels"))
-                    .at(path)
-                    .help(format!("at most {GIF_MAX_SIDE} on a side; an .apng can have more")));
-            }
             Format::Gif => begin_gif(handle, size).map_err(gif_error).map(Encoder::Gif),
             Format::Apng => begin_apng(handle, size, frames, fps).map(Encoder::Apng),
-            Format::Png | Format::Exr => {
+            _ => {
                 return Err(Error::input("this format holds one frame").at(path));
             }
         }
@@ -99,7 +92,7 @@ impl Movie {
             Encoder::Gif(encoder) => write_gif(encoder, &pixels, part, delay),
             Encoder::Apng(writer) => write_apng(writer, &pixels, part),
         }
-        .map_err(|e| Error::io("write", self.file.path(), &e))?;
+        .map_err(|e| Error::writing(self.file.path(), &e))?;
         self.frames += 1;
         self.previous = Some(bytes);
         Ok(())
@@ -118,7 +111,7 @@ impl Movie {
             }
             Encoder::Apng(writer) => writer.finish().map_err(io::Error::from),
         }
-        .map_err(|e| Error::io("write", &path, &e))?;
+        .map_err(|e| Error::writing(&path, &e))?;
         self.file.commit()
     }
 }

@@ -4,13 +4,6 @@ use image::AnimationDecoder;
 
 use super::*;
 
-/// A sphere that goes round, in ten frames of a fifth of a second.
-fn moving() -> String {
-    let scene = SPHERE.replacen("[[sphere]]", "[[sphere]]\nname = \"ball\"", 1);
-    let orbit = "object = \"ball\"\naround = [1, 0.5, 0]\nperiod = 2\n";
-    format!("{scene}\n[animation]\nframes = 10\nfps = 5\n[[animation.orbit]]\n{orbit}")
-}
-
 /// The delays in milliseconds and the pictures of a GIF.
 fn gif(bytes: Vec<u8>) -> Vec<(u32, Vec<u8>)> {
     let decoder = image::codecs::gif::GifDecoder::new(std::io::Cursor::new(bytes)).unwrap();
@@ -192,6 +185,62 @@ fn several_frames_in_one_file_are_refused() {
     );
     let said = folder.run("render scene.toml -o f#.png -o f##.png").refused();
     assert!(said.contains("would have the same name"), "{said}");
+}
+
+/// The message of an animation that is refused before its first frame is written.
+#[track_caller]
+fn refused_before_the_first_frame(folder: &Folder, ended: fn(Run) -> String) -> String {
+    let before = folder.names();
+    let message = ended(folder.run("render scene.toml -o f##.png"));
+    assert_eq!(folder.names(), before, "{message}");
+    message
+}
+
+#[test]
+fn a_folder_in_the_place_of_the_last_frame_is_refused() {
+    let folder = Folder::with(&moving());
+    std::fs::create_dir(folder.path("f10.png")).unwrap();
+    let message = refused_before_the_first_frame(&folder, Run::refused);
+    assert!(message.contains("f10.png: the output is a folder"), "{message}");
+}
+
+#[test]
+fn a_later_frame_that_is_read_only_fails() {
+    let folder = Folder::with(&moving());
+    folder.write("f07.png", "old");
+    let mut rights = std::fs::metadata(folder.path("f07.png")).unwrap().permissions();
+    rights.set_readonly(true);
+    std::fs::set_permissions(folder.path("f07.png"), rights).unwrap();
+    let message = refused_before_the_first_frame(&folder, Run::failed);
+    assert!(message.contains("f07.png: the output is there already and is read-only"), "{message}");
+}
+
+#[test]
+#[cfg(unix)]
+fn links_in_the_places_of_later_frames_are_checked() {
+    let folder = Folder::with(&moving());
+    let refused = |target: &str, expected: &str| {
+        std::os::unix::fs::symlink(target, folder.path("f09.png")).unwrap();
+        let message = refused_before_the_first_frame(&folder, Run::refused);
+        assert!(message.contains(expected), "{message}");
+        std::fs::remove_file(folder.path("f09.png")).unwrap();
+    };
+    refused("/dev/null", "f09.png: the output is a pipe or a device");
+    refused("scene.toml", "f09.png: this output is an input file");
+    refused("none/f.png", "the output's folder none does not exist");
+    refused("f03.png", "f09.png: two outputs are this file");
+    refused("f09.png", "f09.png: the output is a symbolic link that leads to itself");
+}
+
+#[test]
+fn a_texture_in_the_place_of_a_later_frame_is_refused() {
+    let folder = Folder::with(&moving());
+    folder.write("f05.png", envers_testing::png(&[[1, 2, 3, 255]]));
+    folder.write("m.mtl", "newmtl a\nmap_Kd f05.png\n");
+    folder.write("m.obj", format!("mtllib m.mtl\nusemtl a\n{TETRAHEDRON}"));
+    folder.write("scene.toml", moving() + "[[model]]\nfile = \"m.obj\"\n");
+    let message = refused_before_the_first_frame(&folder, Run::refused);
+    assert!(message.contains("f05.png: this output is an input file"), "{message}");
 }
 
 #[test]

@@ -21,7 +21,11 @@ fn help_shows_examples() {
 
 #[test]
 fn help_tells_the_exit_statuses() {
-    assert!(Folder::new().run("--help").good().stdout.contains("Exit status: 0 "));
+    let stdout = Folder::new().run("--help").good().stdout;
+    let (_, statuses) = stdout.split_once("\nExit status:\n").expect("a table");
+    for status in ["  0 ", "  1 ", "  2 "] {
+        assert!(statuses.lines().any(|line| line.starts_with(status)), "{status} in {stdout}");
+    }
 }
 
 #[test]
@@ -61,20 +65,14 @@ fn an_unknown_subcommand_is_refused_with_the_one_that_was_meant() {
     assert!(message.contains("'render'"), "{message}");
 }
 
-/// A reader that goes away, as `head` does, is no error to speak of.
+/// A reader that goes away, as `head` does, is no error.
 #[test]
 #[cfg(unix)]
-fn a_closed_pipe_is_no_panic() {
+fn a_closed_pipe_is_success_without_a_word() {
     let folder = Folder::with(SPHERE);
     for command in ["info scene.toml", "info scene.toml --json -", "render scene.toml", "--help"] {
-        let script = format!("\"$0\" {command} | true; exit ${{PIPESTATUS[0]}}");
-        let output = assert_cmd::Command::new("bash")
-            .args(["-c", &format!("sleep 0.1; {script}"), env!("CARGO_BIN_EXE_envers")])
-            .current_dir(folder.0.path())
-            .output()
-            .unwrap();
-        let stderr = String::from_utf8_lossy(&output.stderr);
-        assert!(!stderr.contains("panicked"), "{command}: {stderr}");
-        assert_ne!(output.status.code(), Some(101), "{command}");
+        let script = format!("sleep 0.1; envers {command} | true; exit ${{PIPESTATUS[0]}}");
+        let run = folder.run_script(&script).good();
+        assert_eq!(run.stdout, "", "{command}");
     }
 }

@@ -4,6 +4,9 @@ mod adaptive;
 mod backends;
 mod bench;
 mod completions;
+mod empty_scenes;
+mod exit_status;
+mod formats;
 mod frames;
 mod framing;
 mod help;
@@ -12,6 +15,8 @@ mod outputs;
 mod render;
 mod reports;
 mod sandbox_and_limits;
+#[cfg(unix)]
+mod signals;
 mod stress;
 mod strict;
 mod tone;
@@ -59,6 +64,13 @@ position = [3, 5, 4]
 /// The same in a picture that would take days: whatever refuses it in time has not rendered it.
 fn endless() -> String {
     SPHERE.replace("size = [64, 48]", "size = [4096, 4096]\nspp = 65536")
+}
+
+/// A sphere that goes round, in ten frames of a fifth of a second.
+fn moving() -> String {
+    let scene = SPHERE.replacen("[[sphere]]", "[[sphere]]\nname = \"ball\"", 1);
+    let orbit = "object = \"ball\"\naround = [1, 0.5, 0]\nperiod = 2\n";
+    format!("{scene}\n[animation]\nframes = 10\nfps = 5\n[[animation.orbit]]\n{orbit}")
 }
 
 /// Spheres, a plane, a mesh that stands twice, one that stands once, and three kinds of light.
@@ -162,12 +174,24 @@ impl Run {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e} in {}", self.stdout))
     }
 
-    /// The one message of a run that was refused: exit status 2, nothing on stdout, and no trace of
-    /// a panic.
+    /// The one message of a run that was refused, since the command line or an input is wrong.
     #[track_caller]
     fn refused(self) -> String {
+        self.ended_with(2)
+    }
+
+    /// The one message of a run whose work failed.
+    #[track_caller]
+    fn failed(self) -> String {
+        self.ended_with(1)
+    }
+
+    /// The one message of a run that ended with this exit status: with nothing on stdout, and no trace
+    /// of a panic.
+    #[track_caller]
+    fn ended_with(self, expected: i32) -> String {
         let Self { status, stdout, stderr } = self;
-        assert_eq!((status, &*stdout), (Some(2), ""), "{stderr}");
+        assert_eq!((status, &*stdout), (Some(expected), ""), "{stderr}");
         assert!(stderr.starts_with("error: "), "{stderr}");
         let messages = stderr.lines().filter(|l| l.contains("error:") || l.contains("warning:"));
         assert_eq!(messages.count(), 1, "more than one message: {stderr}");
@@ -237,7 +261,24 @@ impl Folder {
     /// Runs `envers` with these arguments.
     #[track_caller]
     fn run_with(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Run {
-        let output = assert_cmd::Command::new(env!("CARGO_BIN_EXE_envers"))
+        self.run_program(env!("CARGO_BIN_EXE_envers"), arguments)
+    }
+
+    /// Runs a script of bash, in which `envers` is the command.
+    #[cfg(unix)]
+    #[track_caller]
+    fn run_script(&self, script: &str) -> Run {
+        let script = format!("envers() {{ (exec \"$0\" \"$@\"); }}; {script}");
+        self.run_program("bash", ["-c", &script, env!("CARGO_BIN_EXE_envers")])
+    }
+
+    #[track_caller]
+    fn run_program(
+        &self,
+        program: &str,
+        arguments: impl IntoIterator<Item = impl AsRef<OsStr>>,
+    ) -> Run {
+        let output = assert_cmd::Command::new(program)
             .args(arguments)
             .current_dir(self.0.path())
             .timeout(Duration::from_secs(60))

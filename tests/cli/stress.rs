@@ -53,7 +53,7 @@ fn stress_refuses_to_keep_cells_where_they_would_be_lost() {
     for (arguments, why) in [
         ("--resume -", "name it .jsonl"),
         ("--resume done.toml", "name it .jsonl"),
-        ("--resume done.jsonl --json ./done.jsonl", "--json would overwrite"),
+        ("--resume done.jsonl --json ./done.jsonl", "two outputs are this file"),
     ] {
         let message = folder.run(&format!("stress --quick --goal G2 {arguments}")).refused();
         assert!(message.contains(why), "{message}");

@@ -282,7 +282,7 @@ fn a_picture_that_nothing_shows_may_be_damaged_and_is_not_overwritten() {
     folder.write("wood.png", "no picture");
     folder.run("render scene.toml -o a.png").good();
     let said = folder.run("render scene.toml -o wood.png").refused();
-    assert!(said.contains("the output is a texture of the scene"), "{said}");
+    assert!(said.contains("this output is an input file"), "{said}");
     folder.write("scene.toml", PLAIN.replace("rotate =", "material = \"unused\"\nrotate ="));
     let said = folder.run("render scene.toml -o a.png").refused();
     assert!(said.contains("wood.png"), "{said}");

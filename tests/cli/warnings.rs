@@ -40,9 +40,11 @@ fn the_camera_that_is_warned_of_is_the_one_that_was_asked_for() {
 }
 
 #[test]
-fn a_scene_with_nothing_in_it_is_told_so() {
-    let warning = warned("[camera]\nposition = [0, 0, 0]\nlook_at = [0, 0, 1]\n");
-    assert!(warning.contains("there is nothing in the scene"), "{warning}");
+fn a_camera_that_looks_away_from_a_plane_is_told_so() {
+    let plane = "[[plane]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+    let camera = "[camera]\nposition = [0, 0, 0]\nlook_at = [0, 1, 0.1]\n";
+    let warning = warned(&format!("[film]\nsize = [8, 8]\n{camera}{plane}"));
+    assert!(warning.ends_with("sees nothing of the scene\n"), "{warning}");
 }
 
 #[test]

@@ -48,7 +48,7 @@ impl FinishedCases {
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
             Err(e) if e.kind() == ErrorKind::NotFound => String::new(),
-            Err(e) => return Err(Error::io("read", path, &e)),
+            Err(e) => return Err(Error::reading(path, &e)),
         };
         // A run that was killed may have left its last line incomplete.
         let (complete, rest) = text.split_at(text.rfind('\n').map_or(0, |end| end + 1));
@@ -75,7 +75,7 @@ impl FinishedCases {
         // The file, without an incomplete last line.
         let file = OpenOptions::new().append(true).create(true).open(path);
         let cut = |file: File| file.set_len(complete.len() as u64).map(|()| file);
-        let file = file.and_then(cut).map_err(|e| Error::io("write", path, &e))?;
+        let file = file.and_then(cut).map_err(|e| Error::writing(path, &e))?;
         Ok(Self { rows, conditions, file: Some((path.to_owned(), file)) })
     }
 
@@ -94,6 +94,6 @@ impl FinishedCases {
         let mut text = serde_json::to_string(&line)
             .map_err(|e| Error::failed(format!("cannot create the JSON: {e}")))?;
         text.push('\n');
-        file.write_all(text.as_bytes()).map_err(|e| Error::io("write", path, &e))
+        file.write_all(text.as_bytes()).map_err(|e| Error::writing(path, &e))
     }
 }

@@ -1,26 +1,9 @@
-//! The PNG writer: 8 bits per channel.
+//! The bytes of a film, as pictures of 8 bits per channel have them.
 
-use std::io;
-use std::path::Path;
-
-use image::ImageEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use rayon::prelude::*;
 
-use crate::error::Result;
 use crate::film::{Film, View};
-use crate::write::{Settings, write_atomically};
-
-/// Writes an RGB PNG.
-pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
-    let bytes = encode(film, settings);
-    write_atomically(path, |out| {
-        // Faster than choosing a filter for each row, and no larger: docs/performance.md.
-        PngEncoder::new_with_quality(out, CompressionType::Fast, FilterType::Paeth)
-            .write_image(&bytes, film.size[0], film.size[1], image::ExtendedColorType::Rgb8)
-            .map_err(io::Error::other)
-    })
-}
+use crate::write::Settings;
 
 /// Encodes a film as bytes: red, green, blue of each pixel, row by row.
 ///
