@@ -94,8 +94,8 @@ pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_g
 pub use render::{RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
-    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,
-    Texture, TextureId, Tone,
+    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Provenance, Scene, Shadow,
+    Sphere, Texture, TextureId, Tone,
 };
 pub use surface::Surface;
 

@@ -39,6 +39,7 @@ impl LoadArgs {
             variant: self.variant.clone(),
             allow_outside: self.allow_outside,
             double_sided: self.double_sided,
+            provenance: false,
             limits: limits(&self.limit),
         }
     }
@@ -106,16 +107,21 @@ pub struct SceneInput {
 }
 
 impl InputArgs {
+    /// Returns the options of the load.
+    pub fn options(&self) -> LoadOptions {
+        self.load.options(self.size)
+    }
+
     /// Loads the scene, with its animation. If `strict`, it must be complete.
     ///
     /// # Errors
     /// When the scene cannot be loaded, is not complete, or has no such camera.
-    pub fn load(&self, strict: bool) -> Result<SceneInput> {
+    pub fn load(&self, options: &LoadOptions, strict: bool) -> Result<SceneInput> {
         paths::check_input(&self.scene)?;
         // The number of threads applies to loading and writing, too. Building the global pool fails
         // only if there is one already.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
-        let Loaded { scene, report } = self.load.options(self.size).load(&self.scene)?;
+        let Loaded { scene, report } = options.load(&self.scene)?;
         if strict {
             load_report::check_strictly(&report, &self.scene)?;
         }
@@ -139,7 +145,15 @@ impl TraceArgs {
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
     pub fn load(&self) -> Result<SceneInput> {
-        let mut input = self.input.load(self.strict)?;
+        self.load_with(&self.input.options())
+    }
+
+    /// The same, with these options of the load.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn load_with(&self, options: &LoadOptions) -> Result<SceneInput> {
+        let mut input = self.input.load(options, self.strict)?;
         let (scene, path) = (&mut input.scene, &self.input.scene);
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);

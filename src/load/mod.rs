@@ -54,6 +54,9 @@ pub struct LoadOptions {
     /// True if the viewer sees the back faces of one-sided materials, too, as path tracers show glTF
     /// files; see [`Material::cull_back_faces`](crate::scene::Material::cull_back_faces).
     pub double_sided: bool,
+    /// True if the load records which elements of the files primitives come from; see
+    /// [`Scene::provenance_of`](crate::scene::Scene::provenance_of).
+    pub provenance: bool,
     /// The limits on what the load may read, unpack and build.
     pub limits: Limits,
 }
@@ -80,6 +83,13 @@ impl LoadOptions {
     /// Shows the back faces of one-sided materials.
     pub fn double_sided(mut self, double_sided: bool) -> Self {
         self.double_sided = double_sided;
+        self
+    }
+
+    /// Records which elements of the files primitives come from: up to four bytes for each triangle, and
+    /// more for each name and instance.
+    pub fn provenance(mut self, provenance: bool) -> Self {
+        self.provenance = provenance;
         self
     }
 
@@ -110,7 +120,9 @@ impl LoadOptions {
             scene_file::load(file, &sandbox, self)?
         } else {
             let variant = self.variant.as_deref();
-            model(file, &sandbox, &ModelOptions { animation: None, variant, needs_images: true })?
+            let provenance = self.provenance;
+            let options = ModelOptions { animation: None, variant, needs_images: true, provenance };
+            model(file, &sandbox, &options)?
         };
 
         // What the options ask for.
@@ -182,6 +194,8 @@ struct ModelOptions<'a> {
     variant: Option<&'a str>,
     /// True if its images are read, rather than only named.
     needs_images: bool,
+    /// True if the provenance of its primitives is recorded.
+    provenance: bool,
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.
@@ -191,7 +205,7 @@ fn model(file: OpenedFile, sandbox: &Sandbox, options: &ModelOptions) -> Result<
         "obj" if options.animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),
-        "obj" => obj::load(file, sandbox, options.needs_images),
+        "obj" => obj::load(file, sandbox, options),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),

@@ -6,4 +6,5 @@ mod gltf;
 mod limits;
 mod loading;
 mod obj;
+mod provenance;
 mod scene_file;
