@@ -39,6 +39,7 @@ impl LoadArgs {
             variant: self.variant.clone(),
             allow_outside: self.allow_outside,
             double_sided: self.double_sided,
+            geometry_only: false,
             provenance: false,
             limits: limits(&self.limit),
         }

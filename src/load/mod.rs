@@ -22,7 +22,7 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::watertight;
+use crate::scene::{Material, MaterialId, Scene, watertight};
 
 pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits};
@@ -54,6 +54,15 @@ pub struct LoadOptions {
     /// True if the viewer sees the back faces of one-sided materials, too, as path tracers show glTF
     /// files; see [`Material::cull_back_faces`](crate::scene::Material::cull_back_faces).
     pub double_sided: bool,
+    /// True if the load is for ray queries alone: meshes, spheres and planes, as a load without this
+    /// option has them, but none of what shades them.
+    ///
+    /// Every object gets the default material: no material, texture, texture coordinate or vertex
+    /// colour is read, no MTL file or image is opened, and it does not matter whether they are there.
+    /// So there are no alpha masks (a ray hits what a mask would cut out), and no surface is one-sided.
+    /// Positions and normals stay, and so do cameras, lights and animations that the files have; none
+    /// are added.
+    pub geometry_only: bool,
     /// True if the load records which elements of the files primitives come from; see
     /// [`Scene::provenance_of`](crate::scene::Scene::provenance_of).
     pub provenance: bool,
@@ -83,6 +92,12 @@ impl LoadOptions {
     /// Shows the back faces of one-sided materials.
     pub fn double_sided(mut self, double_sided: bool) -> Self {
         self.double_sided = double_sided;
+        self
+    }
+
+    /// Loads only what rays hit, without materials and images; see [`LoadOptions::geometry_only`].
+    pub fn geometry_only(mut self, geometry_only: bool) -> Self {
+        self.geometry_only = geometry_only;
         self
     }
 
@@ -120,8 +135,13 @@ impl LoadOptions {
             scene_file::load(file, &sandbox, self)?
         } else {
             let variant = self.variant.as_deref();
-            let provenance = self.provenance;
-            let options = ModelOptions { animation: None, variant, needs_images: true, provenance };
+            let options = ModelOptions {
+                animation: None,
+                variant,
+                needs_images: true,
+                geometry_only: self.geometry_only,
+                provenance: self.provenance,
+            };
             model(file, &sandbox, &options)?
         };
 
@@ -138,18 +158,32 @@ impl LoadOptions {
         // What stands at one place again and again would cost every ray that meets it.
         duplicates::remove_duplicates(&mut scene, &mut report);
         // Defaults for what the file leaves out.
-        defaults::auto_camera::add_camera(&mut scene).map_err(|e| e.at(path))?;
-        if !is_scene_file {
-            scene.film.spp = BARE_MODEL_SPP;
-            defaults::auto_lighting::add_lights(&mut scene);
+        if self.geometry_only {
+            share_default_material(&mut scene);
+        } else {
+            defaults::auto_camera::add_camera(&mut scene).map_err(|e| e.at(path))?;
+            if !is_scene_file {
+                scene.film.spp = BARE_MODEL_SPP;
+                defaults::auto_lighting::add_lights(&mut scene);
+            }
+            defaults::complete(&mut scene);
         }
-        defaults::complete(&mut scene);
 
         // What is handed on is valid.
         scene.check().map_err(|e| e.at(path))?;
+        (report.files, report.bytes) = sandbox.read_files();
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })
     }
+}
+
+/// Gives all objects one default material, in place of those that importers made.
+fn share_default_material(scene: &mut Scene) {
+    let id = MaterialId(0);
+    scene.materials = vec![Material::default()];
+    scene.spheres.iter_mut().for_each(|sphere| sphere.material = id);
+    scene.planes.iter_mut().for_each(|plane| (plane.material, plane.checker) = (id, None));
+    scene.instances.iter_mut().for_each(|instance| instance.material = id);
 }
 
 /// Loads a scene file or a bare model file, by its extension.
@@ -194,6 +228,8 @@ struct ModelOptions<'a> {
     variant: Option<&'a str>,
     /// True if its images are read, rather than only named.
     needs_images: bool,
+    /// True if only what rays hit is read, and all of it gets a default material.
+    geometry_only: bool,
     /// True if the provenance of its primitives is recorded.
     provenance: bool,
 }

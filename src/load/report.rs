@@ -23,6 +23,10 @@ pub struct Loaded {
 /// in the scene. Of what is read, [`LoadReport::balances`] holds.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LoadReport {
+    /// The number of files that were read, each counted once.
+    pub files: u64,
+    /// The number of bytes of these files.
+    pub bytes: u64,
     /// Faces of all meshes that were read.
     pub read: u64,
     /// Faces that are in the scene, for rays to hit.
@@ -116,6 +120,8 @@ impl LoadReport {
 
     /// Adds the report of another file.
     pub fn add(&mut self, other: LoadReport) {
+        self.files += other.files;
+        self.bytes += other.bytes;
         self.read += other.read;
         self.handed_over += other.handed_over;
         for (reason, count) in other.dropped {

@@ -30,7 +30,9 @@ pub struct Sandbox {
 struct ReadFiles {
     /// Their canonical paths.
     identities: HashSet<PathBuf>,
-    /// The bytes that they have together, without those that images have accounted for.
+    /// The bytes that they have together.
+    bytes: u64,
+    /// The bytes of these that images have not accounted for.
     bytes_left: u64,
 }
 
@@ -181,7 +183,14 @@ impl Sandbox {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         if files.identities.insert(identity) {
             files.bytes_left += bytes;
+            files.bytes += bytes;
         }
+    }
+
+    /// Returns the number of files that were read, each counted once, and that of their bytes.
+    pub fn read_files(&self) -> (u64, u64) {
+        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        (files.identities.len() as u64, files.bytes)
     }
 }
 

@@ -2,6 +2,7 @@
 //! each limit.
 
 mod corpus;
+mod geometry_only;
 mod gltf;
 mod limits;
 mod loading;

@@ -79,16 +79,18 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, options: &ModelOptions) 
     })?;
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     // A mesh and an instance of each group.
-    let mut library = MaterialLibrary::read(&info.libraries, path, sandbox, &mut diagnostics);
-    let names =
-        info.groups.iter().map(|group| group.settings.material.as_deref().unwrap_or_default());
-    library.show_what_is_all_clear(names, &mut diagnostics);
+    let mut library = MaterialLibrary::new(sandbox);
+    if !options.geometry_only {
+        library.read(&info.libraries, path, &mut diagnostics);
+        let names = info.groups.iter().map(FaceGroup::material_name);
+        library.show_what_is_all_clear(names, &mut diagnostics);
+    }
     let mut scene = Scene::default();
     if options.provenance {
         let faces = FileContents::Obj(face_numbers::read_faces(&text));
         scene.provenance = Some(Arc::new(ProvenanceTable::from_file(path.to_owned(), faces)));
     }
-    let max_color_value = max_color_value(&models);
+    let max_color_value = (!options.geometry_only).then(|| max_color_value(&models));
     for model in models {
         let index = model.name.parse().ok();
         let Some(index) = index.filter(|i: &usize| *i < info.groups.len()) else { continue };
@@ -99,7 +101,8 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, options: &ModelOptions) 
         else {
             continue;
         };
-        let name = group.settings.material.as_deref().unwrap_or_default();
+        // Without materials all groups share that of no name.
+        let name = if options.geometry_only { "" } else { group.material_name() };
         let material = library.material(name, &mut scene, &mut diagnostics);
         sandbox.consume(Limit::Vertices, mesh.positions.len() as u64)?;
         sandbox.consume(Limit::Triangles, mesh.triangles.len() as u64)?;
@@ -127,12 +130,13 @@ fn max_color_value(models: &[tobj::Model]) -> f64 {
 }
 
 /// Builds the mesh of a group, if it has a triangle, and the map to its faces if their `numbers` are
-/// given. Vertex colours are divided by `max_color_value`.
+/// given. Vertex colours are divided by `max_color_value`; without it the mesh has neither these nor texture
+/// coordinates.
 fn build_mesh(
     source: &tobj::Mesh,
     group: &FaceGroup,
     numbers: Option<&FaceNumbers>,
-    max_color_value: f64,
+    max_color_value: Option<f64>,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Mesh, FaceMap)> {
     let name = group.settings.name.as_deref();
@@ -143,20 +147,24 @@ fn build_mesh(
     let flip = |[u, v]: [f32; 2]| [u, 1.0 - v];
     let narrow = |n: &[f64; 3]| n.map(|x| x as f32);
     // As on a screen: programs that write vertex colours mean them so.
-    let linear = |c: &[f64; 3]| c.map(|x| Transfer::Srgb.decode((x / max_color_value) as f32));
+    let linear =
+        |c: &[f64; 3], greatest: f64| c.map(|x| Transfer::Srgb.decode((x / greatest) as f32));
     // Attributes and triangles, side by side.
     let attributes = || {
-        let uvs = source.texcoords.as_chunks().0.iter();
-        let uvs = uvs.map(|uv| flip(uv.map(|x| x as f32))).collect();
         let normals = source.normals.as_chunks().0.iter().map(narrow).collect();
-        let colors = source.vertex_color.as_chunks().0.iter().map(linear).collect();
-        Mesh {
+        let mut mesh = Mesh {
             positions: positions.into(),
             normals: per_vertex(normals, count),
-            uvs: per_vertex(uvs, count),
-            colors: per_vertex(colors, count),
             ..Mesh::default()
+        };
+        if let Some(greatest) = max_color_value {
+            let uvs = source.texcoords.as_chunks().0.iter();
+            let uvs = uvs.map(|uv| flip(uv.map(|x| x as f32))).collect();
+            mesh.uvs = per_vertex(uvs, count);
+            let colors = source.vertex_color.as_chunks().0.iter();
+            mesh.colors = per_vertex(colors.map(|c| linear(c, greatest)).collect(), count);
         }
+        mesh
     };
     let (attributes, (triangles, mut faces)) =
         rayon::join(attributes, || triangles(source, numbers, positions, diagnostics, place));

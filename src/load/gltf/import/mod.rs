@@ -72,7 +72,7 @@ pub fn import(
         root,
         value: document.value.as_ref(),
         accessors,
-        materials: Materials::new(root, textures),
+        materials: Materials::new(root, textures, options.geometry_only),
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
         mesh_ids: HashMap::new(),

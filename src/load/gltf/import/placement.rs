@@ -56,7 +56,7 @@ impl Importer<'_> {
 
     /// Returns the id of a material in the colour and alpha of an instance.
     fn colored(&mut self, material: MaterialId, color: [f32; 4]) -> MaterialId {
-        if color == [1.0; 4] {
+        if color == [1.0; 4] || self.materials.geometry_only {
             return material;
         }
         let key = (material, color.map(f32::to_bits));

@@ -56,6 +56,7 @@ pub fn build_scene(
         source,
         sandbox,
         objects,
+        geometry_only: options.geometry_only,
         image_use: ImageUse::from_tables(source, tables),
         variant: options.variant.as_deref(),
         motions,
@@ -87,6 +88,8 @@ struct SceneBuilder<'a> {
     sandbox: &'a Sandbox,
     /// The variant of the materials of models that name none.
     variant: Option<&'a str>,
+    /// True if all materials are the default material.
+    geometry_only: bool,
     image_use: ImageUse,
     objects: NamedObjects,
     motions: ObjectMotions,

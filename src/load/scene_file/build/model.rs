@@ -83,6 +83,7 @@ impl SceneBuilder<'_> {
             animation: key.animation.as_deref(),
             variant: key.variant.as_deref(),
             needs_images: self.image_use.uses_materials_of_model(&path),
+            geometry_only: self.geometry_only,
             provenance: self.scene.provenance.is_some(),
         };
         let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &options)?;

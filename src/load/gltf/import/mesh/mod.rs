@@ -123,8 +123,10 @@ impl PrimitiveReader<'_> {
 
         // Attributes of vertices.
         mesh.normals = self.attribute(Semantic::Normals, count)?;
-        (mesh.colors, mesh.alphas) = self.colors(needed.alpha, count)?;
-        mesh.uvs = self.uvs(needed.uv_sets.first(), count)?;
+        if !needed.geometry_only {
+            (mesh.colors, mesh.alphas) = self.colors(needed.alpha, count)?;
+            mesh.uvs = self.uvs(needed.uv_sets.first(), count)?;
+        }
         if let Some(second) = needed.uv_sets.get(1) {
             mesh.second_uvs = self.uvs(Some(second), count)?;
         }
