@@ -90,7 +90,10 @@ pub use geometry::{
 #[cfg(feature = "embree")]
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
-pub use load::{DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_ground, load};
+pub use load::{
+    Asset, AssetAnimation, DropReason, Limit, Limits, LoadOptions, LoadReport, Loaded, add_ground,
+    load,
+};
 pub use render::{RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
@@ -121,3 +124,4 @@ pub mod internals {
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+

@@ -26,7 +26,7 @@ use crate::scene::{Material, MaterialId, Scene, watertight};
 
 pub use defaults::ground::add_ground;
 pub use limits::{Limit, Limits};
-pub use report::{DropReason, LoadReport, Loaded};
+pub use report::{Asset, AssetAnimation, DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;
 
@@ -130,6 +130,7 @@ impl LoadOptions {
         let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;
         // The extension decides between a scene file and a bare model.
         let file = sandbox.open_named(path)?;
+        let own_bytes = file.length();
         let is_scene_file = extension(path) == "toml";
         let Loaded { mut scene, mut report } = if is_scene_file {
             scene_file::load(file, &sandbox, self)?
@@ -171,6 +172,7 @@ impl LoadOptions {
 
         // What is handed on is valid.
         scene.check().map_err(|e| e.at(path))?;
+        report.own_bytes = own_bytes;
         (report.files, report.bytes) = sandbox.read_files();
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
         Ok(Loaded { scene, report })

@@ -4,6 +4,7 @@ mod adaptive;
 mod bench;
 mod frames;
 mod help;
+mod info;
 mod inputs;
 mod outputs;
 mod render;

@@ -467,39 +467,3 @@ fn diff_refuses_a_tolerance_below_0_or_no_number() {
 fn diff_refuses_a_picture_that_is_not_there() {
     assert!(two_pictures().run("diff a.png none.png").refused().contains("none.png"));
 }
-
-// Info
-
-#[test]
-fn info_says_what_is_in_a_scene() {
-    let stdout = Folder::with_everything().run("info scene.toml").good().stdout;
-    for line in ["spheres    2", "planes     1", "triangles  9 in 3 instances of 2 meshes"] {
-        assert!(stdout.contains(line), "{line} in {stdout}");
-    }
-}
-
-#[test]
-fn info_says_what_will_be_skipped() {
-    let stdout = Folder::with(SPHERE).run("info scene.toml").good().stdout;
-    assert!(stdout.contains("\nskips      instances: there are no meshes\n"), "{stdout}");
-    assert!(!stdout.contains("skips      shadows"), "{stdout}");
-}
-
-#[test]
-fn info_json_says_the_same() {
-    let info = Folder::with_everything().run("info scene.toml --json -").good().json();
-    let expected = serde_json::json!({"spheres": 2, "triangles": 9, "planes": 1, "instances": 3});
-    assert_eq!(info["geometry"], expected);
-    assert_eq!(info["size"], serde_json::json!([150, 110]));
-    assert_eq!(info["lights"].as_array().unwrap().len(), 4);
-    assert_eq!(info["cameras"].as_array().unwrap().len(), 2);
-    assert!(info["needed"].is_object() && info["skipped"].is_object());
-    assert!(texts(&info["warnings"]));
-}
-
-#[test]
-fn info_json_goes_to_a_file() {
-    let folder = Folder::with(SPHERE);
-    folder.run("info scene.toml --json i.json").good();
-    serde_json::from_slice::<Value>(&folder.read("i.json")).unwrap();
-}

@@ -51,7 +51,7 @@ impl ObjFaces {
     /// Returns a face by its number.
     pub fn face(&self, face: u32) -> Option<ObjFace<'_>> {
         let after = self.runs.partition_point(|run| run.first_face <= face);
-        let run = self.runs.get(after.checked_sub(1)?)?;
+        let run = self.runs.get(after.checked_sub(1)?).filter(|_| face < self.count)?;
         let ObjLabels { object, groups, material } = self.labels.get(run.labels as usize)?;
         Some(ObjFace {
             object: object.as_deref(),

@@ -1,6 +1,7 @@
 //! The import of a file's nodes, and of all they refer to, into a scene.
 
 mod animation;
+mod asset;
 mod cameras;
 mod deformation;
 mod implicit_shapes;
@@ -228,6 +229,7 @@ impl Importer<'_> {
         }
         let report = self.diagnostics.into_report(path, &self.scene);
         let variants = self.variants.names();
-        Loaded { scene: self.scene, report: LoadReport { variants, ..report } }
+        let assets = vec![asset::read(path, self.root)];
+        Loaded { scene: self.scene, report: LoadReport { variants, assets, ..report } }
     }
 }
