@@ -93,13 +93,14 @@ pub use geometry::{
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
 pub use load::{
-    DropReason, Framing, Limit, Limits, LoadOptions, LoadReport, Loaded, UpAxis, add_ground, load,
+    Asset, AssetAnimation, DropReason, Framing, Limit, Limits, LoadOptions, LoadReport, Loaded,
+    UpAxis, add_ground, load,
 };
 pub use render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
     AdaptiveSampling, AlphaMode, Camera, Checker, Falloff, FilmSettings, Image, Instance, Light,
-    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Scene, Shadow, Sphere,
-    Texture, TextureId, Tone,
+    LightKind, Material, MaterialId, Mesh, MeshId, Plane, Projection, Provenance, Scene, Shadow,
+    Sphere, Texture, TextureId, Tone,
 };
 pub use surface::Surface;
 

@@ -268,6 +268,9 @@ pub struct Info {
     /// by a placeholder
     #[arg(long)]
     pub strict: bool,
+    /// Also list the work that rendering needs and skips, with the reasons (in JSON always)
+    #[arg(short, long)]
+    pub verbose: bool,
     /// Write the contents as JSON; - is standard output
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,

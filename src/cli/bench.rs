@@ -19,7 +19,7 @@ pub fn run(arguments: &Bench) -> Result<ExitCode> {
         return Err(Error::input("this is a file, not a folder").at(out).help("name a folder"));
     }
     let input = &arguments.input;
-    let SceneInput { scene, report, camera } = input.load(false)?;
+    let SceneInput { scene, report, camera } = input.load(&input.options(), false)?;
     let mut scene = scene.at_time(0.0)?;
     if arguments.quick && input.size.is_none() {
         scene.film.size = quick_size(scene.film.size);

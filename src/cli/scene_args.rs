@@ -117,15 +117,8 @@ pub struct SceneInput {
 }
 
 impl InputArgs {
-    /// Loads the scene, with its animation. If `strict`, it must be complete.
-    ///
-    /// # Errors
-    /// When the scene cannot be loaded, is not complete, or has no such camera.
-    pub fn load(&self, strict: bool) -> Result<SceneInput> {
-        paths::check_input(&self.scene)?;
-        // The number of threads applies to loading and writing, too. Building the global pool fails
-        // only if there is one already.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
+    /// Returns the options of the load.
+    pub fn options(&self) -> LoadOptions {
         let mut options = self.load.options();
         match self.size {
             Some(Size::Exact(size)) => options.size = Some(size),
@@ -134,6 +127,18 @@ impl InputArgs {
         }
         let [azimuth, elevation] = [self.azimuth, self.elevation].map(|a| a.map(f64::to_radians));
         options.framing = Framing { up: self.up, azimuth, elevation };
+        options
+    }
+
+    /// Loads the scene, with its animation. If `strict`, it must be complete.
+    ///
+    /// # Errors
+    /// When the scene cannot be loaded, is not complete, or has no such camera.
+    pub fn load(&self, options: &LoadOptions, strict: bool) -> Result<SceneInput> {
+        paths::check_input(&self.scene)?;
+        // The number of threads applies to loading and writing, too. Building the global pool fails
+        // only if there is one already.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global();
         let spinner = messages::spinner(self.quiet, "loading");
         let Loaded { scene, report } = options.load(&self.scene)?;
         drop(spinner);
@@ -160,7 +165,15 @@ impl TraceArgs {
     /// # Errors
     /// When the scene cannot be loaded, or the flags do not fit it.
     pub fn load(&self) -> Result<SceneInput> {
-        let mut input = self.input.load(self.strict)?;
+        self.load_with(&self.input.options())
+    }
+
+    /// The same, with these options of the load.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn load_with(&self, options: &LoadOptions) -> Result<SceneInput> {
+        let mut input = self.input.load(options, self.strict)?;
         let (scene, path) = (&mut input.scene, &self.input.scene);
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);

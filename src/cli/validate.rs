@@ -26,13 +26,16 @@ pub fn run(arguments: &Validate) -> Result<ExitCode> {
     output::check_json(arguments.json.as_ref())?;
     output::check_extension(arguments.heatmap.as_ref(), "png", "a heat map must be a PNG")?;
     let input = &arguments.trace.input;
-    let SceneInput { scene, report, camera } = arguments.trace.load()?;
+    let options = input.options().provenance(arguments.ray.is_some());
+    let SceneInput { scene, report, camera } = arguments.trace.load_with(&options)?;
     let outputs = [&arguments.json, &arguments.heatmap].into_iter().flatten();
     paths::check_outputs(outputs, &InputFiles::of_scene(&scene, &report))?;
     let scene = scene.at_time(0.0)?;
     if let Some(ray) = &arguments.ray {
         let replay = measure::replay(&scene, ray, Some(&input.scene))?;
-        output::report(arguments.json.as_ref(), &replay.to_string(), &replay)?;
+        let text: String =
+            replay.to_string().lines().map(|line| messages::line(line) + "\n").collect();
+        output::report(arguments.json.as_ref(), &text, &replay)?;
         return Ok(ExitCode::SUCCESS);
     }
 

@@ -48,11 +48,14 @@ impl Diagnostics {
         self.report.read += faces;
     }
 
-    /// Counts faces that were read and are dropped; `place` returns the place of the first of them.
+    /// Counts faces that were read and are dropped, and warns if something that could be seen is lost;
+    /// `place` returns the place of the first of them.
     pub fn drop(&mut self, reason: DropReason, faces: u64, place: impl FnOnce() -> String) {
         if faces > 0 {
             *self.report.dropped.entry(reason).or_default() += faces;
-            self.add(reason.sentence(), faces, place);
+            if let Some(warning) = reason.warning() {
+                self.add(warning, faces, place);
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use glam::DVec3;
 use crate::geometry::Bounds;
 use crate::load::report::{DropReason, LoadReport};
 use crate::scene::animation::Animated;
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Mesh, MeshProvenance, Scene};
 
 /// The most copies that stay at one place: more than the layers of a blended surface that a path sees,
 /// and few enough for a ray to try.
@@ -47,6 +47,11 @@ pub fn remove_duplicates(scene: &mut Scene, report: &mut LoadReport) {
     let new_instances = retain(&mut scene.instances, &is_copy);
     let new_spheres = retain(&mut scene.spheres, &is_copied_sphere);
     retain(&mut scene.planes, &is_copied_plane);
+    if let Some(table) = scene.provenance_mut() {
+        retain(&mut table.instances, &is_copy);
+        retain(&mut table.spheres, &is_copied_sphere);
+        retain(&mut table.planes, &is_copied_plane);
+    }
     for object in scene.animation.iter_mut().flat_map(|animation| &mut animation.objects) {
         match object {
             Animated::Instance { instance, .. } => *instance = new_instances[*instance],
@@ -90,21 +95,26 @@ fn remove_triangles(scene: &mut Scene, is_used: &[bool]) -> u64 {
         })
         .collect();
     let mut removed = 0;
+    let table = scene.provenance.as_mut().map(Arc::make_mut);
+    let meshes_provenance = table.map_or(&mut [][..], |table| &mut table.meshes[..]);
     for (i, mesh) in scene.meshes.iter_mut().enumerate() {
         let mut copied = copied_triangles(mesh);
         if copied.is_empty() || deformed.contains(&i) || !is_used.get(i).is_some_and(|used| *used) {
             continue;
         }
-        let mesh = Arc::make_mut(mesh);
-        let before = mesh.triangles.len();
-        let Mesh { positions, triangles, .. } = mesh;
-        triangles.retain(|triangle| {
-            let key = triangle_key(triangle.map(|i| positions.at(i as usize)));
+        let mut is_kept = |triangle: &[u32; 3]| {
+            let key = triangle_key(mesh.corners(triangle));
             let Some(count) = copied.get_mut(&key) else { return true };
             *count += 1;
             *count <= MAX_COPIES
-        });
-        removed += (before - mesh.triangles.len()) as u64;
+        };
+        let is_kept: Vec<bool> = mesh.triangles.iter().map(&mut is_kept).collect();
+        let mut kept = is_kept.iter();
+        Arc::make_mut(mesh).triangles.retain(|_| kept.next() != Some(&false));
+        removed += is_kept.iter().filter(|is_kept| !**is_kept).count() as u64;
+        if let Some(MeshProvenance { faces, .. }) = meshes_provenance.get_mut(i) {
+            Arc::make_mut(faces).retain(is_kept.into_iter());
+        }
     }
     removed
 }

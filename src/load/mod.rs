@@ -23,12 +23,12 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::watertight;
+use crate::scene::{Material, MaterialId, Scene, watertight};
 
 pub use defaults::ground::add_ground;
 pub use framing::{Framing, UpAxis};
 pub use limits::{Limit, Limits};
-pub use report::{DropReason, LoadReport, Loaded};
+pub use report::{Asset, AssetAnimation, DropReason, LoadReport, Loaded};
 use sandbox::{OpenedFile, Sandbox};
 pub use scene_file::schema;
 
@@ -62,6 +62,18 @@ pub struct LoadOptions {
     /// True if the viewer sees the back faces of one-sided materials, too, as path tracers show glTF
     /// files; see [`Material::cull_back_faces`](crate::scene::Material::cull_back_faces).
     pub double_sided: bool,
+    /// True if the load is for ray queries alone: meshes, spheres and planes, as a load without this
+    /// option has them, but none of what shades them.
+    ///
+    /// Every object gets the default material: no material, texture, texture coordinate or vertex
+    /// colour is read, no MTL file or image is opened, and it does not matter whether they are there.
+    /// So there are no alpha masks (a ray hits what a mask would cut out), and no surface is one-sided.
+    /// Positions and normals stay, and so do cameras, lights and animations that the files have; none
+    /// are added.
+    pub geometry_only: bool,
+    /// True if the load records which elements of the files primitives come from; see
+    /// [`Scene::provenance_of`](crate::scene::Scene::provenance_of).
+    pub provenance: bool,
     /// The limits on what the load may read, unpack and build.
     pub limits: Limits,
 }
@@ -103,6 +115,19 @@ impl LoadOptions {
         self
     }
 
+    /// Loads only what rays hit, without materials and images; see [`LoadOptions::geometry_only`].
+    pub fn geometry_only(mut self, geometry_only: bool) -> Self {
+        self.geometry_only = geometry_only;
+        self
+    }
+
+    /// Records which elements of the files primitives come from: up to four bytes for each triangle, and
+    /// more for each name and instance.
+    pub fn provenance(mut self, provenance: bool) -> Self {
+        self.provenance = provenance;
+        self
+    }
+
     /// Sets the limits.
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;
@@ -125,6 +150,7 @@ impl LoadOptions {
         let sandbox = Sandbox::new(path, self.allow_outside, self.limits)?;
         // The extension decides between a scene file and a bare model.
         let file = sandbox.open_named(path)?;
+        let own_bytes = file.length();
         let is_scene_file = extension(path) == "toml";
         if is_scene_file && !self.framing.is_default() {
             let message = "the framing of a bare model does not apply to a scene file";
@@ -136,7 +162,13 @@ impl LoadOptions {
             scene_file::load(file, &sandbox, self)?
         } else {
             let variant = self.variant.as_deref();
-            let options = ModelOptions { animation: None, variant, needs_images: true };
+            let options = ModelOptions {
+                animation: None,
+                variant,
+                needs_images: true,
+                geometry_only: self.geometry_only,
+                provenance: self.provenance,
+            };
             (model(file, &sandbox, &options)?, true)
         };
 
@@ -155,23 +187,35 @@ impl LoadOptions {
         // What stands at one place again and again would cost every ray that meets it.
         duplicates::remove_duplicates(&mut scene, &mut report);
         // Defaults for what the file leaves out.
-        defaults::auto_camera::add_camera(&mut scene, &self.framing).map_err(|e| e.at(path))?;
-        if is_scene_file {
-            if needs_lights {
+        if self.geometry_only {
+            share_default_material(&mut scene);
+        } else {
+            defaults::auto_camera::add_camera(&mut scene, &self.framing).map_err(|e| e.at(path))?;
+            if !is_scene_file {
+                scene.film.spp = BARE_MODEL_SPP;
+                defaults::auto_lighting::add_lights(&mut scene);
+            } else if needs_lights {
                 defaults::auto_lighting::add_default_lights(&mut scene);
             }
-        } else {
-            scene.film.spp = BARE_MODEL_SPP;
-            defaults::auto_lighting::add_lights(&mut scene);
+            defaults::complete(&mut scene);
         }
-        defaults::complete(&mut scene);
 
         // What is handed on is valid.
         scene.check().map_err(|e| e.at(path))?;
+        report.own_bytes = own_bytes;
+        (report.files, report.bytes) = sandbox.read_files();
         report.warnings.extend(watertight::open_dielectric_warnings(&scene));
-        report.files = sandbox.files_read();
         Ok(Loaded { scene, report })
     }
+}
+
+/// Gives all objects one default material, in place of those that importers made.
+fn share_default_material(scene: &mut Scene) {
+    let id = MaterialId(0);
+    scene.materials = vec![Material::default()];
+    scene.spheres.iter_mut().for_each(|sphere| sphere.material = id);
+    scene.planes.iter_mut().for_each(|plane| (plane.material, plane.checker) = (id, None));
+    scene.instances.iter_mut().for_each(|instance| instance.material = id);
 }
 
 /// Loads a scene file or a bare model file, by its extension.
@@ -216,6 +260,10 @@ struct ModelOptions<'a> {
     variant: Option<&'a str>,
     /// True if its images are read, rather than only named.
     needs_images: bool,
+    /// True if only what rays hit is read, and all of it gets a default material.
+    geometry_only: bool,
+    /// True if the provenance of its primitives is recorded.
+    provenance: bool,
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.
@@ -225,7 +273,7 @@ fn model(file: OpenedFile, sandbox: &Sandbox, options: &ModelOptions) -> Result<
         "obj" if options.animation.is_some() => Err(Error::input("an OBJ file has no animations")
             .at(&file.path)
             .help("leave `animation` out")),
-        "obj" => obj::load(file, sandbox, options.needs_images),
+        "obj" => obj::load(file, sandbox, options),
         other => Err(Error::input(match other {
             "" => "the file has no extension that tells what it is".to_owned(),
             _ => format!("files that end in .{other} are not read"),

@@ -22,8 +22,10 @@ pub struct Loaded {
 /// A face is a triangle; a polygon of n corners counts as the n − 2 triangles that it is cut into,
 /// and each point, line or curve counts as one. A mesh is read once, however many instances it has
 /// in the scene. Of what is read, [`LoadReport::balances`] holds.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct LoadReport {
+    /// The number of bytes of the file that was named.
+    pub own_bytes: u64,
     /// Faces of all meshes that were read.
     pub read: u64,
     /// Faces that are in the scene, for rays to hit.
@@ -38,10 +40,40 @@ pub struct LoadReport {
     /// Images and materials that a placeholder replaces; one sentence each, also among
     /// the warnings.
     pub placeholders: Vec<String>,
+    /// What each glTF file says of itself.
+    pub assets: Vec<Asset>,
     /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
     pub variants: BTreeSet<String>,
     /// The canonical paths of the files that were read.
     pub files: BTreeSet<PathBuf>,
+    /// The number of bytes of these files.
+    pub bytes: u64,
+}
+
+/// What a glTF file says of itself: its `asset`, and the animations that it has.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Asset {
+    /// The path of the file.
+    pub file: PathBuf,
+    /// The version of glTF.
+    pub version: String,
+    /// The program that wrote it.
+    pub generator: Option<String>,
+    /// The copyright.
+    pub copyright: Option<String>,
+    /// The animations.
+    pub animations: Vec<AssetAnimation>,
+}
+
+/// An animation of a glTF file, whether or not it is played.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct AssetAnimation {
+    /// The name.
+    pub name: Option<String>,
+    /// The time of its last key in seconds, if the file declares it.
+    pub seconds: Option<f64>,
 }
 
 /// The reason why a face is not in the scene.
@@ -80,11 +112,11 @@ impl DropReason {
         }
     }
 
-    /// The sentence about faces that were dropped, with `{}` where their number belongs.
-    pub(crate) fn sentence(self) -> &'static str {
-        match self {
-            Self::Degenerate => "{} faces are left out: two of their corners are at one place",
-            Self::Duplicate => "{} faces are left out: others stand at the same place",
+    /// The warning about faces that were dropped, with `{}` where their number belongs; none where
+    /// nothing that could be seen is lost.
+    pub(crate) fn warning(self) -> Option<&'static str> {
+        Some(match self {
+            Self::Degenerate | Self::Duplicate => return None,
             Self::Incomplete => "{} faces are left out: they have fewer than three corners",
             Self::IndexOutOfRange => "{} faces are left out: they name vertices that are not there",
             Self::Flat => "{} faces are left out: their mesh is scaled to 0 along some direction",
@@ -93,7 +125,7 @@ impl DropReason {
             Self::UnsupportedMode => {
                 "{} points, lines or curves are left out: only faces are drawn"
             }
-        }
+        })
     }
 }
 
@@ -119,6 +151,7 @@ impl LoadReport {
 
     /// Adds the report of another file.
     pub fn add(&mut self, other: LoadReport) {
+        self.bytes += other.bytes;
         self.read += other.read;
         self.handed_over += other.handed_over;
         for (reason, count) in other.dropped {
@@ -127,6 +160,7 @@ impl LoadReport {
         self.warnings.extend(other.warnings);
         self.unsupported.extend(other.unsupported);
         self.placeholders.extend(other.placeholders);
+        self.assets.extend(other.assets);
         self.variants.extend(other.variants);
         self.files.extend(other.files);
     }

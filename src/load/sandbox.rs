@@ -30,7 +30,9 @@ pub struct Sandbox {
 struct ReadFiles {
     /// Their canonical paths.
     identities: BTreeSet<PathBuf>,
-    /// The bytes that they have together, without those that images have accounted for.
+    /// The bytes that they have together.
+    bytes: u64,
+    /// The bytes of these that images have not accounted for.
     bytes_left: u64,
 }
 
@@ -176,17 +178,19 @@ impl Sandbox {
         self.consume(Limit::Pixels, pixels.saturating_sub(free))
     }
 
-    /// Returns the canonical paths of the files that were read so far.
-    pub fn files_read(&self) -> BTreeSet<PathBuf> {
-        self.files.lock().unwrap_or_else(PoisonError::into_inner).identities.clone()
-    }
-
     /// Counts a file that is read.
     fn count_file(&self, identity: PathBuf, bytes: u64) {
         let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
         if files.identities.insert(identity) {
             files.bytes_left += bytes;
+            files.bytes += bytes;
         }
+    }
+
+    /// Returns the canonical paths of the files that were read, and the number of their bytes.
+    pub fn read_files(&self) -> (BTreeSet<PathBuf>, u64) {
+        let files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        (files.identities.clone(), files.bytes)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The replay of one ray with every intersector.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
@@ -13,16 +14,16 @@ use crate::measure::decimals::{DecimalAnswer, answer_by_decimals};
 use crate::measure::oracle::Oracle;
 use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render;
-use crate::scene::{Light, Scene, check::MAX_COORDINATE};
+use crate::scene::{Light, Provenance, Scene, check::MAX_COORDINATE};
 use crate::surface::Surface;
 
 /// The answers of all intersectors for one ray.
 #[derive(Clone, Debug, Serialize)]
-pub struct Replay {
+pub struct Replay<'s> {
     /// The ray, as [`ray_from_text`] parses it.
     pub ray: String,
     /// The answers; the first one is the reference.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<Answer<'s>>,
     /// The answer by the decimals of the file, for the reference's hit; null if there is no hit, or no
     /// file.
     pub decimals: Option<DecimalAnswer>,
@@ -30,11 +31,11 @@ pub struct Replay {
 
 /// The answer of one intersector for a ray, and for the shadow rays from the reference's hit.
 #[derive(Clone, Debug, Serialize)]
-pub struct Answer {
+pub struct Answer<'s> {
     /// The name of the intersector and its precision.
     pub name: String,
     /// The closest hit; null for none.
-    pub hit: Option<ReplayedHit>,
+    pub hit: Option<ReplayedHit<'s>>,
     /// The difference of t from the reference, in units in the last place; null unless the two hit
     /// the same primitive.
     pub t_error_ulp: Option<u64>,
@@ -45,7 +46,7 @@ pub struct Answer {
 
 /// A hit as it is printed.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ReplayedHit {
+pub struct ReplayedHit<'s> {
     /// `sphere`, `plane` or `triangle`.
     pub kind: &'static str,
     /// The index of the primitive; of a triangle its index in the mesh.
@@ -60,6 +61,8 @@ pub struct ReplayedHit {
     pub u: f64,
     /// The weight of a triangle's third vertex.
     pub v: f64,
+    /// The place in the files that the primitive comes from; null if that is not recorded.
+    pub provenance: Option<Provenance<'s>>,
 }
 
 /// The occlusion of a light.
@@ -78,7 +81,7 @@ pub struct LightOcclusion {
 ///
 /// # Errors
 /// When the scene is not valid, or Embree cannot be started.
-pub fn replay(scene: &Scene, ray: &Ray, file: Option<&Path>) -> Result<Replay> {
+pub fn replay<'s>(scene: &'s Scene, ray: &Ray, file: Option<&Path>) -> Result<Replay<'s>> {
     use Precision::{Certified, Fast};
     scene.check()?;
     render::in_pool(0, || {
@@ -101,12 +104,12 @@ pub fn replay(scene: &Scene, ray: &Ray, file: Option<&Path>) -> Result<Replay> {
 type Named<'s> = (String, Box<dyn Intersector + 's>);
 
 /// Traces a ray with the intersectors, the first of which is the reference.
-fn replay_with(
-    scene: &Scene,
+fn replay_with<'s>(
+    scene: &'s Scene,
     ray: &Ray,
     file: Option<&Path>,
     intersectors: &[Named<'_>],
-) -> Replay {
+) -> Replay<'s> {
     let hit = |(_, of): &Named<'_>| closest(&**of, &[*ray], Coherence::Coherent)[0];
     let hits: Vec<Option<Hit>> = intersectors.iter().map(hit).collect();
 
@@ -129,7 +132,7 @@ fn replay_with(
         let same_primitive = hit.zip(reference).filter(|(a, b)| a.id == b.id);
         Answer {
             name: name.clone(),
-            hit: hit.map(ReplayedHit::from),
+            hit: hit.map(|hit| ReplayedHit::new(scene, hit)),
             t_error_ulp: same_primitive.map(|(a, b)| ulps_between(a.t, b.t)),
             lights: lights.collect(),
         }
@@ -139,8 +142,8 @@ fn replay_with(
     Replay { ray: ray_to_text(ray), answers: answers.collect(), decimals }
 }
 
-impl From<Hit> for ReplayedHit {
-    fn from(hit: Hit) -> Self {
+impl<'s> ReplayedHit<'s> {
+    fn new(scene: &'s Scene, hit: Hit) -> Self {
         let (kind, mesh) = match hit.id.geometry {
             Geometry::Spheres => ("sphere", None),
             Geometry::Planes => ("plane", None),
@@ -148,11 +151,22 @@ impl From<Hit> for ReplayedHit {
         };
         let instance = mesh.map(|_| hit.id.instance);
         let Hit { t, u, v, id } = hit;
-        Self { kind, primitive: id.primitive, mesh, instance, t, u, v }
+        let provenance = scene.provenance_of(id);
+        Self { kind, primitive: id.primitive, mesh, instance, t, u, v, provenance }
+    }
+
+    /// Returns the name of the primitive.
+    fn primitive(&self) -> String {
+        match (self.mesh, self.instance) {
+            (Some(mesh), Some(instance)) => {
+                format!("{} {} of mesh {mesh} in instance {instance}", self.kind, self.primitive)
+            }
+            _ => format!("{} {}", self.kind, self.primitive),
+        }
     }
 }
 
-impl fmt::Display for Replay {
+impl fmt::Display for Replay<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for answer in &self.answers {
             write!(f, "{:<16}  ", answer.name)?;
@@ -167,19 +181,24 @@ impl fmt::Display for Replay {
             }
             writeln!(f)?;
         }
-        match &self.decimals {
-            Some(answer) => writeln!(f, "{:<16}  {answer}", "decimals"),
-            None => Ok(()),
+        if let Some(answer) = &self.decimals {
+            writeln!(f, "{:<16}  {answer}", "decimals")?;
         }
+        // The provenance of each primitive that somebody found.
+        let hits = self.answers.iter().filter_map(|answer| answer.hit.as_ref());
+        let mut named = BTreeSet::new();
+        for hit in hits.filter(|hit| named.insert(hit.primitive())) {
+            if let Some(provenance) = &hit.provenance {
+                writeln!(f, "{:<16}  {}: {provenance}", "provenance", hit.primitive())?;
+            }
+        }
+        Ok(())
     }
 }
 
-impl fmt::Display for ReplayedHit {
+impl fmt::Display for ReplayedHit<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} {}", self.kind, self.primitive)?;
-        if let (Some(mesh), Some(instance)) = (self.mesh, self.instance) {
-            write!(f, " of mesh {mesh} in instance {instance}")?;
-        }
+        f.write_str(&self.primitive())?;
         // Debug prints the shortest digits from which the number is read back exactly.
         write!(f, "  t {:?}", self.t)?;
         if self.mesh.is_some() { write!(f, "  u {:?}  v {:?}", self.u, self.v) } else { Ok(()) }
@@ -249,7 +268,8 @@ mod tests {
     #[test]
     fn all_intersectors_agree_on_an_easy_ray() {
         let ray = Ray::new(DVec3::new(2.0, 2.0, 0.0), DVec3::new(-1.0, -1.0, 0.0));
-        let found = replay(&scene(), &ray, None).unwrap();
+        let scene = scene();
+        let found = replay(&scene, &ray, None).unwrap();
         assert_eq!(found.answers.len(), if cfg!(feature = "embree") { 7 } else { 5 });
         for answer in &found.answers {
             let hit = answer.hit.as_ref().unwrap();

@@ -31,6 +31,7 @@ mod metallic_roughness;
 mod mipmap;
 mod positions;
 mod precision_warnings;
+mod provenance;
 mod shading_params;
 mod shapes;
 mod texels;
@@ -56,6 +57,14 @@ pub(crate) use metallic_roughness::{mirror_share, shininess};
 pub(crate) use positions::GRAIN;
 pub use positions::Positions;
 pub use precision_warnings::{PrecisionWarning, precision_warnings};
+pub(crate) use provenance::{
+    FaceMap, FileContents, GltfNames, MeshProvenance, NodeProvenance, ObjFaces, ObjLabels,
+    ObjectProvenance,
+};
+pub use provenance::{
+    GltfElement, GltfTriangle, ModelElement, ModelProvenance, ObjFace, Provenance, ProvenanceTable,
+    TableKind, TableProvenance,
+};
 #[doc(hidden)]
 pub use shading_params::ShadingParams;
 pub use shapes::{Checker, Instance, Plane, Sphere};
@@ -97,6 +106,9 @@ pub struct Scene {
     /// The animation, if there is one. The other fields are the scene before it is moved;
     /// [`Scene::at_time`] gives the scene at a time.
     pub animation: Option<Animation>,
+    /// The places in the files that primitives come from, if a load was asked to record them
+    /// (`LoadOptions::provenance`); see [`Scene::provenance_of`].
+    pub provenance: Option<Arc<ProvenanceTable>>,
 }
 
 impl Scene {
@@ -116,6 +128,21 @@ impl Scene {
     pub fn add_mesh(&mut self, mesh: Mesh) -> MeshId {
         self.meshes.push(Arc::new(mesh));
         MeshId(self.meshes.len() as u32 - 1)
+    }
+
+    /// The table of provenance, if it is recorded, to be changed.
+    pub(crate) fn provenance_mut(&mut self) -> Option<&mut ProvenanceTable> {
+        self.provenance.as_mut().map(Arc::make_mut)
+    }
+
+    /// Retains some of the instances; the others after them get new indices.
+    pub(crate) fn retain_instances(&mut self, is_kept: impl Fn(&Instance) -> bool) {
+        let instances = &self.instances;
+        if let Some(table) = self.provenance.as_mut().map(Arc::make_mut) {
+            let mut kept = instances.iter().map(&is_kept);
+            table.instances.retain(|_| kept.next().unwrap_or(true));
+        }
+        self.instances.retain(is_kept);
     }
 
     /// The material of a primitive.

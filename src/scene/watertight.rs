@@ -11,11 +11,13 @@
 //! assert_eq!(tetrahedron.open_edges(), 0);
 //! ```
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use crate::scene::{Material, Mesh, Scene};
+use crate::scene::{GRAIN, Material, Mesh, Scene};
 
 impl Mesh {
     /// The volume of a closed mesh: above 0 if its triangles wind counterclockwise seen from outside,
@@ -57,6 +59,42 @@ impl Mesh {
         edges.chunk_by(|a, b| a.0 == b.0).map(balance).filter(|&sum: &i64| sum != 0).count()
     }
 
+    /// True if the mesh is closed: it has triangles, and no [open edge](Mesh::open_edges). In a mesh of
+    /// more than 65536 triangles or vertices only vertices at exactly one position count as one, so that
+    /// this takes little memory.
+    ///
+    /// # Panics
+    /// When a triangle has the index of no vertex.
+    pub fn is_closed(&self) -> bool {
+        /// The most triangles, and vertices, of a mesh whose vertices are merged.
+        const MAX_MERGED: usize = 1 << 16;
+        let count = self.triangles.len().max(self.positions.len());
+        !self.triangles.is_empty()
+            && (self.edges_cancel_exactly() || count <= MAX_MERGED && self.open_edges() == 0)
+    }
+
+    /// True if each edge comes as often in one direction as in the other, by the positions of its
+    /// vertices. Edges are told apart by a hash of 64 bits: that they cancel by chance does not happen.
+    fn edges_cancel_exactly(&self) -> bool {
+        let key = |p: DVec3| (p + DVec3::ZERO).to_array().map(f64::to_bits);
+        let hash = |edge: [[u64; 3]; 2]| {
+            edge.as_flattened().iter().fold(0u64, |hash, &bits| mix(hash.wrapping_add(bits)))
+        };
+        let sum = |triangles: &[[u32; 3]]| {
+            triangles.iter().fold(0u64, |sum, triangle| {
+                let [a, b, c] = self.corners(triangle).map(key);
+                [[a, b], [b, c], [c, a]].into_iter().fold(sum, |sum, [from, to]| {
+                    match from.cmp(&to) {
+                        Ordering::Less => sum.wrapping_add(hash([from, to])),
+                        Ordering::Equal => sum,
+                        Ordering::Greater => sum.wrapping_sub(hash([to, from])),
+                    }
+                })
+            })
+        };
+        self.triangles.par_chunks(GRAIN).map(sum).reduce(|| 0, u64::wrapping_add) == 0
+    }
+
     /// For each vertex the index of the first one at its position, to within a millionth of the size.
     fn merged_vertices(&self) -> Vec<u32> {
         let near = (self.bounds().size().max_element() * 1e-6).max(f64::MIN_POSITIVE);
@@ -80,6 +118,15 @@ impl Mesh {
             })
             .collect()
     }
+}
+
+/// Mixes the bits of a number: a step of SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom
+/// number generators", 2014).
+fn mix(bits: u64) -> u64 {
+    let z = bits.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }
 
 /// Warns of each dielectric mesh that is not closed.
@@ -146,6 +193,8 @@ mod tests {
     #[test]
     fn a_tetrahedron_is_closed() {
         assert_eq!(tetrahedron().open_edges(), 0);
+        assert!(tetrahedron().edges_cancel_exactly() && tetrahedron().is_closed());
+        assert!(!Mesh::default().is_closed());
     }
 
     #[test]
@@ -168,10 +217,19 @@ mod tests {
     }
 
     #[test]
+    fn a_mesh_whose_corners_differ_by_rounding_is_closed() {
+        let mut mesh = tetrahedron();
+        mesh.positions =
+            mesh.positions.map(|i, p| if i == 3 { DVec3::new(1e-7, -1e-7, 0.0) } else { p });
+        assert!(!mesh.edges_cancel_exactly() && mesh.is_closed());
+    }
+
+    #[test]
     fn a_triangle_left_out_opens_three_edges() {
         let mut mesh = tetrahedron();
         mesh.triangles.pop();
         assert_eq!(mesh.open_edges(), 3);
+        assert!(!mesh.is_closed());
     }
 
     #[test]
@@ -179,6 +237,7 @@ mod tests {
         let mut mesh = tetrahedron();
         mesh.triangles[0].reverse();
         assert_eq!(mesh.open_edges(), 3);
+        assert!(!mesh.is_closed());
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod formats;
 mod frames;
 mod framing;
 mod help;
+mod info;
 mod inputs;
 mod outputs;
 mod render;

@@ -205,9 +205,10 @@ fn validate_says_what_everyone_makes_of_a_ray() {
     if cfg!(feature = "embree") {
         expected.extend(["embree certified", "embree fast"]);
     }
-    expected.push("decimals");
+    let intersectors = expected.len();
+    expected.extend(["decimals", "provenance"]);
     assert_eq!(names, expected);
-    for line in stdout.lines().filter(|line| !line.starts_with("decimals")) {
+    for line in stdout.lines().take(intersectors) {
         assert!(line.contains("  sphere 0  t 4.5  0 ulp"), "{stdout}");
     }
     let decimals = "t 4.5 by the decimals of the file; the oracle's t is +0.00e0 off";
@@ -258,6 +259,48 @@ fn validate_says_how_far_a_hit_lies_from_that_of_the_decimals() {
     std::fs::write(folder.path("nodes.glb"), model.glb()).unwrap();
     let found = folder.run("validate nodes.glb --ray 0.59,1.26,9,0,0,-1 --json -").good().json();
     assert!(error(&found["decimals"]).abs() < 1e-14, "{found}");
+}
+
+#[test]
+fn validate_says_which_element_of_the_files_a_ray_hits() {
+    let folder = Folder::with(
+        "[[model]]\nfile = \"quad.obj\"\n[[model]]\nfile = \"quad.obj\"\nname = \"right\"\n\
+         translate = [5, 0, 0]\n[[model]]\nfile = \"triangle.glb\"\ntranslate = [9, 0, 0]\n",
+    );
+    let quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2\no sheet\ng a b\nusemtl tin\nf 1 2 3 4\n";
+    folder.write("quad.obj", quad);
+    folder.write("triangle.glb", envers_testing::Model::triangle().glb());
+
+    let text = folder.run("validate scene.toml --ray 5.2,0.8,9,0,0,-1").good().stdout;
+    let expected = "provenance        triangle 1 of mesh 0 in instance 1: [[model]] 1 `right`, quad.obj, \
+                    object `sheet`, group `a`, group `b`, material `tin`, face 1 in line 9\n";
+    assert!(text.ends_with(expected), "{text}");
+
+    let ray = |x| format!("validate scene.toml --ray {x},0.2,9,0,0,-1 --json -");
+    let provenance = |x| {
+        let found = folder.run(&ray(x)).good().json();
+        let answers = found["answers"].as_array().unwrap().clone();
+        assert!(answers.iter().all(|a| a["hit"]["provenance"] == answers[0]["hit"]["provenance"]));
+        answers[0]["hit"]["provenance"].clone()
+    };
+    let face = serde_json::json!({"object": "sheet", "groups": ["a", "b"], "material": "tin",
+        "face": 1, "line": 9});
+    let table = serde_json::json!({"kind": "model", "index": 0, "name": null});
+    let model = serde_json::json!({"file": "quad.obj", "obj": face});
+    assert_eq!(provenance(0.5), serde_json::json!({"table": table, "model": model}));
+    let element = provenance(9.2)["model"]["gltf"].clone();
+    let triangle = serde_json::json!({"mesh": 0, "mesh_name": null, "primitive": 0, "triangle": 0});
+    assert_eq!((&element["node"], &element["triangle"]), (&0.into(), &triangle));
+}
+
+#[test]
+fn names_of_a_file_begin_no_line_of_their_own_beside_a_ray() {
+    let mut model = envers_testing::Model::triangle();
+    model.json["nodes"][0]["name"] = "a\nb\u{202e}".into();
+    let folder = Folder::new();
+    folder.write("t.glb", model.glb());
+    let text = folder.run("validate t.glb --ray 0.2,0.2,9,0,0,-1").good().stdout;
+    assert!(text.ends_with("node 0 `a\\nb\\u{202e}`, mesh 0, primitive 0, triangle 0\n"), "{text}");
 }
 
 #[test]
@@ -431,40 +474,4 @@ fn diff_refuses_a_tolerance_below_0_or_no_number() {
 #[test]
 fn diff_refuses_a_picture_that_is_not_there() {
     assert!(two_pictures().run("diff a.png none.png").refused().contains("none.png"));
-}
-
-// Info
-
-#[test]
-fn info_says_what_is_in_a_scene() {
-    let stdout = Folder::with_everything().run("info scene.toml").good().stdout;
-    for line in ["spheres    2", "planes     1", "triangles  9 in 3 instances of 2 meshes"] {
-        assert!(stdout.contains(line), "{line} in {stdout}");
-    }
-}
-
-#[test]
-fn info_says_what_will_be_skipped() {
-    let stdout = Folder::with(SPHERE).run("info scene.toml").good().stdout;
-    assert!(stdout.contains("\nskips      instances: there are no meshes\n"), "{stdout}");
-    assert!(!stdout.contains("skips      shadows"), "{stdout}");
-}
-
-#[test]
-fn info_json_says_the_same() {
-    let info = Folder::with_everything().run("info scene.toml --json -").good().json();
-    let expected = serde_json::json!({"spheres": 2, "triangles": 9, "planes": 1, "instances": 3});
-    assert_eq!(info["geometry"], expected);
-    assert_eq!(info["size"], serde_json::json!([150, 110]));
-    assert_eq!(info["lights"].as_array().unwrap().len(), 4);
-    assert_eq!(info["cameras"].as_array().unwrap().len(), 2);
-    assert!(info["needed"].is_object() && info["skipped"].is_object());
-    assert!(texts(&info["warnings"]));
-}
-
-#[test]
-fn info_json_goes_to_a_file() {
-    let folder = Folder::with(SPHERE);
-    folder.run("info scene.toml --json i.json").good();
-    serde_json::from_slice::<Value>(&folder.read("i.json")).unwrap();
 }

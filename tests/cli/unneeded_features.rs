@@ -327,7 +327,7 @@ fn the_help_names_no_such_flag() {
 
 #[test]
 fn info_says_what_is_needed_and_what_is_skipped_and_why() {
-    let said = plain().run("info scene.toml").good().stdout;
+    let said = plain().run("info scene.toml --verbose").good().stdout;
     assert!(said.contains("\nneeds      shadows: 1 of 1 lights cast shadows\n"), "{said}");
     assert!(said.contains("\nskips      spheres: there are no spheres\n"), "{said}");
     let json = plain().run("info scene.toml --json -").good().json();

@@ -2,8 +2,10 @@
 //! each limit.
 
 mod corpus;
+mod geometry_only;
 mod gltf;
 mod limits;
 mod loading;
 mod obj;
+mod provenance;
 mod scene_file;

@@ -9,7 +9,9 @@ use glam::{DAffine3, DVec3};
 use self::animation::InstanceAnimation;
 use crate::geometry::Bounds;
 use crate::scene::animation::NodeId;
-use crate::scene::{Instance, LightKind, Material, MaterialId, Plane, Scene, Sphere};
+use crate::scene::{
+    Instance, LightKind, Material, MaterialId, ObjectProvenance, Plane, Scene, Sphere,
+};
 
 /// A model whose meshes, materials and textures are in a scene, where it can have any number of
 /// instances without being stored again.
@@ -36,6 +38,8 @@ pub struct ModelInstance {
     pub casts_shadow: bool,
     /// True if the model's own lights shine.
     pub has_lights: bool,
+    /// The provenance of the instance: its table, if that is recorded.
+    pub provenance: ObjectProvenance,
 }
 
 impl MergedModel {
@@ -45,7 +49,7 @@ impl MergedModel {
     pub fn merge(scene: &mut Scene, mut model: Scene) -> Self {
         if scene.animation.is_none() {
             // What is flat as the file places it would be there at another time only.
-            model.instances.retain(|instance| !instance.is_flat());
+            model.retain_instances(|instance| !instance.is_flat());
         }
         let bounds = bounds(&model);
 
@@ -67,6 +71,9 @@ impl MergedModel {
         scene.textures.append(&mut model.textures);
         scene.meshes.append(&mut model.meshes);
         scene.materials.append(&mut model.materials);
+        if let (Some(all), Some(own)) = (scene.provenance_mut(), model.provenance_mut()) {
+            all.merge(own);
+        }
         Self { model, first_mesh, bounds }
     }
 
@@ -122,6 +129,10 @@ impl MergedModel {
                 ));
             }
             scene.cameras.extend(placed);
+        }
+
+        if let (Some(all), Some(own)) = (scene.provenance_mut(), &self.model.provenance) {
+            all.instantiate(own, instance.provenance);
         }
 
         // The animation of all of them.

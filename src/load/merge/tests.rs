@@ -39,7 +39,14 @@ fn model() -> Scene {
 }
 
 fn instance(transform: DAffine3) -> ModelInstance {
-    ModelInstance { transform, node: None, material: None, casts_shadow: true, has_lights: true }
+    ModelInstance {
+        transform,
+        node: None,
+        material: None,
+        casts_shadow: true,
+        has_lights: true,
+        provenance: ObjectProvenance::default(),
+    }
 }
 
 /// A quarter turn about z, twice as large, moved by 10 along x.

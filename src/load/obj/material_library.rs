@@ -29,21 +29,21 @@ pub struct MaterialLibrary<'a> {
 }
 
 impl<'a> MaterialLibrary<'a> {
-    /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. In place of
-    /// a file that is missing, or where none is named, that of the OBJ file's own name is read.
-    pub fn read(
-        names: &[String],
-        path: &Path,
-        sandbox: &'a Sandbox,
-        diagnostics: &mut Diagnostics,
-    ) -> Self {
-        let mut library = Self {
+    /// Returns a library without materials.
+    pub fn new(sandbox: &'a Sandbox) -> Self {
+        Self {
             sandbox,
             sources: HashMap::new(),
             built: HashMap::new(),
             textures: Textures::new(sandbox),
             files: HashSet::new(),
-        };
+        }
+    }
+
+    /// Reads the files that the `mtllib` lines of the OBJ file at `path` name, beside it. In place of
+    /// a file that is missing, or where none is named, that of the OBJ file's own name is read.
+    pub fn read(&mut self, names: &[String], path: &Path, diagnostics: &mut Diagnostics) {
+        let sandbox = self.sandbox;
         let folder = path.parent().unwrap_or(Path::new(""));
         let own = path.with_extension("mtl");
         let own =
@@ -53,19 +53,19 @@ impl<'a> MaterialLibrary<'a> {
             // A name may stand in quotes or hold spaces, and a line have several names.
             let name = unquote(name);
             if let Ok(file) = open_file(sandbox, folder, name) {
-                library.add_file(file, diagnostics);
+                self.add_file(file, diagnostics);
                 continue;
             }
             for name in split_names(name) {
                 match (open_file(sandbox, folder, &name), own()) {
-                    (Ok(file), _) => library.add_file(file, diagnostics),
+                    (Ok(file), _) => self.add_file(file, diagnostics),
                     (Err(error), Ok(own)) => {
                         diagnostics.note(format!(
                             "the materials `{name}` are missing ({error}); those of {} take their \
                              place",
                             own.path.display()
                         ));
-                        library.add_file(own, diagnostics);
+                        self.add_file(own, diagnostics);
                     }
                     (Err(error), Err(_)) => diagnostics.placeholder(format!(
                         "the materials `{name}` are missing and drawn grey: {error}"
@@ -77,9 +77,8 @@ impl<'a> MaterialLibrary<'a> {
         if names.is_empty()
             && let Ok(own) = own()
         {
-            library.add_file(own, diagnostics);
+            self.add_file(own, diagnostics);
         }
-        library
     }
 
     /// Adds the materials of a file, unless it was read before.

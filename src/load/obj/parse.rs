@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::face_numbers::FaceNumbers;
 use super::indices::{Attributes, Corner, PlainFace, parse_face, scan_face, write_face};
 use super::lexer::{Line, Statement, lines};
 use super::pieces::Pieces;
@@ -19,11 +20,22 @@ pub struct ParsedChunk {
     /// The positions, texture coordinates and normals.
     pub vertices: Pieces,
     /// The faces of each group.
-    pub groups: Vec<(FaceGroup, Pieces)>,
+    pub groups: Vec<(FaceGroup, GroupFaces)>,
+    /// The number of all faces, also of those that are dropped.
+    pub face_count: u32,
     /// The names of material libraries.
     pub libraries: Vec<String>,
     /// The diagnostics.
     pub diagnostics: Diagnostics,
+}
+
+/// The faces of a group in a chunk, or in the whole file.
+#[derive(Debug, Default)]
+pub struct GroupFaces {
+    /// The faces as tobj reads them.
+    pub pieces: Pieces,
+    /// Their numbers, counted from 0 at the start of the chunk or the file.
+    pub numbers: FaceNumbers,
 }
 
 /// The part of the output that a line belongs to.
@@ -105,6 +117,8 @@ impl<'a> ChunkParser<'a> {
                 };
                 self.parsed.diagnostics.read(corners - 2);
                 let group = self.group(attributes);
+                let number = self.next_face();
+                self.parsed.groups[group].1.numbers.add(number);
                 self.add_original(Section::Group(group), range);
                 return true;
             }
@@ -141,9 +155,18 @@ impl<'a> ChunkParser<'a> {
 
     fn pieces(&mut self, section: Section) -> &mut Pieces {
         match section {
-            Section::Group(i) if i < self.parsed.groups.len() => &mut self.parsed.groups[i].1,
+            Section::Group(i) if i < self.parsed.groups.len() => {
+                &mut self.parsed.groups[i].1.pieces
+            }
             _ => &mut self.parsed.vertices,
         }
+    }
+
+    /// Returns the number of the face of this line.
+    fn next_face(&mut self) -> u32 {
+        let number = self.parsed.face_count;
+        self.parsed.face_count = number.saturating_add(1);
+        number
     }
 
     /// Returns the index of the group of faces with these attributes, in the present settings.
@@ -161,7 +184,7 @@ impl<'a> ChunkParser<'a> {
         let next = self.parsed.groups.len();
         let index = *self.indices.entry(group.clone()).or_insert(next);
         if index == next {
-            self.parsed.groups.push((group, Pieces::default()));
+            self.parsed.groups.push((group, GroupFaces::default()));
         }
         self.current_groups[slot] = Some(index);
         index
@@ -208,6 +231,7 @@ impl<'a> ChunkParser<'a> {
 
     /// Rewrites a face, with absolute indices and the attributes that all of its corners have.
     fn face(&mut self, rest: &str, place: impl Fn() -> String) -> Result<()> {
+        let number = self.next_face();
         let corners = parse_face(rest, self.counts_so_far)?;
         let triangles = corners.len().saturating_sub(2).max(1) as u64;
         let diagnostics = &mut self.parsed.diagnostics;
@@ -230,6 +254,7 @@ impl<'a> ChunkParser<'a> {
         diagnostics.add(reason, u64::from(named != [uvs, normals]), place);
         let attributes = Attributes { uvs, normals };
         let group = self.group(attributes);
+        self.parsed.groups[group].1.numbers.add(number);
         let write = |out: &mut String| write_face(&corners, attributes, out);
         self.pieces(Section::Group(group)).add_rewritten(write);
         Ok(())

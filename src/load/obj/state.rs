@@ -12,6 +12,13 @@ pub struct FaceGroup {
     pub attributes: Attributes,
 }
 
+impl FaceGroup {
+    /// Returns the name of the material; empty for none.
+    pub fn material_name(&self) -> &str {
+        self.settings.material.as_deref().unwrap_or_default()
+    }
+}
+
 /// The settings that statements make for the faces after them; `None` where there was no statement
 /// yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]

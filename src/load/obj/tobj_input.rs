@@ -5,8 +5,9 @@ use std::io::{self, BufRead, Read};
 use std::sync::mpsc::Receiver;
 use std::vec::IntoIter;
 
+use super::face_numbers::FaceNumbers;
 use super::lexer::line_length;
-use super::parse::ParsedChunk;
+use super::parse::{GroupFaces, ParsedChunk};
 use super::pieces::{Piece, Pieces};
 use super::state::FaceGroup;
 use crate::error::{Error, Result};
@@ -17,6 +18,10 @@ use crate::load::diagnostics::Diagnostics;
 pub struct FileInfo {
     /// The groups of faces; tobj finds each under the name that is its index.
     pub groups: Vec<FaceGroup>,
+    /// The numbers of the faces of each group.
+    pub faces: Vec<FaceNumbers>,
+    /// The number of all faces.
+    face_count: u32,
     /// The material libraries that the file names.
     pub libraries: Vec<String>,
 }
@@ -92,14 +97,17 @@ impl<'a> TobjInput<'a> {
     fn store(&mut self, chunk: ParsedChunk) -> Pieces {
         self.diagnostics.append(chunk.diagnostics);
         self.info.libraries.extend(chunk.libraries);
-        for (group, pieces) in chunk.groups {
+        let before = self.info.face_count;
+        self.info.face_count = before.saturating_add(chunk.face_count);
+        for (group, GroupFaces { pieces, numbers }) in chunk.groups {
             let index = *self.indices.entry(group.clone()).or_insert(self.faces.len());
-            if let Some(faces) = self.faces.get_mut(index) {
-                faces.append(pieces);
-            } else {
+            if index == self.faces.len() {
                 self.info.groups.push(group);
-                self.faces.push(pieces);
+                self.info.faces.push(FaceNumbers::default());
+                self.faces.push(Pieces::default());
             }
+            self.faces[index].append(pieces);
+            self.info.faces[index].append(numbers, before);
         }
         chunk.vertices
     }

@@ -38,6 +38,7 @@ impl<'a> PosedScene<'a> {
             instances: scene.instances.clone(),
             lights: scene.lights.clone(),
             animation: None,
+            provenance: scene.provenance.clone(),
         };
         let mesh_bounds = vec![None; scene.meshes.len()];
         Self { scene, posed, omits_flat: false, mesh_bounds, mesh_poses: Vec::new() }
@@ -56,6 +57,7 @@ impl<'a> PosedScene<'a> {
         let scene = &mut self.posed;
         if std::mem::take(&mut self.omits_flat) {
             scene.instances.clone_from(&self.scene.instances);
+            scene.provenance.clone_from(&self.scene.provenance);
         }
 
         // Every object moves with its node.
@@ -77,7 +79,7 @@ impl<'a> PosedScene<'a> {
 
         // Flat instances cannot be intersected.
         if self.omits_flat {
-            scene.instances.retain(|instance| !instance.is_flat());
+            scene.retain_instances(|instance| !instance.is_flat());
         }
         Ok(scene)
     }

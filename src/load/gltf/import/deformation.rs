@@ -7,12 +7,12 @@ use glam::DAffine3;
 use super::mesh::PrimitiveMesh;
 use super::nodes::SceneNode;
 use super::skin::{self, SkinJoints};
-use super::{ImportedPrimitive, Importer};
+use super::{ImportedPrimitive, Importer, provenance};
 use crate::error::Result;
 use crate::load::gltf::json::at_path;
 use crate::load::limits::Limit;
+use crate::scene::MeshId;
 use crate::scene::animation::{Animated, Curve, Deformation, Joint, Skin};
-use crate::scene::{Mesh, MeshId};
 
 /// The number of morph targets that take as long to add to a vertex as it takes to skin it.
 const TARGETS_PER_VERTEX: usize = 16;
@@ -25,7 +25,7 @@ impl Importer<'_> {
         primitive: &ImportedPrimitive,
         node: &SceneNode,
     ) -> Result<(MeshId, bool)> {
-        let PrimitiveMesh { mesh: base, morph_targets, influences } = &primitive.mesh;
+        let PrimitiveMesh { mesh: base, morph_targets, influences, .. } = &primitive.mesh;
 
         // The joints of the skin, if there is one.
         let by = format!("nodes[{}].skin", node.index);
@@ -50,7 +50,7 @@ impl Importer<'_> {
         let is_morphed = curves.is_some() || weights.iter().any(|weight| *weight != 0.0);
         // Without either the mesh is shared by all nodes that show it.
         if skin.is_none() && !is_morphed {
-            return Ok((self.add_mesh_once(base), false));
+            return Ok((self.add_mesh_once(primitive), false));
         }
 
         // The mesh as it is deformed at rest.
@@ -82,6 +82,7 @@ impl Importer<'_> {
             }),
         };
         let id = self.scene.add_mesh(deformation.deform(0.0, &[]));
+        provenance::record_mesh(&mut self.scene, primitive);
         // Each shape is stored, and counted as read.
         self.diagnostics.read(base.triangles.len() as u64);
 
@@ -112,11 +113,16 @@ impl Importer<'_> {
     }
 
     /// Adds a mesh to the scene as it was modelled, once for all nodes that show it.
-    fn add_mesh_once(&mut self, mesh: &Arc<Mesh>) -> MeshId {
-        *self.mesh_ids.entry(Arc::as_ptr(mesh)).or_insert_with(|| {
-            self.diagnostics.read(mesh.triangles.len() as u64);
-            self.scene.meshes.push(mesh.clone());
-            MeshId(self.scene.meshes.len() as u32 - 1)
-        })
+    fn add_mesh_once(&mut self, primitive: &ImportedPrimitive) -> MeshId {
+        let mesh = &primitive.mesh.mesh;
+        if let Some(known) = self.mesh_ids.get(&Arc::as_ptr(mesh)) {
+            return *known;
+        }
+        self.diagnostics.read(mesh.triangles.len() as u64);
+        self.scene.meshes.push(mesh.clone());
+        provenance::record_mesh(&mut self.scene, primitive);
+        let id = MeshId(self.scene.meshes.len() as u32 - 1);
+        self.mesh_ids.insert(Arc::as_ptr(mesh), id);
+        id
     }
 }

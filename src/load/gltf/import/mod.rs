@@ -1,6 +1,7 @@
 //! The import of a file's nodes, and of all they refer to, into a scene.
 
 mod animation;
+mod asset;
 mod cameras;
 mod deformation;
 mod implicit_shapes;
@@ -11,6 +12,7 @@ mod mesh;
 mod morph_targets;
 mod nodes;
 mod placement;
+mod provenance;
 mod skin;
 mod texture;
 mod texture_reference;
@@ -66,18 +68,19 @@ pub fn import(
     let shown: Vec<usize> = nodes.iter().filter(|n| n.is_shown).map(|n| n.index).collect();
     let nodes: HashMap<usize, SceneNode> = nodes.into_iter().map(|n| (n.index, n)).collect();
     let textures = Textures::new(&buffers, options.needs_images);
+    let provenance = options.provenance.then(|| provenance::new_table(path, root));
     let mut importer = Importer {
         root,
         value: document.value.as_ref(),
         accessors,
-        materials: Materials::new(root, textures),
+        materials: Materials::new(root, textures, options.geometry_only),
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
         mesh_ids: HashMap::new(),
         colored: HashMap::new(),
         nodes: &nodes,
         joints: HashMap::new(),
-        scene: Scene::default(),
+        scene: Scene { provenance, ..Scene::default() },
         clip,
         diagnostics,
     };
@@ -92,6 +95,10 @@ pub fn import(
 struct ImportedPrimitive {
     mesh: PrimitiveMesh,
     material: MaterialId,
+    /// The index of the material in the file, if it has one.
+    material_index: Option<usize>,
+    /// The indices of the mesh and of the primitive; none for an implicit shape.
+    indices: Option<[u32; 2]>,
 }
 
 /// The state of an import, node by node.
@@ -182,13 +189,16 @@ impl Importer<'_> {
         for (i, primitive) in source.primitives.iter().enumerate() {
             let path = format!("meshes[{index}].primitives[{i}]");
             // The material says which attributes are read.
-            let (material, by) = self.variants.material(primitive, &path);
+            let (material_index, by) = self.variants.material(primitive, &path);
             let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
-            let (material, needed) = self.materials.material(material, &by, scene, diagnostics)?;
+            let records_faces = scene.provenance.is_some();
+            let (material, needed) =
+                self.materials.material(material_index, &by, scene, diagnostics)?;
 
             // The mesh, and what of it cannot be shown.
             let (accessors, path) = (&self.accessors, &*path);
-            let read = PrimitiveReader { primitive, accessors, path, diagnostics }.read(&needed)?;
+            let reader = PrimitiveReader { primitive, accessors, path, diagnostics, records_faces };
+            let read = reader.read(&needed)?;
             let unsupported = morph_targets::unsupported_attributes(self.value, index, i);
             let reason = "{} texture coordinates and colours of morph targets are not morphed";
             self.diagnostics.unsupported(reason, unsupported, || format!("{path}.targets"));
@@ -202,7 +212,8 @@ impl Importer<'_> {
             if let (Some(name), Some(mesh)) = (&source.name, Arc::get_mut(&mut read.mesh)) {
                 mesh.name.clone_from(name);
             }
-            primitives.push(ImportedPrimitive { mesh: read, material });
+            let indices = Some([index as u32, i as u32]);
+            primitives.push(ImportedPrimitive { mesh: read, material, material_index, indices });
         }
         self.meshes.insert(index, primitives.clone());
         Ok(primitives)
@@ -218,6 +229,7 @@ impl Importer<'_> {
         }
         let report = self.diagnostics.into_report(path, &self.scene);
         let variants = self.variants.names();
-        Loaded { scene: self.scene, report: LoadReport { variants, ..report } }
+        let assets = vec![asset::read(path, self.root)];
+        Loaded { scene: self.scene, report: LoadReport { variants, assets, ..report } }
     }
 }

@@ -8,7 +8,7 @@ use super::implicit_shapes::ImplicitShape;
 use super::instancing::MeshInstance;
 use super::mesh::PrimitiveMesh;
 use super::nodes::SceneNode;
-use super::{ImportedPrimitive, Importer};
+use super::{ImportedPrimitive, Importer, provenance};
 use crate::error::Result;
 use crate::scene::animation::Animated;
 use crate::scene::{Instance, MaterialId, Plane, Sphere};
@@ -30,9 +30,10 @@ impl Importer<'_> {
             // The joints place the mesh, whatever the transform of the node.
             let instance = Instance::new(mesh, DAffine3::IDENTITY, primitive.material);
             self.scene.instances.push(instance);
+            self.record_instance(primitive, node, None);
             return Ok(());
         }
-        for &MeshInstance { transform, color } in instances {
+        for (i, &MeshInstance { transform, color }) in (0..).zip(instances) {
             let material = self.colored(primitive.material, color);
             let instance = Instance::new(mesh, node.to_world * transform, material);
             // An instance that moves may be flat at one time and not at another.
@@ -48,13 +49,14 @@ impl Importer<'_> {
                 continue;
             }
             self.scene.instances.push(instance);
+            self.record_instance(primitive, node, (instances.len() > 1).then_some(i));
         }
         Ok(())
     }
 
     /// Returns the id of a material in the colour and alpha of an instance.
     fn colored(&mut self, material: MaterialId, color: [f32; 4]) -> MaterialId {
-        if color == [1.0; 4] {
+        if color == [1.0; 4] || self.materials.geometry_only {
             return material;
         }
         let key = (material, color.map(f32::to_bits));
@@ -80,6 +82,7 @@ impl Importer<'_> {
         // The material is that which the node names beside the shape.
         let by = format!("{path}.material");
         let (scene, diagnostics) = (&mut self.scene, &mut self.diagnostics);
+        let material_index = material;
         let (material, _) = self.materials.material(material, &by, scene, diagnostics)?;
 
         // Spheres and planes are added as what they are.
@@ -94,6 +97,9 @@ impl Importer<'_> {
                     });
                 }
                 scene.spheres.push(Sphere::new(node.to_world.translation, radius, material));
+                if let Some(table) = scene.provenance_mut() {
+                    table.spheres.push(provenance::of_node(node, None, material_index));
+                }
                 return Ok(());
             }
             ImplicitShape::Plane => {
@@ -106,6 +112,9 @@ impl Importer<'_> {
                     Some(normal) => {
                         let point = node.to_world.translation;
                         scene.planes.push(Plane::new(point, normal, material));
+                        if let Some(table) = scene.provenance_mut() {
+                            table.planes.push(provenance::of_node(node, None, material_index));
+                        }
                     }
                     None => diagnostics.add("{} planes have no direction", 1, || path),
                 }
@@ -115,9 +124,13 @@ impl Importer<'_> {
         };
 
         // All other shapes are meshes, placed like those of the file.
-        let mesh =
-            PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: [].into(), influences: None };
-        let primitive = ImportedPrimitive { mesh, material };
+        let mesh = PrimitiveMesh {
+            mesh: Arc::new(mesh),
+            morph_targets: [].into(),
+            influences: None,
+            faces: Arc::default(),
+        };
+        let primitive = ImportedPrimitive { mesh, material, material_index, indices: None };
         self.add_mesh(&primitive, node, &[MeshInstance::PLAIN], &path)
     }
 }

@@ -21,8 +21,13 @@ impl SceneBuilder<'_> {
     /// When its keys do not fit each other, an image is not there, or the name is taken.
     pub fn add_material(&mut self, table: &MaterialTable) -> Result<()> {
         let Spanned { span, value: name } = &table.name;
-        let material = self.material(table)?;
-        self.check_energy(table, &material)?;
+        let material = if self.geometry_only {
+            Material { name: name.clone(), ..Material::default() }
+        } else {
+            let material = self.material(table)?;
+            self.check_energy(table, &material)?;
+            material
+        };
         let id = self.scene.add_material(material);
         let Some((_, first)) = self.materials.insert(name.clone(), (id, span.clone())) else {
             return Ok(());

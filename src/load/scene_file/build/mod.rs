@@ -14,6 +14,7 @@ mod textures;
 mod tracks;
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use self::animation::{ObjectMotion, ObjectMotions};
 use self::image_use::ImageUse;
@@ -28,7 +29,7 @@ use crate::load::merge::MergedModel;
 use crate::load::sandbox::Sandbox;
 use crate::load::{LoadOptions, LoadReport, Loaded};
 use crate::scene::animation::Animated;
-use crate::scene::{MaterialId, Scene};
+use crate::scene::{MaterialId, ObjectProvenance, Scene, TableKind};
 
 /// Builds the scene that the tables of a file describe.
 ///
@@ -50,14 +51,16 @@ pub fn build_scene(
     let film = film::film_settings(source, &tables.film.0)?;
     let objects = NamedObjects::from_tables(source, tables)?;
     let (animation, motions) = animation::build_animation(source, tables, &objects)?;
+    let provenance = options.provenance.then(Arc::default);
     let mut builder = SceneBuilder {
         source,
         sandbox,
         objects,
+        geometry_only: options.geometry_only,
         image_use: ImageUse::from_tables(source, tables),
         variant: options.variant.as_deref(),
         motions,
-        scene: Scene { film, animation, ..Scene::default() },
+        scene: Scene { film, animation, provenance, ..Scene::default() },
         report: LoadReport::default(),
         materials: HashMap::new(),
         default_material: None,
@@ -69,10 +72,10 @@ pub fn build_scene(
     // The objects, materials before those that name them.
     tables.camera.0.iter().try_for_each(|c| builder.add_camera(&c.value.0, &c.span))?;
     tables.material.iter().try_for_each(|m| builder.add_material(m))?;
-    tables.sphere.iter().try_for_each(|s| builder.add_sphere(s))?;
-    tables.plane.iter().try_for_each(|p| builder.add_plane(p))?;
+    tables.sphere.iter().enumerate().try_for_each(|(i, s)| builder.add_sphere(i, s))?;
+    tables.plane.iter().enumerate().try_for_each(|(i, p)| builder.add_plane(i, p))?;
     tables.light.iter().try_for_each(|l| builder.add_light(l))?;
-    tables.model.iter().try_for_each(|m| builder.add_model(m))?;
+    tables.model.iter().enumerate().try_for_each(|(i, m)| builder.add_model(i, m))?;
     builder.warn_of_bright_materials();
     let SceneBuilder { mut scene, report, textures, .. } = builder;
     textures::decode_images(textures, source, sandbox, &mut scene)?;
@@ -85,6 +88,8 @@ struct SceneBuilder<'a> {
     sandbox: &'a Sandbox,
     /// The variant of the materials of models that name none.
     variant: Option<&'a str>,
+    /// True if all materials are the default material.
+    geometry_only: bool,
     image_use: ImageUse,
     objects: NamedObjects,
     motions: ObjectMotions,
@@ -109,6 +114,19 @@ impl SceneBuilder<'_> {
     /// Returns the motion of the object with a name, if it has both.
     fn motion(&self, name: &Option<Spanned<String>>) -> Option<&ObjectMotion> {
         self.motions.get(self.objects.index(self.source, name.as_ref()?).ok()?)
+    }
+
+    /// Returns the provenance of the object that a table describes; that of nothing if it is not
+    /// recorded.
+    fn provenance_of_table(
+        &mut self,
+        kind: TableKind,
+        index: usize,
+        name: Option<&Spanned<String>>,
+    ) -> ObjectProvenance {
+        let name = name.map(|name| name.value.clone());
+        let table = self.scene.provenance_mut();
+        table.map_or_else(Default::default, |table| table.add_table(kind, index, name))
     }
 
     fn add_animated(&mut self, animated: Option<Animated>) {

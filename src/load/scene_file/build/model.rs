@@ -12,6 +12,7 @@ use crate::load::sandbox::OpenedFile;
 use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::ModelTable;
 use crate::load::{self, Loaded, ModelOptions};
+use crate::scene::TableKind;
 use crate::scene::check::MAX_COORDINATE;
 
 /// The key by which a model is loaded once, however often a scene file names it.
@@ -26,15 +27,17 @@ pub struct ModelKey {
 }
 
 impl SceneBuilder<'_> {
-    /// Adds an instance of a model, which is loaded if it has not been before.
+    /// Adds an instance of a model, as the table of this index describes it; the model is loaded if it has
+    /// not been before.
     ///
     /// # Errors
     /// When the file cannot be read or has no such animation or variant, there is no such material,
     /// or the instance is too large or one too many.
-    pub fn add_model(&mut self, table: &ModelTable) -> Result<()> {
+    pub fn add_model(&mut self, index: usize, table: &ModelTable) -> Result<()> {
         let name = table.material.as_ref();
         let material = name.map(|name| self.find_material(name)).transpose()?;
         let key = self.load_model(table)?;
+        let provenance = self.provenance_of_table(TableKind::Model, index, table.name.as_ref());
         let model = &self.models[&key];
         let source = self.source;
         let span = &table.file.span;
@@ -56,6 +59,7 @@ impl SceneBuilder<'_> {
             material,
             casts_shadow: table.casts_shadow.unwrap_or(true),
             has_lights: table.lights.unwrap_or(true),
+            provenance,
         };
         model.instantiate(&mut self.scene, &instance, &mut self.report.warnings);
         Ok(())
@@ -79,6 +83,8 @@ impl SceneBuilder<'_> {
             animation: key.animation.as_deref(),
             variant: key.variant.as_deref(),
             needs_images: self.image_use.uses_materials_of_model(&path),
+            geometry_only: self.geometry_only,
+            provenance: self.scene.provenance.is_some(),
         };
         let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &options)?;
         if let Some(Spanned { span, value }) = &table.variant {

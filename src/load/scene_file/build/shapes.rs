@@ -8,14 +8,14 @@ use crate::load::scene_file::schema::spanned::{Spanned, Table};
 use crate::load::scene_file::schema::tables::{PlaneTable, SphereTable};
 use crate::scene::animation::Animated;
 use crate::scene::check::MAX_COORDINATE;
-use crate::scene::{Checker, Plane, Sphere};
+use crate::scene::{Checker, Plane, Sphere, TableKind};
 
 impl SceneBuilder<'_> {
-    /// Adds a sphere.
+    /// Adds the sphere of a table with this index.
     ///
     /// # Errors
     /// When it extends too far from the origin, or there is no such material.
-    pub fn add_sphere(&mut self, table: &SphereTable) -> Result<()> {
+    pub fn add_sphere(&mut self, index: usize, table: &SphereTable) -> Result<()> {
         let (center, Spanned { span, value: radius }) = (table.center.0, &table.radius);
         if center.abs().max_element() + radius.0 > MAX_COORDINATE {
             return Err(self.source.error(span, "the sphere reaches beyond 1e15 from 0"));
@@ -27,6 +27,10 @@ impl SceneBuilder<'_> {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             ..Sphere::new(center, radius.0, material)
         });
+        let provenance = self.provenance_of_table(TableKind::Sphere, index, table.name.as_ref());
+        if let Some(all) = self.scene.provenance_mut() {
+            all.spheres.push(provenance);
+        }
         Ok(())
     }
 
@@ -42,11 +46,11 @@ impl SceneBuilder<'_> {
         Some(Animated::Sphere { sphere, node: motion.node, center, radius })
     }
 
-    /// Adds a plane.
+    /// Adds the plane of a table with this index.
     ///
     /// # Errors
     /// When there is no such material.
-    pub fn add_plane(&mut self, table: &PlaneTable) -> Result<()> {
+    pub fn add_plane(&mut self, index: usize, table: &PlaneTable) -> Result<()> {
         let material = self.material_or_default(table.material.as_ref())?;
         let transfer = self.scene.film.transfer;
         let checker = table.checker.as_ref().map(|Table(checker)| Checker {
@@ -59,6 +63,10 @@ impl SceneBuilder<'_> {
             casts_shadow: table.casts_shadow.unwrap_or(true),
             ..Plane::new(table.point.0, table.normal.0, material)
         });
+        let provenance = self.provenance_of_table(TableKind::Plane, index, None);
+        if let Some(all) = self.scene.provenance_mut() {
+            all.planes.push(provenance);
+        }
         Ok(())
     }
 }

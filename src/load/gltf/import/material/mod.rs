@@ -28,14 +28,16 @@ pub struct Materials<'a> {
     root: &'a json::Root,
     /// The textures of the materials.
     pub textures: Textures<'a>,
+    /// True if all are the default material, whatever the file says.
+    pub geometry_only: bool,
     /// The materials so far, each with the vertex attributes that it needs.
     imported: HashMap<Option<usize>, (MaterialId, NeededAttributes)>,
 }
 
 impl<'a> Materials<'a> {
     /// The materials of a file, of which none is imported.
-    pub fn new(root: &'a json::Root, textures: Textures<'a>) -> Self {
-        Self { root, textures, imported: HashMap::new() }
+    pub fn new(root: &'a json::Root, textures: Textures<'a>, geometry_only: bool) -> Self {
+        Self { root, textures, geometry_only, imported: HashMap::new() }
     }
 
     /// Returns the material with an index, or that of primitives that name none, and the vertex
@@ -50,6 +52,7 @@ impl<'a> Materials<'a> {
         scene: &mut Scene,
         diagnostics: &mut Diagnostics,
     ) -> Result<(MaterialId, NeededAttributes)> {
+        let index = index.filter(|_| !self.geometry_only);
         if let Some(known) = self.imported.get(&index) {
             return Ok(known.clone());
         }
@@ -57,7 +60,11 @@ impl<'a> Materials<'a> {
         let (material, needed) = match index {
             // The standard's default is a rough white metal, which nobody means who names no
             // material; ours is the neutral grey of an OBJ without one.
-            None => Default::default(),
+            None => {
+                let geometry_only = self.geometry_only;
+                let needed = NeededAttributes { geometry_only, ..Default::default() };
+                (Material::default(), needed)
+            }
             Some(i) => {
                 let source = lookup(&self.root.materials, i, "material", by)?;
                 let mut reader = MaterialReader {

@@ -20,6 +20,8 @@ pub struct NeededAttributes {
     pub tangents: bool,
     /// True if the alpha of vertex colours counts.
     pub alpha: bool,
+    /// True if neither texture coordinates nor vertex colours count.
+    pub geometry_only: bool,
 }
 
 /// A material of the file that is being read.

@@ -17,8 +17,8 @@ use crate::load::gltf::compression::draco;
 use crate::load::gltf::json::error_at;
 use crate::load::mesh_repair::repair;
 use crate::load::report::DropReason;
-use crate::scene::Mesh;
 use crate::scene::animation::{Influences, MorphTarget};
+use crate::scene::{FaceMap, Mesh};
 
 /// The mesh of a primitive, with what can deform it.
 #[derive(Clone)]
@@ -29,6 +29,8 @@ pub struct PrimitiveMesh {
     pub morph_targets: Arc<[MorphTarget]>,
     /// The joints that influence its vertices, if it can be skinned.
     pub influences: Option<Arc<Influences>>,
+    /// The numbers of its triangles in the primitive, if they are recorded.
+    pub faces: Arc<FaceMap>,
 }
 
 /// A primitive that is being read.
@@ -41,6 +43,8 @@ pub struct PrimitiveReader<'a> {
     pub path: &'a str,
     /// The diagnostics of the load.
     pub diagnostics: &'a mut Diagnostics,
+    /// True if the numbers of its triangles are recorded.
+    pub records_faces: bool,
 }
 
 impl PrimitiveReader<'_> {
@@ -108,6 +112,10 @@ impl PrimitiveReader<'_> {
         };
         // The faces that are incomplete are counted here, since none of them gets into the mesh.
         let triangles = topology::triangles(mode, &corners);
+        let mut faces = FaceMap::Unrecorded;
+        if self.records_faces {
+            faces = topology::face_map(mode, &corners);
+        }
         let mut mesh = Mesh { triangles, positions: positions.into(), ..Mesh::default() };
         let incomplete = u64::from(topology::is_incomplete(mode, corners.len()));
         self.diagnostics.read(incomplete);
@@ -115,8 +123,10 @@ impl PrimitiveReader<'_> {
 
         // Attributes of vertices.
         mesh.normals = self.attribute(Semantic::Normals, count)?;
-        (mesh.colors, mesh.alphas) = self.colors(needed.alpha, count)?;
-        mesh.uvs = self.uvs(needed.uv_sets.first(), count)?;
+        if !needed.geometry_only {
+            (mesh.colors, mesh.alphas) = self.colors(needed.alpha, count)?;
+            mesh.uvs = self.uvs(needed.uv_sets.first(), count)?;
+        }
         if let Some(second) = needed.uv_sets.get(1) {
             mesh.second_uvs = self.uvs(Some(second), count)?;
         }
@@ -129,7 +139,7 @@ impl PrimitiveReader<'_> {
 
         // Faces that are left are counted when the mesh is stored, which may be more than once.
         let before = mesh.triangles.len() as u64;
-        repair(&mut mesh, self.diagnostics, path);
+        repair(&mut mesh, &mut faces, self.diagnostics, path);
         self.diagnostics.read(before - mesh.triangles.len() as u64);
 
         // What deforms the mesh has values for the same vertices.
@@ -146,8 +156,12 @@ impl PrimitiveReader<'_> {
         if mesh.triangles.is_empty() {
             return Ok(None);
         }
-        let influences = influences.map(Arc::new);
-        Ok(Some(PrimitiveMesh { mesh: Arc::new(mesh), morph_targets: targets.into(), influences }))
+        Ok(Some(PrimitiveMesh {
+            mesh: Arc::new(mesh),
+            morph_targets: targets.into(),
+            influences: influences.map(Arc::new),
+            faces: Arc::new(faces),
+        }))
     }
 
     /// The index of an attribute's accessor.

@@ -2,6 +2,8 @@
 
 use gltf::json::mesh::Mode;
 
+use crate::scene::FaceMap;
+
 /// Returns the triangles of `vertices`, in the order in which a primitive names them.
 ///
 /// Strips and fans wind as part 3.7.2.1 of the standard says. Vertices that don't fill a last
@@ -17,7 +19,6 @@ pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
                 if i % 2 == 0 { [a, b, c] } else { [a, c, b] }
             };
             let windows = vertices.windows(3).map(|w| [w[0], w[1], w[2]]);
-            let is_face = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
             windows.enumerate().map(wind).filter(is_face).collect()
         }
         Mode::TriangleFan => match vertices {
@@ -25,6 +26,22 @@ pub fn triangles(mode: Mode, vertices: &[u32]) -> Vec<[u32; 3]> {
             [] => Vec::new(),
         },
     }
+}
+
+/// True if three corners of a strip make a triangle.
+fn is_face([a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// Returns the map from the [triangles] of `vertices` to their numbers in the primitive: in a strip, the
+/// corners that join its parts count as triangles.
+pub fn face_map(mode: Mode, vertices: &[u32]) -> FaceMap {
+    if mode != Mode::TriangleStrip {
+        return FaceMap::Consecutive(0);
+    }
+    let windows = (0..).zip(vertices.windows(3));
+    let faces = windows.filter_map(|(i, w)| is_face(&[w[0], w[1], w[2]]).then_some(i));
+    FaceMap::from_numbers(faces.collect())
 }
 
 /// Returns the number of points, lines or triangles that corners make; a last one that they do not
@@ -55,6 +72,13 @@ mod tests {
     fn strip_goes_on_elsewhere_by_naming_vertices_twice() {
         let made = triangles(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]);
         assert_eq!(made, [[0, 1, 2], [3, 5, 4]]);
+    }
+
+    #[test]
+    fn triangles_of_a_strip_keep_their_numbers() {
+        let map = face_map(Mode::TriangleStrip, &[0, 1, 2, 2, 3, 3, 4, 5]);
+        assert_eq!(map, FaceMap::Listed(vec![0, 5]));
+        assert_eq!(face_map(Mode::TriangleStrip, &[0, 1, 2, 3]), FaceMap::Consecutive(0));
     }
 
     #[test]

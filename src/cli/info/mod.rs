@@ -1,11 +1,15 @@
 //! The subcommand `envers info`.
 
+mod contents;
+
 use std::collections::BTreeMap;
 use std::fmt;
 use std::process::ExitCode;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
+use self::contents::{CameraSummary, Files, GltfFile, ImageSummary, LightSummary, images};
 use crate::cli::load_report::{self, LoadSummary};
 use crate::cli::paths::{self, InputFiles};
 use crate::cli::{args::Info, messages, output, render_stats::Geometry};
@@ -13,11 +17,14 @@ use crate::error::Result;
 use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
-use crate::scene::{LightKind, Projection, Scene, SceneFeatures};
+use crate::scene::{Scene, SceneFeatures};
 
 /// The contents of a scene: `info --json`.
 #[derive(Serialize)]
 struct Summary {
+    files: Files,
+    /// The glTF files among them.
+    gltf: Vec<GltfFile>,
     size: [u32; 2],
     spp: u32,
     /// The most samples of a pixel with adaptive sampling; null without it.
@@ -25,15 +32,24 @@ struct Summary {
     geometry: Geometry,
     /// The stored triangles: those of each mesh once, whatever the number of its instances.
     mesh_triangles: usize,
+    /// The stored vertices.
+    vertices: usize,
     meshes: usize,
-    materials: usize,
+    /// The number of meshes that are closed (watertight).
+    closed_meshes: usize,
+    /// The names of the materials, which may be empty.
+    materials: Vec<String>,
+    /// The number of textures: several may show one image.
     textures: usize,
-    lights: Vec<String>,
-    cameras: Vec<String>,
-    /// The animation; null if nothing is animated.
+    images: Vec<ImageSummary>,
+    lights: Vec<LightSummary>,
+    cameras: Vec<CameraSummary>,
+    /// The animation that is played; null if nothing is animated.
     animation: Option<AnimationSummary>,
     /// The corners of the box around all but planes; null if there is nothing else.
     bounds: Option<[[f64; 3]; 2]>,
+    /// The lengths of its sides, in units of the scene.
+    extent: Option<[f64; 3]>,
     /// The kinds of work that the scene needs, with the reason.
     needed: BTreeMap<&'static str, String>,
     /// The kinds of work that are skipped, with the reason.
@@ -43,6 +59,9 @@ struct Summary {
     /// The load report's faces, as they are printed.
     #[serde(skip)]
     faces: String,
+    /// True if the text has the work that is needed and skipped.
+    #[serde(skip)]
+    verbose: bool,
     warnings: Vec<String>,
 }
 
@@ -102,8 +121,9 @@ pub fn run(arguments: &Info) -> Result<ExitCode> {
     let animation = scene.animation.as_ref().map(AnimationSummary::new);
     // All but the animation is that of the first frame.
     // On a thread of the pool, where parallel loops over many small meshes cost nothing.
-    let summary =
-        rayon::scope(|_| scene.at_time(0.0).map(|scene| Summary::new(&scene, &report, animation)))?;
+    let summary = rayon::scope(|_| {
+        scene.at_time(0.0).map(|scene| Summary::new(&scene, &report, animation, arguments))
+    })?;
     if output::stdout_is_free(arguments.json.as_ref()) {
         output::print(&summary.to_string())?;
         summary.warnings.iter().for_each(|w| messages::warning(w));
@@ -119,59 +139,49 @@ pub fn run(arguments: &Info) -> Result<ExitCode> {
 
 impl Summary {
     /// Sums up a scene at the first frame.
-    fn new(scene: &Scene, report: &LoadReport, animation: Option<AnimationSummary>) -> Self {
+    fn new(
+        scene: &Scene,
+        report: &LoadReport,
+        animation: Option<AnimationSummary>,
+        arguments: &Info,
+    ) -> Self {
         let bounds = scene.bounds();
+        let bounds = (!bounds.is_empty()).then_some(bounds);
         // The default of `render`: precision fast, on Embree if it is built in.
         let has_f32_rays = Backend::default() != Backend::Rust;
         let features = SceneFeatures::from_scene(scene);
-        // The names of kinds, and those that the objects have in their files.
-        let lights = scene.lights.iter().map(|l| messages::labelled(light_kind(&l.kind), &l.name));
-        let cameras =
-            scene.cameras.iter().map(|c| messages::labelled(&projection(&c.projection), &c.name));
         Self {
+            files: Files::new(&arguments.scene, report),
+            gltf: report.assets.iter().map(GltfFile::from).collect(),
             size: scene.film.size,
             spp: scene.film.spp,
             max_spp: scene.film.adaptive.map(|adaptive| adaptive.max),
             geometry: Geometry::new(scene),
             mesh_triangles: scene.meshes.iter().map(|m| m.triangles.len()).sum(),
+            vertices: scene.meshes.iter().map(|m| m.positions.len()).sum(),
             meshes: scene.meshes.len(),
-            materials: scene.materials.len(),
+            closed_meshes: scene.meshes.par_iter().filter(|mesh| mesh.is_closed()).count(),
+            materials: scene.materials.iter().map(|material| material.name.clone()).collect(),
             textures: scene.textures.len(),
-            lights: lights.collect(),
-            cameras: cameras.collect(),
+            images: images(scene),
+            lights: scene.lights.iter().map(LightSummary::from).collect(),
+            cameras: scene.cameras.iter().map(CameraSummary::from).collect(),
             animation,
-            bounds: (!bounds.is_empty()).then(|| [bounds.lower.into(), bounds.upper.into()]),
+            bounds: bounds.map(|bounds| [bounds.lower.into(), bounds.upper.into()]),
+            extent: bounds.map(|bounds| bounds.size().into()),
             needed: features.used().map(|(feature, why)| (feature.name(), why)).collect(),
             skipped: features.skipped().map(|(feature, why)| (feature.name(), why)).collect(),
             report: report.into(),
             faces: report.to_string(),
+            verbose: arguments.verbose,
             warnings: messages::scene_warnings(report, scene, has_f32_rays),
         }
     }
 }
 
-/// Returns the name of a kind of light.
-fn light_kind(kind: &LightKind) -> &'static str {
-    match kind {
-        LightKind::Ambient => "ambient",
-        LightKind::Directional { .. } => "directional",
-        LightKind::Point { .. } => "point",
-        LightKind::Spot { .. } => "spot",
-    }
-}
-
-/// Returns the projection of a camera as a scene file sets it.
-fn projection(lens: &Projection) -> String {
-    match lens {
-        Projection::FovY(angle) => format!("fov_y {:.4}", angle.to_degrees()),
-        Projection::FovX(angle) => format!("fov_x {:.4}", angle.to_degrees()),
-        Projection::FocalPx { focal, .. } => format!("focal_px {focal}"),
-        Projection::OrthoHeight(height) => format!("ortho_height {height}"),
-    }
-}
-
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_files(f)?;
         // The picture, and the numbers of objects.
         let &Summary { size: [width, height], spp, meshes, mesh_triangles, .. } = self;
         let Geometry { spheres, triangles, planes, instances } = self.geometry;
@@ -181,24 +191,39 @@ impl fmt::Display for Summary {
         writeln!(f, "planes     {planes}")?;
         write!(f, "triangles  {triangles} in {instances} instances of {meshes} meshes ")?;
         writeln!(f, "({mesh_triangles} stored)")?;
+        if meshes > 0 {
+            writeln!(f, "vertices   {} stored", self.vertices)?;
+            writeln!(f, "closed     {} of {}", self.closed_meshes, counted(meshes, "mesh"))?;
+        }
         writeln!(f, "faces      {}", self.faces)?;
-        writeln!(f, "materials  {}, textures {}", self.materials, self.textures)?;
-        writeln!(f, "lights     {}", or_none(&self.lights))?;
-        writeln!(f, "cameras    {}", or_none(&self.cameras))?;
+        writeln!(f, "materials  {}", self.materials.len())?;
+        writeln!(f, "textures   {}{}", self.textures, self.largest_image())?;
+        let lights: Vec<String> = self.lights.iter().map(LightSummary::label).collect();
+        writeln!(f, "lights     {}", or_none(&lights))?;
+        let cameras: Vec<String> = self.cameras.iter().map(CameraSummary::label).collect();
+        writeln!(f, "cameras    {}", or_none(&cameras))?;
         // What only some scenes have.
         let variants: Vec<String> = self.report.variants.iter().map(|v| format!("`{v}`")).collect();
         if !variants.is_empty() {
             writeln!(f, "variants   {}", or_none(&variants))?;
         }
+        let animations: Vec<String> = self.gltf.iter().flat_map(GltfFile::animations).collect();
+        if !animations.is_empty() {
+            writeln!(f, "animations {}", or_none(&animations))?;
+        }
         if let Some(motion) = &self.animation {
             writeln!(f, "animation  {motion}")?;
         }
-        match self.bounds {
-            Some([a, b]) => writeln!(f, "bounds     {a:?} to {b:?}")?,
+        match self.bounds.zip(self.extent) {
+            Some(([a, b], [x, y, z])) => {
+                writeln!(f, "bounds     {a:?} to {b:?}")?;
+                writeln!(f, "extent     {x} x {y} x {z}")?;
+            }
             None => writeln!(f, "bounds     nothing finite")?,
         }
         // The work that the scene needs, and the work that it does not.
-        for (verb, features) in [("needs", &self.needed), ("skips", &self.skipped)] {
+        let work = [("needs", &self.needed), ("skips", &self.skipped)];
+        for (verb, features) in work.into_iter().filter(|_| self.verbose) {
             for (feature, reason) in features {
                 writeln!(f, "{verb:10} {feature}: {}", messages::line(reason))?;
             }
@@ -207,9 +232,50 @@ impl fmt::Display for Summary {
     }
 }
 
+impl Summary {
+    /// Writes the sizes of the files, and what glTF files say of themselves.
+    fn write_files(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Files { own_bytes, count, bytes, .. } = self.files;
+        write!(f, "file       {}", size(own_bytes))?;
+        if count > 1 {
+            write!(f, ", with those that it names {} in {count} files", size(bytes))?;
+        }
+        writeln!(f)?;
+        for (key, value) in self.gltf.iter().flat_map(GltfFile::origin) {
+            writeln!(f, "{key:10} {}", messages::line(value))?;
+        }
+        Ok(())
+    }
+
+    /// Returns the number of images, and the size and the name of the largest, behind the number of
+    /// textures.
+    fn largest_image(&self) -> String {
+        let largest = self.images.iter().rev().max_by_key(|image| image.pixels());
+        let Some(ImageSummary { name, width: Some(width), height: Some(height) }) = largest else {
+            return String::new();
+        };
+        let images = counted(self.images.len(), "image");
+        messages::line(&format!(" of {images}, the largest {width}x{height} `{name}`"))
+    }
+}
+
+/// Returns a number of bytes for people.
+fn size(bytes: u64) -> String {
+    let units = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    match units.into_iter().find(|(unit, _)| bytes as f64 >= *unit) {
+        Some((unit, name)) => format!("{:.1} {name}", bytes as f64 / unit),
+        None => counted(bytes as usize, "byte"),
+    }
+}
+
 /// Returns a count with its noun, in the plural unless it is 1.
 fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+    let ending = match noun {
+        _ if count == 1 => "",
+        "mesh" => "es",
+        _ => "s",
+    };
+    format!("{count} {noun}{ending}")
 }
 
 /// Returns a list with commas, or `none`.
