@@ -57,6 +57,8 @@
 //! - `measure`: holding one backend against the other, and one picture against another.
 //! - `cli`: the `envers` command.
 //!
+//! docs/library.md shows how a program depends on envers, and how it casts rays, step by step.
+//!
 //! A program that uses the library alone takes none, and then builds without Embree, clap and plotters:
 //! `envers = { version = "0.1", default-features = false }`.
 //!
@@ -126,3 +128,8 @@ pub mod internals {
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+/// The programs of the page for library users.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct LibraryPage;

@@ -262,7 +262,7 @@ fn broken_json_is_named_with_its_line() {
 
 #[test]
 fn a_size_that_cannot_be_is_refused() {
-    for bad in ["0x480", "640x0", "1000000x1000000", "640", "640x", "-3x4", "1e3x4", "nanx4"] {
+    for bad in ["0x480", "640x0", "1000000x1000000", "0", "640x", "-3x4", "1e3x4", "nanx4"] {
         let message = refused_with(&endless(), &format!("--size={bad}"));
         assert!(message.contains("--size") && message.contains(bad), "{message}");
     }
