@@ -24,10 +24,9 @@ pub use build_stats::BuildStats;
 pub use builder::IntersectorBuilder;
 pub use bvh::Bvh;
 #[cfg(feature = "embree")]
-pub use embree::{
-    Embree, library_path as embree_library, peak_memory as embree_peak_memory,
-    version as embree_version,
-};
+pub use embree::{Embree, version as embree_version};
+#[cfg(all(feature = "embree", feature = "cli"))]
+pub use embree::{library_path as embree_library, peak_memory as embree_peak_memory};
 
 #[cfg(feature = "embree")]
 use crate::error::Remedy;

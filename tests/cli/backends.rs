@@ -172,12 +172,14 @@ fn library_beside_the_program_comes_first() {
 }
 
 /// The most processor time that a run may take: that of its threads, and what starting them costs.
+#[cfg(all(feature = "embree", target_os = "linux"))]
 fn max_cpu(threads: f64, wall: f64) -> f64 {
     1.05 * threads * wall + 0.02
 }
 
 /// Renders a reference scene and holds the processors' time against the clock. On a busy machine the
 /// clock runs on and the processors' time does not: only a thread that works for nothing fails it.
+#[cfg(all(feature = "embree", target_os = "linux"))]
 #[track_caller]
 fn no_thread_spins(scene: &str, size: &str, more: &str) {
     let folder = Folder::new();
@@ -200,19 +202,19 @@ fn no_thread_spins(scene: &str, size: &str, more: &str) {
 }
 
 #[test]
-#[cfg(target_os = "linux")]
+#[cfg(all(feature = "embree", target_os = "linux"))]
 fn no_thread_spins_while_spheres_are_traced() {
     no_thread_spins("s.toml", "1920x1080", "--spp 4");
 }
 
 #[test]
-#[cfg(target_os = "linux")]
+#[cfg(all(feature = "embree", target_os = "linux"))]
 fn no_thread_spins_while_a_mesh_is_traced() {
     no_thread_spins("m.toml", "960x540", "");
 }
 
 #[test]
-#[cfg(target_os = "linux")]
+#[cfg(all(feature = "embree", target_os = "linux"))]
 fn no_thread_spins_in_certified_precision() {
     no_thread_spins("s.toml", "960x540", "--spp 4 --precision certified");
 }

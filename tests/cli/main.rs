@@ -16,7 +16,8 @@ mod outputs;
 mod render;
 mod reports;
 mod sandbox_and_limits;
-#[cfg(unix)]
+// They do not depend on the backend, and take half a minute.
+#[cfg(all(unix, feature = "embree"))]
 mod signals;
 mod stress;
 mod strict;

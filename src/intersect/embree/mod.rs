@@ -39,7 +39,9 @@ use crate::intersect::ray_ends::max_coordinate;
 use crate::intersect::{Coherence, Crossing, Intersector, Precision, Query};
 use crate::scene::{Instance, Scene};
 use ffi::PacketWidth;
-pub use ffi::{library_path, open, peak_memory};
+pub use ffi::open;
+#[cfg(feature = "cli")]
+pub use ffi::{library_path, peak_memory};
 use packet::{ClosestQuery, OcclusionQuery, QueryScene};
 pub(super) use scene_builder::BuildOptions;
 pub(super) use tlas::FrameCache;

@@ -20,6 +20,7 @@ static PEAK_BYTES: AtomicIsize = AtomicIsize::new(0);
 
 /// The most bytes that Embree held at any time in this process: trees, the vertices of meshes, and
 /// what it needs while it builds.
+#[cfg(feature = "cli")]
 pub fn peak_memory() -> u64 {
     u64::try_from(PEAK_BYTES.load(Ordering::Relaxed)).unwrap_or(0)
 }

@@ -25,6 +25,7 @@ pub fn open() -> Result<()> {
 }
 
 /// Returns the path of the library that is open, or the bare name by which the system's loader found it.
+#[cfg(feature = "cli")]
 pub fn path() -> Option<&'static Path> {
     OPENED.get()?.as_ref().ok().map(|functions| &*functions.path)
 }
@@ -69,6 +70,7 @@ macro_rules! pass_on {
         #[allow(non_snake_case)]
         struct Functions {
             /// The library's path, or the bare name by which the system's loader found it.
+            #[cfg_attr(not(feature = "cli"), expect(dead_code))]
             path: PathBuf,
             $($name: unsafe extern "C" fn($($type),*) $(-> $result)?,)*
         }

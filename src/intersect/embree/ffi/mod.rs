@@ -13,8 +13,12 @@ mod user_geometry;
 
 pub use abi_check::check as check_abi;
 pub use callbacks::{CallbackPacket, Filter, UserPrimitive, UserPrimitives};
-pub use handles::{CommittedScene, DeviceHandle, OpenScene, OwnedGeometry, peak_memory};
-pub use library::{open, path as library_path};
+#[cfg(feature = "cli")]
+pub use handles::peak_memory;
+pub use handles::{CommittedScene, DeviceHandle, OpenScene, OwnedGeometry};
+pub use library::open;
+#[cfg(feature = "cli")]
+pub use library::path as library_path;
 pub use mesh_geometry::new_mesh_geometry;
 pub use packet_width::{Kernel, PacketWidth};
 pub use records::{Candidate, INVALID, LaneMask, RayHitRecord};
