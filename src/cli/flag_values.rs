@@ -62,8 +62,18 @@ pub const UP_AXES: &Choices<UpAxis> = &[
     ("-y", UpAxis::NegY),
     ("-z", UpAxis::NegZ),
 ];
-pub const TONES: &Choices<Tone> =
-    &[("none", Tone::None), ("reinhard", Tone::Reinhard), ("aces", Tone::Aces)];
+pub const TONES: &Choices<Tone> = &{
+    const fn choice(tone: Tone) -> (&'static str, Tone) {
+        (tone.name(), tone)
+    }
+    [
+        choice(Tone::None),
+        choice(Tone::Reinhard),
+        choice(Tone::Aces),
+        choice(Tone::KhronosPbrNeutral),
+        choice(Tone::Agx),
+    ]
+};
 
 /// Returns the parser of a value that is chosen by name.
 pub fn choice<T>(choices: &'static Choices<T>) -> impl TypedValueParser<Value = T>

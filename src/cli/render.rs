@@ -300,7 +300,7 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
         ("view", format!("{:?}", options.view).to_lowercase()),
         ("precision", options.precision.name().to_owned()),
         ("png_exposure", scene.film.exposure.to_string()),
-        ("png_tone", format!("{:?}", scene.film.tone).to_lowercase()),
+        ("png_tone", scene.film.tone.name().to_owned()),
         ("png_transfer", format!("{:?}", scene.film.transfer).to_lowercase()),
     ]);
     entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()

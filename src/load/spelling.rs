@@ -5,6 +5,8 @@
 const SYNONYMS: &[(&str, &str)] = &[
     ("absorption", "attenuation extinction"),
     ("aces", "filmic"),
+    ("agx", "blender"),
+    ("khronos-pbr-neutral", "neutral pbrneutral khronos"),
     ("alpha_mode", "blend"),
     ("casts_shadow", "shadow shadows castshadow"),
     ("color", "color colour"),

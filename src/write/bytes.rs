@@ -7,7 +7,7 @@ use crate::write::Settings;
 
 /// Encodes a film as bytes: red, green, blue of each pixel, row by row.
 ///
-/// Beauty: [`Settings::byte`]. Normal: each component from \[−1, 1\] to \[0, 255\]. Depth: white at
+/// Beauty: [`Settings::bytes`]. Normal: each component from \[−1, 1\] to \[0, 255\]. Depth: white at
 /// the nearest hit to a dark grey at the farthest. Id: a colour for each object, hashed from its id.
 /// Views other than beauty are black where nothing is hit.
 pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
@@ -19,9 +19,13 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         _ => (0.0, 1.0),
     };
     // The colour of a pixel, by the view.
-    let table = (film.view == View::Beauty).then(|| ByteTable::new(settings));
+    let has_table = film.view == View::Beauty && settings.tone.is_per_channel();
+    let table = has_table.then(|| ByteTable::new(settings));
     let color = |pixel: &[f32; 3]| match film.view {
-        View::Beauty => pixel.map(|x| table.as_ref().map_or(0, |table| table.byte(x))),
+        View::Beauty => match &table {
+            Some(table) => pixel.map(|x| table.byte(x)),
+            None => settings.bytes(*pixel),
+        },
         View::Normal if *pixel == [0.0; 3] => [0; 3],
         View::Normal => pixel.map(|x| byte((x * 0.5 + 0.5).clamp(0.0, 1.0))),
         View::Depth if !pixel[0].is_finite() => [0; 3],
@@ -41,7 +45,7 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
 /// The grain size of the parallel loop: the least number of pixels for one thread.
 const GRAIN: usize = 1 << 14;
 
-/// A lookup table for [`Settings::byte`].
+/// A lookup table for [`Settings::bytes`], where the tone curve is one of single channels.
 struct ByteTable {
     /// The thresholds between bytes; see [`byte_thresholds`].
     thresholds: [f32; 256],
@@ -72,7 +76,7 @@ impl ByteTable {
     }
 }
 
-/// The least radiances for which [`Settings::byte`], which never decreases, exceeds 0, 1, …, 255; NaN
+/// The least radiances for which the byte of [`Settings::bytes`], which never decreases, exceeds 0, 1, …, 255; NaN
 /// where it never does. Looking a byte up is several times faster than computing it.
 fn byte_thresholds(settings: &Settings) -> [f32; 256] {
     std::array::from_fn(|byte| {
@@ -80,7 +84,8 @@ fn byte_thresholds(settings: &Settings) -> [f32; 256] {
         let (mut below, mut from) = (0, f32::INFINITY.to_bits());
         while from - below > 1 {
             let middle = below + (from - below) / 2;
-            let exceeds = usize::from(settings.byte(f32::from_bits(middle))) > byte;
+            let [found, ..] = settings.bytes([f32::from_bits(middle); 3]);
+            let exceeds = usize::from(found) > byte;
             *(if exceeds { &mut from } else { &mut below }) = middle;
         }
         let least = f32::from_bits(from);
@@ -149,7 +154,7 @@ mod tests {
                 let pixels: Vec<_> = values.iter().map(|&x| [x; 3]).collect();
                 let film = Film { size: [values.len() as u32, 1], view: View::Beauty, pixels };
                 let expected: Vec<u8> =
-                    values.iter().flat_map(|&x| [settings.byte(x); 3]).collect();
+                    values.iter().flat_map(|&x| settings.bytes([x; 3])).collect();
                 assert!(encode(&film, &settings) == expected, "{settings:?}");
             }
         }

@@ -89,11 +89,12 @@ impl Settings {
         Self { exposure, tone, transfer, ..Self::default() }
     }
 
-    /// The byte for the radiance of one channel, computed in f64:
+    /// The bytes for the radiance of a pixel, computed in f64:
     /// round(255 · transfer(tone(2^exposure · radiance))).
-    pub fn byte(&self, radiance: f32) -> u8 {
-        let toned = self.tone.apply(f64::from(radiance) * self.exposure.exp2());
-        (self.transfer.encode(toned) * 255.0).round() as u8
+    pub fn bytes(&self, radiance: [f32; 3]) -> [u8; 3] {
+        let factor = self.exposure.exp2();
+        let toned = self.tone.apply(radiance.map(|x| f64::from(x) * factor));
+        toned.map(|x| (self.transfer.encode(x) * 255.0).round() as u8)
     }
 }
 

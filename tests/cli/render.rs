@@ -273,3 +273,36 @@ fn statistics_tell_the_memory_that_embree_takes_for_a_mesh() {
     assert!(embree.unwrap() > 128);
     assert!(all.is_none_or(|all| all > embree.unwrap()));
 }
+
+#[test]
+fn model_in_a_scene_file_without_light_is_lit_unless_the_scene_says_none() {
+    let folder = Folder::new();
+    folder.write("model.obj", TETRAHEDRON);
+    let brightest = |lights: &str| {
+        folder.write("scene.toml", format!("{lights}\n[[model]]\nfile = \"model.obj\"\n"));
+        let run = folder.run("render scene.toml --size 32x24 -o out.png");
+        assert_eq!(run.status, Some(0), "{}", run.stderr);
+        pixels(&folder.read("out.png")).1.into_iter().max().unwrap()
+    };
+    assert!(brightest("") > 100);
+    assert_eq!(brightest("lights = \"none\""), 0);
+}
+
+/// Progress is shown on terminals only, and `script` is one.
+#[test]
+#[cfg(target_os = "linux")]
+fn progress_begins_with_loading() {
+    let folder = Folder::with(SPHERE);
+    let run = |flags: &str| {
+        let command = format!("{} render scene.toml {flags}", env!("CARGO_BIN_EXE_envers"));
+        let output = assert_cmd::Command::new("script")
+            .args(["-q", "-e", "-c", &command, "typescript"])
+            .current_dir(folder.path("."))
+            .output()
+            .unwrap();
+        assert!(output.status.success());
+        String::from_utf8(folder.read("typescript")).unwrap()
+    };
+    assert!(run("").contains("loading"));
+    assert!(!run("--quiet").contains("loading"));
+}

@@ -13,6 +13,18 @@ fn bright(film: &str) -> Folder {
 /// of the other's floats.
 #[track_caller]
 fn agree(folder: &Folder, flags: &str, exposure: f64, tone: fn(f64) -> f64, curve: fn(f64) -> f64) {
+    agree_in_color(folder, flags, exposure, move |color| color.map(tone), curve);
+}
+
+/// The same for a tone curve that looks at the whole colour.
+#[track_caller]
+fn agree_in_color(
+    folder: &Folder,
+    flags: &str,
+    exposure: f64,
+    tone: impl Fn([f64; 3]) -> [f64; 3],
+    curve: fn(f64) -> f64,
+) {
     folder.run(&format!("render scene.toml {flags} -o a.png -o a.exr")).good();
     let (_, bytes) = pixels(&folder.read("a.png"));
     let exr = Picture::read(&folder.path("a.exr")).unwrap();
@@ -21,9 +33,10 @@ fn agree(folder: &Folder, flags: &str, exposure: f64, tone: fn(f64) -> f64, curv
         exr.values.chunks(3).flat_map(|pixel| order.map(|i| f64::from(pixel[i]))).collect();
     assert!(radiance.iter().any(|&x| x > 2.0) && radiance.iter().any(|&x| x < 0.1));
     assert_eq!(bytes.len(), radiance.len());
-    for (byte, x) in bytes.into_iter().zip(radiance) {
-        let expected = (255.0 * curve(tone(exposure.exp2() * x))).round();
-        assert_eq!(f64::from(byte), expected, "of radiance {x}");
+    for (bytes, color) in bytes.chunks(3).zip(radiance.chunks(3)) {
+        let toned = tone([0, 1, 2].map(|i| exposure.exp2() * color[i]));
+        let expected = toned.map(|x| (255.0 * curve(x)).round());
+        assert_eq!([0, 1, 2].map(|i| f64::from(bytes[i])), expected, "of radiance {color:?}");
     }
 }
 
@@ -63,6 +76,39 @@ fn with_reinhards_curve_png_and_exr_agree_by_the_formula() {
 fn with_the_curve_of_aces_png_and_exr_agree_by_the_formula() {
     agree(&bright("tone = \"aces\""), "", 0.0, aces, srgb);
     agree(&bright("tone = \"aces\"\ntransfer = \"none\""), "", 0.0, aces, linear);
+}
+
+/// Khronos PBR Neutral, written from its specification.
+fn neutral(color: [f64; 3]) -> [f64; 3] {
+    let least = color.into_iter().fold(f64::MAX, f64::min);
+    let offset = if least < 0.08 { least - 6.25 * least * least } else { 0.04 };
+    let color = color.map(|x| x - offset);
+    let peak = color.into_iter().fold(0.0, f64::max);
+    if peak < 0.76 {
+        return color;
+    }
+    let new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    let white = 1.0 - 1.0 / (0.15 * (peak - new_peak) + 1.0);
+    color.map(|x| {
+        let compressed = x * new_peak / peak;
+        compressed + (new_peak - compressed) * white
+    })
+}
+
+#[test]
+fn with_khronos_pbr_neutral_png_and_exr_agree_by_the_formula() {
+    agree_in_color(&bright("tone = \"khronos-pbr-neutral\""), "", 0.0, neutral, srgb);
+    agree_in_color(&bright(""), "--tone khronos-pbr-neutral --exposure 1", 1.0, neutral, srgb);
+}
+
+#[test]
+fn agx_shows_what_is_brighter_than_white_without_clipping() {
+    let folder = bright("");
+    folder.run("render scene.toml --tone agx -o agx.png -o clipped.exr").good();
+    folder.run("render scene.toml -o none.png").good();
+    let [agx, none] = ["agx.png", "none.png"].map(|name| pixels(&folder.read(name)).1);
+    let clipped = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == 255).count();
+    assert!(clipped(&none) > 100 && clipped(&agx) == 0);
 }
 
 #[test]

@@ -164,3 +164,17 @@ fn double_sided_shows_what_is_seen_from_behind() {
     assert_eq!(middle("--double-sided"), ([255; 3], false));
     assert_eq!(middle(""), ([0; 3], true));
 }
+
+#[test]
+fn picture_of_nothing_but_backs_names_the_flag_that_shows_them() {
+    let mut model = envers_testing::Model::triangle();
+    model.material(serde_json::json!({"doubleSided": false}));
+    let folder = Folder::new();
+    folder.write("model.glb", model.glb());
+    let stderr = |azimuth: u32| {
+        let flags = "--size 32x24 --spp 1 --elevation 0 --azimuth";
+        folder.run(&format!("render model.glb {flags} {azimuth}")).stderr
+    };
+    assert_eq!(stderr(0), "");
+    assert!(stderr(180).contains("`--double-sided`"), "{}", stderr(180));
+}
