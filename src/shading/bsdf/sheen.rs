@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::table::{Place, at_node, midpoints};
 
@@ -16,11 +17,11 @@ const MIN_COSINE: f64 = 1e-3;
 /// The number of roughnesses and of directions in the table, and of samples along each of two axes.
 const ROUGHNESSES: usize = 32;
 const DIRECTIONS: usize = 32;
-const SAMPLES: usize = 64;
+const SAMPLES: usize = 40;
 
 /// The directional albedo, by roughness and direction.
 static ALBEDO: LazyLock<Vec<[f32; DIRECTIONS]>> =
-    LazyLock::new(|| (0..ROUGHNESSES).map(albedo_row).collect());
+    LazyLock::new(|| (0..ROUGHNESSES).into_par_iter().map(albedo_row).collect());
 
 /// A layer of fibres with a roughness.
 #[derive(Clone, Copy, Debug, PartialEq)]
