@@ -120,6 +120,7 @@ pub mod internals {
     pub use crate::load::schema;
     pub use crate::render::Traced;
     pub use crate::scene::{IncidentLight, ShadingParams};
+    pub use crate::shading::{Bsdf, BsdfSample, MaterialParams};
     pub use crate::surface::{TextureContext, ambient_occlusion, shading_params};
     pub use crate::write::{Settings, png_bytes, write};
 }

@@ -1,0 +1,111 @@
+//! The table of the directional albedo of isotropic surfaces.
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::moments::{Moments, cosine_at, mean_weights, place_of_direction};
+use crate::shading::bsdf::fresnel::COSINES;
+use crate::shading::bsdf::ggx::{Ggx, MIN_ALPHA};
+use crate::shading::bsdf::table::{Place, at_node};
+
+/// The number of roughnesses and of directions in the table.
+const ROUGHNESSES: usize = 33;
+const DIRECTIONS: usize = 40;
+
+/// The number of samples of a direction along each of two axes.
+const SAMPLES: usize = 48;
+
+/// The factors of the reflectance at each of the cosines, of which the light that comes back is the sum.
+pub type CosineWeights = [f32; COSINES];
+
+/// The albedos of one roughness, by direction, and their means with weight cos θ/π.
+struct Row {
+    moments: [Moments; DIRECTIONS],
+    weights: [CosineWeights; DIRECTIONS],
+    mean_moments: Moments,
+    mean_weights: CosineWeights,
+}
+
+static TABLE: LazyLock<Vec<Row>> =
+    LazyLock::new(|| (0..ROUGHNESSES).into_par_iter().map(Row::compute).collect());
+
+impl Row {
+    fn compute(roughness: usize) -> Self {
+        let alpha = at_node(roughness, ROUGHNESSES).powi(2).max(MIN_ALPHA);
+        let ggx = Ggx::new([alpha; 2]).expect("at least the least α");
+        let mut row = Self {
+            moments: [Moments::default(); DIRECTIONS],
+            weights: [[0.0; COSINES]; DIRECTIONS],
+            mean_moments: Moments::default(),
+            mean_weights: [0.0; COSINES],
+        };
+        for (node, share) in mean_weights(DIRECTIONS).into_iter().enumerate() {
+            let cosine = cosine_at(node, DIRECTIONS);
+            let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+            let weights = &mut row.weights[node];
+            row.moments[node] = Moments::integrate(&ggx, wo, SAMPLES, |weight, cosine| {
+                for (k, part) in Place::new(cosine, COSINES).ends() {
+                    weights[k] += weight as f32 * part;
+                }
+            });
+            row.mean_moments.add(row.moments[node], share);
+            for k in 0..COSINES {
+                row.mean_weights[k] += row.weights[node][k] * share;
+            }
+        }
+        row
+    }
+}
+
+/// The albedos of isotropic microfacets with one roughness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Isotropic(Place);
+
+impl Isotropic {
+    /// The albedos of a roughness.
+    pub fn new(roughness: f64) -> Self {
+        Self(Place::new(roughness, ROUGHNESSES))
+    }
+
+    /// Returns the shares of the light from `wo` that come back from one reflection.
+    pub fn moments(&self, wo: DVec3) -> Moments {
+        let mut moments = Moments::default();
+        for (row, weight) in self.0.ends() {
+            for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
+                moments.add(TABLE[row].moments[node], weight * share);
+            }
+        }
+        moments
+    }
+
+    /// Returns the mean of the shares over all directions.
+    pub fn mean(&self) -> Moments {
+        let mut mean = Moments::default();
+        self.0.ends().iter().for_each(|(row, w)| mean.add(TABLE[*row].mean_moments, *w));
+        mean
+    }
+
+    /// Returns the factors of the reflectance at each cosine, for light from `wo`.
+    pub fn weights(&self, wo: DVec3) -> CosineWeights {
+        let mut sum = [0.0; COSINES];
+        for (row, weight) in self.0.ends() {
+            for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
+                add(&mut sum, &TABLE[row].weights[node], weight * share);
+            }
+        }
+        sum
+    }
+
+    /// Returns the means of these factors over all directions.
+    pub fn mean_weights(&self) -> CosineWeights {
+        let mut sum = [0.0; COSINES];
+        self.0.ends().iter().for_each(|(row, w)| add(&mut sum, &TABLE[*row].mean_weights, *w));
+        sum
+    }
+}
+
+fn add(sum: &mut CosineWeights, other: &CosineWeights, weight: f32) {
+    sum.iter_mut().zip(other).for_each(|(sum, x)| *sum += x * weight);
+}
