@@ -83,7 +83,7 @@ fn light(kind: LightKind, intensity: f32) -> Light {
 
 fn bytes(film: &Film, settings: &Settings) -> RgbaImage {
     RgbaImage::from_fn(SIDE, SIDE, |x, y| {
-        let [r, g, b] = film.pixel(x, y).map(|radiance| settings.byte(radiance));
+        let [r, g, b] = settings.bytes(film.pixel(x, y));
         Rgba([r, g, b, 255])
     })
 }

@@ -20,7 +20,8 @@ mod reflection;
 mod refraction;
 mod sheen;
 mod table;
-#[cfg(test)]
+// They do not depend on the backend: one run of the tests is enough.
+#[cfg(all(test, feature = "embree"))]
 mod tests;
 
 use glam::{DVec3, Vec3};

@@ -268,7 +268,10 @@ fn a_word_that_is_no_choice_is_at_the_word() {
         ("film.transfer = ¦\"linear\"", "did you mean `none`?"),
         ("film.transfer = ¦\"rec2020\"", "it is one of `srgb` and `none`"),
         ("film.tone = ¦\"filmic\"", "did you mean `aces`?"),
-        ("film.tone = ¦\"log\"", "it is one of `none`, `reinhard` and `aces`"),
+        (
+            "film.tone = ¦\"log\"",
+            "it is one of `none`, `reinhard`, `aces`, `khronos-pbr-neutral` and `agx`",
+        ),
         ("film.sample_position = ¦\"centre\"", "did you mean `center`?"),
         ("[[light]]\nkind = ¦\"sun\"", "did you mean `directional`?"),
         ("[[light]]\nkind = \"point\"\nfalloff = ¦\"square\"", "it is one of"),
