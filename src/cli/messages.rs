@@ -111,6 +111,8 @@ pub fn spinner(quiet: bool, what: &'static str) -> Spinner {
         return Spinner(ProgressBar::hidden());
     }
     let bar = ProgressBar::new_spinner().with_message(what);
+    // At once, and then from time to time.
+    bar.tick();
     bar.enable_steady_tick(Duration::from_millis(100));
     Spinner(bar)
 }
