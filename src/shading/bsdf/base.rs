@@ -299,7 +299,7 @@ impl Base {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "embree"))]
 impl Base {
     /// Returns f |cos θi| of what is reflected more than once, in red.
     pub fn multiple_part(&self, wo: DVec3, wi: DVec3) -> f64 {
