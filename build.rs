@@ -1,7 +1,7 @@
 //! Lets the feature `embree` be built without Embree, which is opened when the program runs.
 //!
-//! It has no dependencies, so that it is built and can speak before bindgen, which the bindings' own build
-//! script runs, gets to fail.
+//! This script has no dependencies, so that it is built and can speak before bindgen, which the bindings' own
+//! build script runs, gets to fail.
 
 use std::env;
 use std::path::{Path, PathBuf};

@@ -60,7 +60,7 @@
 //! docs/library.md shows how a program depends on envers, and how it casts rays, step by step.
 //!
 //! A program that uses the library alone takes none, and then builds without Embree, clap and plotters:
-//! `envers = { version = "0.1", default-features = false }`.
+//! `envers = { path = "../envers", default-features = false }`.
 //!
 //! [Intel Embree]: https://www.embree.org
 

@@ -92,9 +92,14 @@ pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Creates a progress bar of 1000 steps; a hidden one if `quiet`, or if stderr is not a terminal.
+/// True if progress is shown: unless the command is `quiet`, on a terminal.
+fn shows_progress(quiet: bool) -> bool {
+    !quiet && std::io::stderr().is_terminal()
+}
+
+/// Creates a progress bar of 1000 steps, which is hidden where no progress is shown.
 pub fn progress_bar(quiet: bool) -> ProgressBar {
-    if quiet || !std::io::stderr().is_terminal() {
+    if !shows_progress(quiet) {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(1000);
@@ -104,10 +109,9 @@ pub fn progress_bar(quiet: bool) -> ProgressBar {
     bar
 }
 
-/// Shows that something goes on whose share is not known, until the result is dropped; nothing if `quiet`, or
-/// if stderr is not a terminal.
+/// Creates a sign that work goes on of which no share is known; it is hidden where no progress is shown.
 pub fn spinner(quiet: bool, what: &'static str) -> Spinner {
-    if quiet || !std::io::stderr().is_terminal() {
+    if !shows_progress(quiet) {
         return Spinner(ProgressBar::hidden());
     }
     let bar = ProgressBar::new_spinner().with_message(what);
@@ -117,7 +121,7 @@ pub fn spinner(quiet: bool, what: &'static str) -> Spinner {
     Spinner(bar)
 }
 
-/// A sign on stderr that something goes on.
+/// A sign on stderr that work goes on, until it is dropped.
 pub struct Spinner(ProgressBar);
 
 impl Drop for Spinner {

@@ -35,8 +35,8 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
     render_checks::check_sizes(&plan, scene.film.size)?;
     render_checks::check_files(arguments, &plan, &InputFiles::of_scene(&scene, &report))?;
-    let first = render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
-    let is_empty = render_checks::is_empty(&scene, &plan).map_err(|e| e.at(&input.scene))?;
+    let (first, is_empty) =
+        render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
     if is_empty && !arguments.allow_empty {
         return Err(render_checks::nothing_to_render(&report).at(&input.scene));
     }

@@ -87,30 +87,20 @@ pub fn check_files(arguments: &Render, plan: &RenderPlan, inputs: &InputFiles) -
     paths::check_outputs(files().chain(others), inputs)
 }
 
-/// Poses every frame before any is rendered. Returns the scene of the first frame. Numbers that are out
-/// of bounds in a pose are only found when it is rendered.
-pub fn check_poses(scene: &Scene, plan: &RenderPlan) -> Result<Scene> {
-    let mut poses = PosedScene::new(scene);
-    for frame in &plan.frames {
-        poses.pose(frame.time)?;
-    }
-    poses.pose(plan.frames.first().map_or(0.0, |frame| frame.time))?;
-    Ok(poses.into_scene())
-}
-
-/// True if no frame of a rendering has anything that a ray can hit.
+/// Poses every frame before any is rendered. Returns the scene of the first frame, and whether no frame has
+/// anything that a ray can hit. Numbers that are out of bounds in a pose are only found when it is rendered.
 ///
 /// # Errors
 /// When a frame cannot be posed.
-pub fn is_empty(scene: &Scene, plan: &RenderPlan) -> Result<bool> {
+pub fn check_poses(scene: &Scene, plan: &RenderPlan) -> Result<(Scene, bool)> {
     let mut poses = PosedScene::new(scene);
-    for frame in &plan.frames {
-        if !Geometry::new(poses.pose(frame.time)?).is_empty() {
-            return Ok(false);
-        }
-    }
     // Nothing is missing where no frame is to be rendered.
-    Ok(!plan.frames.is_empty())
+    let mut is_empty = !plan.frames.is_empty();
+    for frame in &plan.frames {
+        is_empty &= Geometry::new(poses.pose(frame.time)?).is_empty();
+    }
+    poses.pose(plan.frames.first().map_or(0.0, |frame| frame.time))?;
+    Ok((poses.into_scene(), is_empty))
 }
 
 /// Returns the error that a scene has nothing that a ray can hit, with what its files have lost.

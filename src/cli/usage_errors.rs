@@ -1,7 +1,9 @@
 //! The errors of a command line that cannot be parsed.
 
-use clap::Error;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, Error};
+
+use crate::cli::args::Arguments;
 
 /// Flags of other programs, and ours that do the same.
 const FLAGS_ELSEWHERE: [(&str, &str); 8] = [
@@ -24,10 +26,18 @@ pub fn correct_tips(mut error: Error) -> Error {
     error.remove(ContextKind::Suggested);
     if let Some(ContextValue::String(flag)) = error.get(ContextKind::InvalidArg) {
         let same = FLAGS_ELSEWHERE.iter().find(|(other, _)| other == flag);
-        if let Some((_, ours)) = same {
+        if let Some((_, ours)) = same.filter(|(_, ours)| is_flag_here(ours)) {
             let ours = ContextValue::String((*ours).to_owned());
             error.insert(ContextKind::SuggestedArg, ours);
         }
     }
     error
+}
+
+/// True if the subcommand of this process's arguments has a flag.
+fn is_flag_here(flag: &str) -> bool {
+    let command = Arguments::command();
+    let subcommand = std::env::args_os().skip(1).find_map(|word| command.find_subcommand(word));
+    let mut flags = subcommand.into_iter().flat_map(|command| command.get_arguments());
+    flags.any(|argument| argument.get_long() == flag.strip_prefix("--"))
 }

@@ -67,7 +67,7 @@ pub struct LoadOptions {
     ///
     /// Every object gets the default material: no material, texture, texture coordinate or vertex
     /// colour is read, no MTL file or image is opened, and it does not matter whether they are there.
-    /// So there are no alpha masks (a ray hits what a mask would cut out), and no surface is one-sided.
+    /// Alpha masks are thus missing (a ray hits what a mask would cut out), and no surface is one-sided.
     /// Positions and normals stay, and so do cameras, lights and animations that the files have; none
     /// are added.
     pub geometry_only: bool,

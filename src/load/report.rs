@@ -40,7 +40,7 @@ pub struct LoadReport {
     /// Images and materials that a placeholder replaces; one sentence each, also among
     /// the warnings.
     pub placeholders: Vec<String>,
-    /// What each glTF file says of itself.
+    /// The description that each glTF file has of itself.
     pub assets: Vec<Asset>,
     /// The names of the variants of materials that glTF files offer (KHR_materials_variants).
     pub variants: BTreeSet<String>,
@@ -50,7 +50,7 @@ pub struct LoadReport {
     pub bytes: u64,
 }
 
-/// What a glTF file says of itself: its `asset`, and the animations that it has.
+/// The description that a glTF file has of itself: its `asset`, and its animations.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Asset {

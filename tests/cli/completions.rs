@@ -83,35 +83,3 @@ fn manual_pages_have_no_warnings() {
         output_of(&folder, "man", &["--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", path]);
     }
 }
-
-#[test]
-fn flags_of_other_programs_lead_to_ours_and_no_tip_misleads() {
-    let folder = Folder::with(&endless());
-    for (flag, ours) in [("--width", "--size"), ("--samples", "--spp"), ("--resolution", "--size")]
-    {
-        let message = folder.run(&format!("render scene.toml {flag} 64")).refused();
-        assert!(message.contains(&format!("'{ours}'")) && !message.contains("'-- "), "{message}");
-    }
-    let message = folder.run("render scene.toml --nonsense-flag").refused();
-    assert!(!message.contains("tip:"), "{message}");
-}
-
-#[test]
-fn tolerance_that_any_two_pictures_meet_is_refused() {
-    let folder = Folder::with(SPHERE);
-    folder.run("render scene.toml -q -o a.png -o a.exr").good();
-    for tolerance in ["1", "1.5", "255", "3/2"] {
-        let message = folder.run(&format!("diff a.png a.png --tolerance {tolerance}")).refused();
-        assert!(
-            message.contains("any two images would pass") && message.contains("1/255"),
-            "{message}"
-        );
-    }
-    for tolerance in ["inf", "nan", "-1", "1/0", "0/0", "1/", "1e99", "1/1e-99"] {
-        folder.run(&format!("diff a.png a.png --tolerance {tolerance}")).refused();
-        folder.run(&format!("diff a.exr a.exr --tolerance {tolerance}")).refused();
-    }
-    folder.run("diff a.exr a.exr --tolerance 1").good();
-    let stdout = folder.run("diff a.png a.png --tolerance 1/255").good().stdout;
-    assert!(stdout.contains("more than 0.003921"), "{stdout}");
-}

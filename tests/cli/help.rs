@@ -76,3 +76,18 @@ fn a_closed_pipe_is_success_without_a_word() {
         assert_eq!(run.stdout, "", "{command}");
     }
 }
+
+#[test]
+fn flags_of_other_programs_lead_to_ours_and_no_tip_misleads() {
+    let folder = Folder::with(&endless());
+    for (flag, ours) in [("--width", "--size"), ("--samples", "--spp"), ("--resolution", "--size")]
+    {
+        let message = folder.run(&format!("render scene.toml {flag} 64")).refused();
+        assert!(message.contains(&format!("'{ours}'")) && !message.contains("'-- "), "{message}");
+    }
+    // No flag is named that the subcommand does not have.
+    let message = folder.run("diff a.png b.png --width 64").refused();
+    assert!(!message.contains("tip:"), "{message}");
+    let message = folder.run("render scene.toml --nonsense-flag").refused();
+    assert!(!message.contains("tip:"), "{message}");
+}

@@ -475,3 +475,23 @@ fn diff_refuses_a_tolerance_below_0_or_no_number() {
 fn diff_refuses_a_picture_that_is_not_there() {
     assert!(two_pictures().run("diff a.png none.png").refused().contains("none.png"));
 }
+
+#[test]
+fn tolerance_that_any_two_pictures_meet_is_refused() {
+    let folder = Folder::with(SPHERE);
+    folder.run("render scene.toml -q -o a.png -o a.exr").good();
+    for tolerance in ["1", "1.5", "255", "3/2"] {
+        let message = folder.run(&format!("diff a.png a.png --tolerance {tolerance}")).refused();
+        assert!(
+            message.contains("any two images would pass") && message.contains("1/255"),
+            "{message}"
+        );
+    }
+    for tolerance in ["inf", "nan", "-1", "1/0", "0/0", "1/", "1e99", "1/1e-99"] {
+        folder.run(&format!("diff a.png a.png --tolerance {tolerance}")).refused();
+        folder.run(&format!("diff a.exr a.exr --tolerance {tolerance}")).refused();
+    }
+    folder.run("diff a.exr a.exr --tolerance 1").good();
+    let stdout = folder.run("diff a.png a.png --tolerance 1/255").good().stdout;
+    assert!(stdout.contains("more than 0.003921"), "{stdout}");
+}

@@ -14,7 +14,6 @@ use crate::cli::load_report::{self, LoadSummary};
 use crate::cli::paths::{self, InputFiles};
 use crate::cli::{args::Info, messages, output, render_stats::Geometry};
 use crate::error::Result;
-use crate::intersect::Backend;
 use crate::load::{LoadReport, Loaded};
 use crate::scene::animation::{Animated, Animation};
 use crate::scene::{Scene, SceneFeatures};
@@ -148,7 +147,7 @@ impl Summary {
         let bounds = scene.bounds();
         let bounds = (!bounds.is_empty()).then_some(bounds);
         // The default of `render`: precision fast, on Embree if it is built in.
-        let has_f32_rays = Backend::default() != Backend::Rust;
+        let has_f32_rays = cfg!(feature = "embree");
         let features = SceneFeatures::from_scene(scene);
         Self {
             files: Files::new(&arguments.scene, report),

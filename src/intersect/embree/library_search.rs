@@ -13,7 +13,7 @@ pub struct Candidates {
     pub help: &'static str,
 }
 
-/// Where `scripts/setup` puts Embree, or a link to it: a build in a checkout uses that.
+/// The folder into which `scripts/setup` puts Embree, or a link to it.
 const SET_UP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/.deps/embree");
 
 /// The names under which the system's loader is asked for the library.

@@ -3,7 +3,7 @@
 /// The number in its file of the face that each triangle of a mesh comes from.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum FaceMap {
-    /// It was not recorded.
+    /// No numbers were recorded.
     #[default]
     Unrecorded,
     /// The triangles are faces, one after the other from this number on.

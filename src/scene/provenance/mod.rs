@@ -1,7 +1,7 @@
 //! The provenance of primitives: the places in a scene's files that they come from.
 //!
-//! It is recorded where a load was asked for it, and then follows the primitives through everything that
-//! a load does to them: triangulation, faces that are dropped, copies that are removed, models that are
+//! Provenance is recorded if a load is asked for it, and follows the primitives through everything that a
+//! load does to them: triangulation, faces that are dropped, copies that are removed, models that are
 //! merged into a scene.
 //!
 //! ```no_run
@@ -147,8 +147,8 @@ impl Scene {
     /// The place in the files that a primitive comes from; none unless the load was asked to
     /// [record](crate::scene::Scene::provenance) it, and for what no file describes.
     ///
-    /// It is right for the scene as it was loaded, with objects added at most, and at any time of its
-    /// animation.
+    /// The answer is right for the scene as it was loaded, at any time of its animation, and if objects were
+    /// only added since.
     pub fn provenance_of(&self, id: PrimitiveId) -> Option<Provenance<'_>> {
         self.provenance.as_ref()?.find(id)
     }

@@ -75,7 +75,7 @@ pub struct Bsdf {
 /// A direction sampled from a BSDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BsdfSample {
-    /// Where the light comes from.
+    /// The direction to where the light comes from.
     pub wi: DVec3,
     /// f |cos θi|, or the factor of a delta lobe.
     pub value: Vec3,

@@ -1,4 +1,4 @@
-//! What a file says of itself: its asset, and the animations that it has.
+//! The description that a glTF file has of itself: its `asset`, and the names of its animations.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use gltf::json::{self, Value};
 
 use crate::load::report::{Asset, AssetAnimation};
 
-/// Returns what a file says of itself.
+/// Returns the description that a file has of itself.
 pub fn read(path: &Path, root: &json::Root) -> Asset {
     let json::Asset { version, generator, copyright, .. } = &root.asset;
     let animations = root.animations.iter().map(|animation| AssetAnimation {

@@ -46,10 +46,10 @@ pub struct SceneTable {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum DefaultLights {
-    /// Those of a bare model: a key light from the upper left of the camera, a fill light from its right, and
+    /// The lights of a bare model: a key light from the upper left of the camera, a fill light from its right, and
     /// ambient light.
     Auto,
-    /// None.
+    /// No light.
     None,
 }
 

@@ -1,4 +1,4 @@
-//! How much light microfacets reflect at once: tables of the directional albedo, computed at first use.
+//! Tables of the directional albedo of microfacets, by single reflections; computed at first use.
 //!
 //! A single reflection loses the light that hits microfacets again. What is lost comes back in a lobe of
 //! multiple scattering (Kulla and Conty, 2017), which needs the directional albedo E(ωo) of a single

@@ -1,4 +1,5 @@
-//! What one reflection off microfacets sends back, by numeric integration; the nodes of its tables.
+//! The light that a single reflection off microfacets sends back, by numeric integration, and the nodes of its
+//! tables.
 
 use glam::DVec3;
 

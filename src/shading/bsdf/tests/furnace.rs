@@ -117,19 +117,24 @@ fn the_albedo_is_what_the_furnace_finds() {
 }
 
 /// Light that a rough boundary refracts after more than one reflection is missing, and beyond the critical
-/// angle that is much of it. A smaller loss than this bound is welcome.
+/// angle that is much of it. A smaller loss than these bounds is welcome.
 #[test]
-fn clear_glass_of_little_roughness_loses_little() {
-    let mut worst = (0.0f32, String::new());
-    for roughness in [0.0, 0.1, 0.2, 0.3] {
-        for angle in [0.0, 40.0, 70.0, 85.0, 110.0, 130.0, 150.0, 180.0] {
-            let [reflected, transmitted] = furnace(&glass(roughness, 1.5), at(angle, 20.0), 200);
-            let loss = 1.0 - (reflected + transmitted).x;
-            if loss > worst.0 {
-                worst = (loss, format!("roughness {roughness} at {angle}°"));
+fn clear_glass_loses_no_more_than_the_documentation_says() {
+    let greatest_loss = |roughnesses: &[f32]| {
+        let mut worst = (0.0f32, String::new());
+        for &roughness in roughnesses {
+            for angle in [0.0, 40.0, 70.0, 85.0, 110.0, 130.0, 150.0, 180.0] {
+                let [reflected, transmitted] =
+                    furnace(&glass(roughness, 1.5), at(angle, 20.0), 200);
+                let loss = 1.0 - (reflected + transmitted).x;
+                if loss > worst.0 {
+                    worst = (loss, format!("roughness {roughness} at {angle}°"));
+                }
             }
         }
-    }
-    println!("greatest loss {worst:?}");
-    assert!(worst.0 < 0.09, "{worst:?}");
+        println!("greatest loss {worst:?}");
+        worst.0
+    };
+    assert!(greatest_loss(&[0.0, 0.1, 0.2, 0.3]) < 0.09);
+    assert!(greatest_loss(&[1.0]) < 0.45);
 }
