@@ -2,6 +2,8 @@
 
 use glam::{DMat3, DVec3};
 
+use crate::error::{Error, Result};
+
 /// The options of the camera that frames a bare model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Framing {
@@ -44,6 +46,19 @@ impl Framing {
         self.azimuth.is_some() || self.elevation.is_some()
     }
 
+    /// Checks that its angles are finite.
+    ///
+    /// # Errors
+    /// When one is not.
+    pub(super) fn check(&self) -> Result<()> {
+        let mut angles = [self.azimuth, self.elevation].into_iter().flatten();
+        match angles.find(|angle| !angle.is_finite()) {
+            Some(angle) => Err(Error::input(format!("an angle of the framing is {angle}"))
+                .help("angles are finite numbers of radians")),
+            None => Ok(()),
+        }
+    }
+
     /// Returns the rotation that takes right, up and front (x, y, z) to the file's coordinates.
     pub(super) fn axes(&self) -> DMat3 {
         self.up.unwrap_or_default().axes()
@@ -73,6 +88,14 @@ impl UpAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn angles_that_are_not_finite_are_an_error() {
+        let framing = |azimuth, elevation| Framing { azimuth, elevation, ..Framing::default() };
+        assert!(framing(Some(f64::NAN), None).check().is_err());
+        assert!(framing(Some(0.0), Some(f64::INFINITY)).check().is_err());
+        assert!(framing(Some(9.0), Some(-9.0)).check().is_ok());
+    }
 
     #[test]
     fn axes_are_rotations() {

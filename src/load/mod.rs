@@ -138,7 +138,8 @@ impl LoadOptions {
     ///
     /// # Errors
     /// The same as for [`load`]; when a file names another one outside, or asks for more than a
-    /// limit allows, unless the options say otherwise; and when no file has the variant.
+    /// limit allows, unless the options say otherwise; when no file has the variant; and when the framing
+    /// is not finite, or is asked of a scene file.
     pub fn load(&self, path: impl AsRef<Path>) -> Result<Loaded> {
         // On a thread of the pool, where a parallel loop over little costs nothing: a file can have a
         // million meshes of a triangle.
@@ -152,6 +153,7 @@ impl LoadOptions {
         let file = sandbox.open_named(path)?;
         let own_bytes = file.length();
         let is_scene_file = extension(path) == "toml";
+        self.framing.check()?;
         if is_scene_file && !self.framing.is_default() {
             let message = "the framing of a bare model does not apply to a scene file";
             return Err(Error::input(message)
