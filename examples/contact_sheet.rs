@@ -67,8 +67,20 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
     // Theirs are made by Babylon.js, whose cameras see 0.8 radians unless told otherwise.
     scene.cameras = vec![Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8))?];
     scene.lights = vec![
-        light(LightKind::Directional { direction: DVec3::new(0.3, -0.8, -0.5).normalize() }, 0.6),
-        light(LightKind::Directional { direction: DVec3::new(-0.2, 0.1, -1.0).normalize() }, 0.4),
+        light(
+            LightKind::Directional {
+                direction: DVec3::new(0.3, -0.8, -0.5).normalize(),
+                angle: 0.0,
+            },
+            0.6,
+        ),
+        light(
+            LightKind::Directional {
+                direction: DVec3::new(-0.2, 0.1, -1.0).normalize(),
+                angle: 0.0,
+            },
+            0.4,
+        ),
         light(LightKind::Ambient, 0.4),
     ];
     scene.film.size = [SIDE; 2];
@@ -78,7 +90,13 @@ fn ours(file: &Path, model: &Value) -> Result<RgbaImage, Box<dyn Error>> {
 }
 
 fn light(kind: LightKind, intensity: f32) -> Light {
-    Light { name: String::new(), kind, intensity: Vec3::splat(intensity), shadow: Shadow::None }
+    Light {
+        name: String::new(),
+        kind,
+        intensity: Vec3::splat(intensity),
+        shadow: Shadow::None,
+        samples: 16,
+    }
 }
 
 fn bytes(film: &Film, settings: &Settings) -> RgbaImage {

@@ -39,12 +39,14 @@ fn main() -> Result<()> {
         },
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
+        samples: 16,
     });
     scene.lights.push(Light {
         name: "sky".to_owned(),
         kind: LightKind::Ambient,
         intensity: Vec3::new(0.2, 0.22, 0.25),
         shadow: Shadow::None,
+        samples: 16,
     });
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
     scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Projection::FovY(0.6))?);

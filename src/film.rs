@@ -42,12 +42,16 @@ pub struct Film {
     pub size: [u32; 2],
     /// The quantity that it shows.
     pub view: View,
-    /// The `width · height` pixels.
+    /// The `width · height` pixels. With alpha their radiance is premultiplied (associated): it is what
+    /// reaches the camera from the share that is covered.
     pub pixels: Vec<Pixel>,
+    /// The share of each of the `width · height` pixels that something covers, from 0 to 1; `None` for
+    /// an opaque picture.
+    pub alpha: Option<Vec<f32>>,
 }
 
 impl Film {
-    /// Creates a film whose pixels are 0.
+    /// Creates an opaque film whose pixels are 0.
     pub fn new(size: [u32; 2], view: View) -> Self {
         let count = size[0] as usize * size[1] as usize;
         // The system maps memory when it is first written, which takes a while for a large picture: all
@@ -57,18 +61,18 @@ impl Film {
             rayon::iter::repeat_n([[0.0; 3]; CHUNK], count.div_ceil(CHUNK)).collect();
         let mut pixels = chunks.into_flattened();
         pixels.truncate(count);
-        Self { size, view, pixels }
+        Self { size, view, pixels, alpha: None }
     }
 
-    /// Checks that there is memory for a film of this size.
+    /// Checks that there is memory for a film of this size, with or without alpha.
     ///
     /// # Errors
     /// When there is not.
-    pub(crate) fn check_memory(size: [u32; 2]) -> Result<()> {
+    pub(crate) fn check_memory(size: [u32; 2], has_alpha: bool) -> Result<()> {
         let [width, height] = size;
-        let count = width as usize * height as usize;
-        Vec::<Pixel>::new().try_reserve_exact(count).map_err(|_| {
-            let bytes = count * size_of::<Pixel>();
+        let of_alpha = if has_alpha { size_of::<f32>() } else { 0 };
+        let bytes = width as usize * height as usize * (size_of::<Pixel>() + of_alpha);
+        Vec::<u8>::new().try_reserve_exact(bytes).map_err(|_| {
             Error::failed(format!(
                 "there is not enough memory for {width}x{height} pixels, which take {bytes} bytes"
             ))

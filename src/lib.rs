@@ -95,8 +95,8 @@ pub use geometry::{
 pub use intersect::Embree;
 pub use intersect::{Backend, BruteForce, BuildQuality, Bvh, Coherence, Intersector, Precision};
 pub use load::{
-    Asset, AssetAnimation, DropReason, Framing, Limit, Limits, LoadOptions, LoadReport, Loaded,
-    UpAxis, add_ground, load,
+    Asset, AssetAnimation, DropReason, EnvironmentSource, Framing, Limit, Limits, LoadOptions,
+    LoadReport, Loaded, UpAxis, add_ground, load,
 };
 pub use render::{Elapsed, RenderOptions, Renderer, Rendering, Statistics};
 pub use scene::{
@@ -120,7 +120,7 @@ pub mod internals {
     pub use crate::load::schema;
     pub use crate::render::Traced;
     pub use crate::scene::{IncidentLight, ShadingParams};
-    pub use crate::shading::{Bsdf, BsdfSample, MaterialParams};
+    pub use crate::shading::{Bsdf, BsdfSample};
     pub use crate::surface::{TextureContext, ambient_occlusion, shading_params};
     pub use crate::write::{Settings, png_bytes, write};
 }

@@ -47,6 +47,7 @@ pub fn with_camera_and_light(mut scene: Scene, eye: DVec3) -> Scene {
         kind: LightKind::Point { position: LIGHT, falloff: Falloff::None, range: f64::INFINITY },
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
+        samples: 16,
     });
     scene.check().expect("the benches' scenes are valid");
     scene

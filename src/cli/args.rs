@@ -69,6 +69,7 @@ Examples:
   envers render model.glb -o out.png
   envers render scene.toml -o out.png -o out.exr --size 1920x1080 --spp 16
   envers render scene.toml -o out.png --adaptive 1..25
+  envers render model.glb -o cutout.png --transparent
   envers render scene.toml -o depth.exr --view depth --stats -
   envers render orbit.toml -o orbit.gif
   envers render orbit.toml --frames 1-120x2 -o out/frame-####.png --skip-existing")]
@@ -108,6 +109,10 @@ pub struct Render {
     /// Add a matt ground plane under the scene, to receive its shadows
     #[arg(long)]
     pub ground: bool,
+    /// Transparent background: the image gets alpha, the share of each pixel that something covers.
+    /// Mirrors and glass still show the background. Not for JPEG and GIF
+    #[arg(long)]
+    pub transparent: bool,
     /// Quantity to show: beauty is the rendered image, id numbers the objects. Normals, depths and
     /// ids are raw values in EXR and colours in other formats
     #[arg(long, value_name = "VIEW", value_parser = choice(VIEWS), default_value = "beauty")]
@@ -281,7 +286,9 @@ pub struct Info {
 Prints the root-mean-square error (RMSE), the peak signal-to-noise ratio (PSNR), the largest \
 difference, and FLIP (Andersson et al. 2020): the difference that a viewer perceives when flipping \
 between the images, from 0 to 1, at 67 pixels per degree. For FLIP an EXR is shown as sRGB, clamped \
-to [0, 1]. Images of views other than beauty have no FLIP.")]
+to [0, 1], and an image with alpha on black. Images of views other than beauty have no FLIP.
+
+Alpha is compared like a colour; an image without it counts as opaque.")]
 pub struct Diff {
     /// First image: .png, .jpg, .webp or .exr
     pub a: PathBuf,

@@ -10,8 +10,8 @@ use crate::film::View;
 use crate::intersect::{Backend, BuildQuality, Precision};
 use crate::load::{Limit, UpAxis};
 use crate::measure::stress::Goal;
-use crate::scene::Tone;
 use crate::scene::check::{check_samples, check_size};
+use crate::scene::{ShadingModel, Tone};
 
 /// A ray tracing backend; none leaves the choice to the renderer.
 pub type BackendChoice = Option<Backend>;
@@ -54,6 +54,8 @@ pub const BVH_QUALITIES: &Choices<BvhQuality> =
     &[("auto", None), ("low", Some(BuildQuality::Low)), ("medium", Some(BuildQuality::Medium))];
 pub const VIEWS: &Choices<View> =
     &[("beauty", View::Beauty), ("normal", View::Normal), ("depth", View::Depth), ("id", View::Id)];
+pub const SHADING_MODELS: &Choices<ShadingModel> =
+    &[("pbr", ShadingModel::Pbr), ("phong", ShadingModel::Phong)];
 pub const UP_AXES: &Choices<UpAxis> = &[
     ("x", UpAxis::X),
     ("y", UpAxis::Y),

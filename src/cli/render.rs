@@ -30,10 +30,13 @@ pub fn run(arguments: &Render) -> Result<ExitCode> {
         add_ground(&mut scene, input.up.unwrap_or_default().direction());
     }
     set_samples(&mut scene.film, arguments)?;
+    // Debug views have no alpha.
+    scene.film.transparent |= arguments.transparent;
+    scene.film.transparent &= arguments.view == View::Beauty;
     scene.film.exposure = arguments.exposure.unwrap_or(scene.film.exposure);
     scene.film.tone = arguments.tone.unwrap_or(scene.film.tone);
     let plan = RenderPlan::new(arguments, &scene, outputs)?;
-    render_checks::check_sizes(&plan, scene.film.size)?;
+    render_checks::check_formats(&plan, &scene.film)?;
     render_checks::check_files(arguments, &plan, &InputFiles::of_scene(&scene, &report))?;
     let (first, is_empty) =
         render_checks::check_poses(&scene, &plan).map_err(|e| e.at(&input.scene))?;
@@ -132,7 +135,9 @@ impl<'a> FrameWriter<'a> {
     ) -> Result<Self> {
         let frames = plan.frames.len();
         // The animated images, each of which is one file for all frames.
-        let movie = |path: &PathBuf| Movie::create(path, scene.film.size, frames as u32, plan.fps);
+        let FilmSettings { size, transparent, .. } = scene.film;
+        let movie =
+            |path: &PathBuf| Movie::create(path, size, transparent, frames as u32, plan.fps);
         let totals = RenderTotals {
             statistics: Statistics::zero(options),
             frames,
@@ -294,6 +299,9 @@ fn metadata(scene: &Scene, options: &RenderOptions) -> Vec<(String, String)> {
     // What is the rule is left out.
     if !scene.film.soft_terminator {
         entries.push(("soft_terminator", "false".to_owned()));
+    }
+    if scene.film.transparent {
+        entries.push(("transparent", "true".to_owned()));
     }
     entries.extend([
         ("camera", format!("{camera} {}", scene.cameras[camera].name).trim().to_owned()),

@@ -10,7 +10,7 @@ use crate::cli::{load_report, output};
 use crate::error::{Error, Result};
 use crate::film::View;
 use crate::load::LoadReport;
-use crate::scene::{Scene, animation::PosedScene};
+use crate::scene::{FilmSettings, Scene, animation::PosedScene};
 use crate::write::{self, Format};
 
 /// Returns the output files, after checking that they are distinct, writable, and of formats to
@@ -44,7 +44,7 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
     let for_exr = "applies to EXR, and no output is an .exr";
     let not_for_exr = "does not apply to EXR, which stores the radiance itself";
     let for_beauty = "applies to the beauty view only: other views are one sample of raw values";
-    let Render { half, quality, exposure, tone, adaptive, threshold, .. } = arguments;
+    let Render { half, quality, exposure, tone, adaptive, threshold, transparent, .. } = arguments;
     // Each flag, whether it is given, whether it has an effect, and why it has none otherwise.
     let flags = [
         ("--half", *half, has_exr, for_exr),
@@ -55,6 +55,7 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
         ("--tone", tone.is_some(), is_beauty, for_beauty),
         ("--half", *half, is_beauty, for_beauty),
         ("--spp", arguments.trace.spp.is_some(), is_beauty, for_beauty),
+        ("--transparent", *transparent, is_beauty, for_beauty),
         ("--adaptive", adaptive.is_some(), is_beauty, for_beauty),
         ("--threshold", threshold.is_some(), is_beauty, for_beauty),
         ("--max-depth", arguments.trace.max_depth.is_some(), is_beauty, for_beauty),
@@ -67,13 +68,17 @@ fn check_format_flags(arguments: &Render, formats: &[Format]) -> Result<()> {
     }
 }
 
-/// Checks that the formats of all outputs can have pictures of this size.
+/// Checks that the formats of all outputs can have pictures of this size, and alpha if the film has any.
 ///
 /// # Errors
 /// When one cannot.
-pub fn check_sizes(plan: &RenderPlan, size: [u32; 2]) -> Result<()> {
+pub fn check_formats(plan: &RenderPlan, film: &FilmSettings) -> Result<()> {
     let mut outputs = plan.stills.iter().chain(&plan.movies);
-    outputs.try_for_each(|path| Format::from_path(path)?.check_size(size, path))
+    outputs.try_for_each(|path| {
+        let format = Format::from_path(path)?;
+        format.check_size(film.size, path)?;
+        if film.transparent { format.check_alpha(path) } else { Ok(()) }
+    })
 }
 
 /// Checks the files of all frames, and the others, before any frame is rendered.

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::flag_values::{
-    NamedLimit, PRECISIONS, Size, UP_AXES, choice, elevation, finite, seconds, size,
+    NamedLimit, PRECISIONS, SHADING_MODELS, Size, UP_AXES, choice, elevation, finite, seconds, size,
 };
 use crate::cli::{load_report, messages, paths};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
-use crate::load::{Framing, Limits, LoadOptions, LoadReport, Loaded, UpAxis};
-use crate::scene::check::{MAX_DEPTH, MAX_SPP};
-use crate::scene::{Camera, Scene};
+use crate::load::{EnvironmentSource, Framing, Limits, LoadOptions, LoadReport, Loaded, UpAxis};
+use crate::scene::check::{MAX_DEPTH, MAX_OCCLUSION_RAYS, MAX_SPP};
+use crate::scene::{Camera, Scene, ShadingModel};
 
 /// The flags for loading a scene's files; shared by the commands that load one.
 #[derive(Args, Clone)]
@@ -27,6 +27,14 @@ pub struct LoadArgs {
     /// Show the back faces of one-sided glTF materials (`doubleSided` false), too
     #[arg(long)]
     pub double_sided: bool,
+    /// Environment that lights SCENE, instead of its own: an equirectangular image file (.hdr, .exr or any
+    /// format of textures), studio, sky or none [default: the scene's; studio for a model]
+    #[arg(long, value_name = "FILE|NAME")]
+    pub environment: Option<String>,
+    /// Shading model of models' materials: pbr (physically based) or phong (Lambert and Phong, as in the
+    /// tutorial) [default: pbr for glTF files, phong for most MTL files]
+    #[arg(long, value_name = "MODEL", value_parser = choice(SHADING_MODELS))]
+    pub shading: Option<ShadingModel>,
     /// Change a limit on what SCENE may use: bytes, json, nodes, depth, instances, vertices,
     /// triangles, deformed, elements, keys, pictures or pixels; can be given several times
     #[arg(long, value_name = "NAME=NUMBER")]
@@ -38,6 +46,8 @@ impl LoadArgs {
     pub fn options(&self) -> LoadOptions {
         LoadOptions {
             variant: self.variant.clone(),
+            shading: self.shading,
+            environment: self.environment.as_deref().map(EnvironmentSource::from_text),
             allow_outside: self.allow_outside,
             double_sided: self.double_sided,
             limits: limits(&self.limit),
@@ -94,6 +104,10 @@ pub struct TraceArgs {
     /// the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
+    /// Ambient occlusion: number of rays, from 0 to 1024, by which each surface finds how much of the
+    /// environment's and of ambient light arrives there [default: the scene's, or 0]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_OCCLUSION_RAYS)), allow_negative_numbers = true)]
+    pub ao: Option<u32>,
     /// Time of an animation to show, in seconds [default: 0, the first frame]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub time: Option<f64>,
@@ -177,6 +191,9 @@ impl TraceArgs {
         let (scene, path) = (&mut input.scene, &self.input.scene);
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);
+        }
+        if let Some(rays) = self.ao {
+            scene.film.ambient_occlusion = rays;
         }
         if let Some(depth) = self.max_depth {
             scene.film.max_depth = depth;

@@ -1,5 +1,5 @@
 //! The intersection mathematics: rays, hits, bounding boxes, and pure functions in f64 that
-//! intersect a ray with a sphere, a plane or a triangle.
+//! intersect a ray with a sphere, a plane or a triangle; and the sampling of lights.
 //!
 //! All backends call these functions, so that they find hits at the same distances. No function
 //! uses a fused multiply-add: results must not depend on whether the compiler vectorised the caller.
@@ -29,6 +29,7 @@ mod lanes;
 pub mod plane;
 mod ray;
 mod ray16;
+pub mod sampling;
 pub mod sphere;
 pub mod triangle;
 

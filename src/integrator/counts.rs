@@ -52,6 +52,14 @@ pub struct FeatureCounts {
     pub filters: u64,
     /// Hits on one-sided surfaces, whose side was looked at.
     pub culling: u64,
+    /// Points on which light of a sample of a light with an extent fell, sixteen at a time.
+    pub area_lights: u64,
+    /// Points on which light of a point of an emissive surface fell, sixteen at a time.
+    pub emissive_lights: u64,
+    /// Points whose BSDF was evaluated.
+    pub pbr: u64,
+    /// Rays that see the environment, and points that it lights.
+    pub environment: u64,
 }
 
 impl FeatureCounts {
@@ -149,5 +157,9 @@ impl std::ops::AddAssign for FeatureCounts {
         self.planes += other.planes;
         self.filters += other.filters;
         self.culling += other.culling;
+        self.area_lights += other.area_lights;
+        self.emissive_lights += other.emissive_lights;
+        self.pbr += other.pbr;
+        self.environment += other.environment;
     }
 }

@@ -1,20 +1,59 @@
 //! The materials of a scene as shading reads them, close together.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use crate::geometry::{Geometry, Hit};
 use crate::integrator::counts::FeatureCounts;
 use crate::scene::{Material, MaterialId, Mesh, Scene, ShadingParams};
-use crate::shading::Reflectance;
-use crate::surface::{self, TextureContext};
+use crate::shading::{Bsdf, LobeAlbedos, Reflectance};
+use crate::surface::{self, PbrParams, TextureContext};
 
 /// The materials of a scene, and where textures, checkers or vertex colours change them.
 pub(super) struct MaterialCache {
     materials: Vec<CachedMaterial>,
+    /// The physically based materials, as they are where nothing changes them.
+    pbr: Vec<Option<CachedPbr>>,
     /// True for each plane with a checker.
     has_checker: Vec<bool>,
     /// True for each mesh with vertex colours.
     has_vertex_colors: Vec<bool>,
+}
+
+/// A physically based material as it is where no texture, checker or vertex colour changes it.
+pub(super) struct CachedPbr {
+    /// The parameters.
+    pub params: PbrParams,
+    /// The BSDF.
+    pub bsdf: Bsdf,
+    /// The albedos of its lobes from the outside, at evenly spread cosines from 0 to 1; empty where they depend on
+    /// more than the cosine.
+    albedos: Vec<LobeAlbedos>,
+}
+
+/// The number of cosines for which albedos are stored.
+const COSINES: usize = 65;
+
+impl CachedPbr {
+    fn new(scene: &Scene, material: &Material) -> Self {
+        let params = surface::pbr_params(scene, material, &TextureContext::default());
+        let bsdf = Bsdf::new(&params.factors, 1.0);
+        let albedo = |i: usize| {
+            let cosine = (i as f64 / (COSINES - 1) as f64).max(1e-3);
+            bsdf.lobe_albedos(DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine))
+        };
+        let count = if params.factors.anisotropy == 0.0 { COSINES } else { 0 };
+        Self { albedos: (0..count).map(albedo).collect(), params, bsdf }
+    }
+
+    /// Returns the albedos of the lobes for light from `wo`.
+    pub fn lobe_albedos(&self, wo: DVec3) -> LobeAlbedos {
+        if wo.z <= 0.0 || self.albedos.is_empty() {
+            return self.bsdf.lobe_albedos(wo);
+        }
+        let place = wo.z.min(1.0) as f32 * (COSINES - 1) as f32;
+        let node = (place as usize).min(COSINES - 2);
+        self.albedos[node].lerp(&self.albedos[node + 1], place - node as f32)
+    }
 }
 
 /// A material as it is where no texture, checker or vertex colour changes it.
@@ -34,6 +73,8 @@ pub(super) struct CachedMaterial {
     pub has_normal_map: bool,
     /// True if it may send light on.
     pub spawns_rays: bool,
+    /// True if it is physically based.
+    pub is_pbr: bool,
 }
 
 impl CachedMaterial {
@@ -49,10 +90,12 @@ impl CachedMaterial {
             params,
             reflectance,
             is_finite: params.emission.is_finite() && reflectance.diffuse.is_finite(),
-            has_highlight: reflectance.specular != Vec3::ZERO || material.metallic.is_some(),
+            has_highlight: !material.is_pbr()
+                && (reflectance.specular != Vec3::ZERO || material.metallic.is_some()),
             is_textured: material.is_textured(),
             has_normal_map: material.normal_map.is_some(),
             spawns_rays: material.spawns_rays(),
+            is_pbr: material.is_pbr(),
         }
     }
 }
@@ -71,9 +114,14 @@ impl MaterialCache {
     /// Builds the cache of a scene.
     pub fn new(scene: &Scene) -> Self {
         let cached = |material| CachedMaterial::new(scene, material);
+        let pbr = |material: &Material| {
+            let is_cached = material.is_pbr() && !material.is_textured();
+            is_cached.then(|| CachedPbr::new(scene, material))
+        };
         let has_colors = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
         Self {
             materials: scene.materials.iter().map(cached).collect(),
+            pbr: scene.materials.iter().map(pbr).collect(),
             has_checker: scene.planes.iter().map(|plane| plane.checker.is_some()).collect(),
             has_vertex_colors: scene.meshes.iter().map(|mesh| has_colors(mesh)).collect(),
         }
@@ -83,6 +131,12 @@ impl MaterialCache {
     #[inline(always)]
     pub fn get(&self, id: MaterialId) -> &CachedMaterial {
         &self.materials[id.0 as usize]
+    }
+
+    /// Returns a physically based material, if it is one that has no texture.
+    #[inline(always)]
+    pub fn pbr(&self, id: MaterialId) -> Option<&CachedPbr> {
+        self.pbr[id.0 as usize].as_ref()
     }
 
     /// True if a material differs from point to point on the primitive that was hit.

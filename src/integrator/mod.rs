@@ -6,14 +6,20 @@
 //! shaded sixteen rays at a time.
 
 mod adaptive_sampling;
+mod alpha;
+mod ambient_occlusion;
 mod back_faces;
 mod camera_rays;
 mod counts;
 mod debug_view;
 mod direct_lighting;
+mod emissive_lights;
+mod environment_lighting;
+mod light_sources;
 mod material_cache;
 mod nested_dielectrics;
 mod null_interfaces;
+mod pbr_surfaces;
 mod pixel_sums;
 mod radiance;
 #[cfg(test)]
@@ -39,6 +45,7 @@ use adaptive_sampling::ContrastRow;
 pub use adaptive_sampling::PixelRecord;
 use back_faces::BackFaces;
 pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
+use light_sources::LightSources;
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
 use sample_pattern::SamplePattern;
@@ -58,6 +65,8 @@ pub struct Integrator<'a> {
     intersector: &'a dyn Intersector,
     camera: RayGenerator,
     view: View,
+    /// True if the picture has alpha.
+    has_alpha: bool,
     tiling: Tiling,
     /// The samples of a pixel.
     samples: SamplePattern,
@@ -68,6 +77,7 @@ pub struct Integrator<'a> {
     texture_lod: TextureLod,
     media: TransparentMedia,
     back_faces: BackFaces,
+    light_sources: LightSources<'a>,
     /// The instruction sets of the processor, for which inner loops are compiled.
     arch: pulp::Arch,
 }
@@ -78,6 +88,8 @@ struct ShadingFeatures {
     textures: bool,
     /// True if vertex normals are interpolated.
     smooth_normals: bool,
+    /// True if materials are physically based.
+    pbr: bool,
     /// True if materials have highlights.
     highlights: bool,
     /// True if light fades out toward the terminator of smooth meshes.
@@ -155,19 +167,27 @@ impl<'a> Integrator<'a> {
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
         let camera = camera.ray_generator(scene.film.size);
+        // Filtered now, on all threads: a thread that waits for another's result could not be shared.
+        scene.environment.iter().for_each(|environment| {
+            environment.filtered();
+        });
         let features = SceneFeatures::from_scene(scene);
         let has = |feature| features.uses(feature);
         let textures = [Feature::Uv, Feature::Checkers, Feature::VertexColors, Feature::NormalMaps];
+        let samples = SamplePattern::new(&film);
         Self {
             scene,
             intersector,
             view,
+            has_alpha: scene.film.transparent && view == View::Beauty,
             tiling,
-            samples: SamplePattern::new(&film),
+            light_sources: LightSources::new(scene, samples.offsets.len()),
+            samples,
             contrast_threshold: film.adaptive.map(|adaptive| adaptive.threshold),
             features: ShadingFeatures {
                 textures: textures.into_iter().any(has),
                 smooth_normals: has(Feature::SmoothNormals),
+                pbr: scene.materials_in_use().any(Material::is_pbr),
                 highlights: has(Feature::Highlights),
                 soft_terminator: scene.film.soft_terminator && has(Feature::SmoothNormals),
                 secondary_rays: has(Feature::Reflection) || has(Feature::Refraction),
@@ -180,6 +200,16 @@ impl<'a> Integrator<'a> {
             camera,
             arch: pulp::Arch::new(),
         }
+    }
+
+    /// True if the picture has alpha: a transparent background, and the view is the beauty.
+    pub fn has_alpha(&self) -> bool {
+        self.has_alpha
+    }
+
+    /// True if rays find how much of the light from all around arrives.
+    fn has_ambient_occlusion(&self) -> bool {
+        self.scene.film.ambient_occlusion > 0
     }
 
     /// True if some pixels may get more samples than others.

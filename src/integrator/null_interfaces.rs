@@ -65,7 +65,7 @@ pub(super) fn cross(integrator: &Integrator<'_>, wave: &mut Wave, counts: &mut C
         return;
     }
     let (scene, dielectrics) = (integrator.scene, &integrator.media.dielectrics);
-    let Wave { rays, hits, paths } = wave;
+    let Wave { rays, hits, paths, .. } = wave;
     let (mut continued, mut continued_hits) = (RayBatch::default(), HitBatch::default());
     let mut crossed = Vec::new();
     let mut active: Vec<usize> = (0..rays.len()).collect();

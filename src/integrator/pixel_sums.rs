@@ -178,13 +178,13 @@ fn set_group_lane(sums: &mut GroupSums16, i: usize, sum: DVec3) {
 
 /// Returns the mean of a number of samples that have this sum, as a film stores it.
 #[inline(always)]
-fn mean(sum: f64, samples: usize) -> f32 {
+pub(super) fn mean(sum: f64, samples: usize) -> f32 {
     (sum * (1.0 / samples as f64)) as f32
 }
 
 /// Returns the sum of a number of samples that have this mean; [`mean`] of it is the same mean again.
 #[inline(always)]
-fn sum_of_mean(mean: f32, samples: usize) -> f64 {
+pub(super) fn sum_of_mean(mean: f32, samples: usize) -> f64 {
     f64::from(mean) * samples as f64
 }
 

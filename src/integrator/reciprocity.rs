@@ -46,6 +46,7 @@ fn trace_path(
         throughput: DVec3::ONE,
         interior,
         cone: RayCone::default(),
+        roughness: 0.0,
     };
     let dielectrics = &integrator.media.dielectrics;
     let mut hits = Vec::new();
@@ -67,7 +68,7 @@ fn trace_path(
         };
         // The chosen one of at most two secondary rays.
         let params = shading_params_at(integrator, &ray, &hit, &surface, &path.cone);
-        let specular = SpecularHit { ray: 0, surface, params };
+        let specular = SpecularHit { ray: 0, surface, params, pbr: None };
         let mut spawned = Vec::new();
         spawn_at_hit(integrator, &ray, &hit, &specular, &path, |ray, is_refracted, path| {
             spawned.push((is_refracted, *ray, path));

@@ -4,10 +4,13 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::{Departure, Hit, Ray, Side};
 use crate::integrator::nested_dielectrics::InterfaceMedia;
+use crate::integrator::pbr_surfaces::TracedLobes;
 use crate::integrator::surface_evaluation::SpecularHit;
 use crate::integrator::wave::{PathState, Wave};
 use crate::integrator::{Counts, Integrator};
+use crate::scene::ShadingParams;
 use crate::shading::{DielectricInterface, reflect};
+use crate::surface::Surface;
 
 /// The greatest throughput that changes no sum: times the greatest f32 it is less than half of the
 /// least one.
@@ -77,7 +80,7 @@ pub(super) fn spawn_at_hit(
     let length = hit.t * ray.direction.length();
     // What is only left uncovered counts for itself, so that a tree of many leaves does not turn black.
     let is_uncovered = scattered.is_uncovered;
-    let mut emit = |ray: &Ray, share: DVec3, is_refracted: bool, interior| {
+    let mut emit = |ray: &Ray, share: DVec3, is_refracted: bool, interior, roughness: f32| {
         let is_layer = is_refracted && is_uncovered;
         let (depth, layers) =
             (path.depth + u32::from(!is_layer), path.layers + u32::from(is_layer));
@@ -96,10 +99,57 @@ pub(super) fn spawn_at_hit(
             lod.spawned_cone(&path.cone, length, scene, surface, is_refracted)
         };
         let sample = path.sample;
-        emit(ray, is_refracted, PathState { sample, depth, layers, throughput, interior, cone });
+        let roughness = path.roughness.max(roughness);
+        let state = PathState { sample, depth, layers, throughput, interior, cone, roughness };
+        emit(ray, is_refracted, state);
     };
-    emit(&reflected, scattered.reflected_share, false, media.incident);
-    emit(&refracted, scattered.refracted_share, true, media.transmitted);
+    // A clearcoat mirrors on its own.
+    if let Some(lobes) = specular.pbr.filter(|lobes| lobes.clearcoat != Vec3::ZERO) {
+        let mirrored = mirrored(ray.direction.normalize(), lobes.clearcoat_normal, surface);
+        let (share, interior) = (lobes.clearcoat.as_dvec3(), media.incident.clone());
+        let roughness = lobes.clearcoat_roughness;
+        emit(&departing(mirrored, surface.side), share, false, interior, roughness);
+    }
+    let roughness = specular.pbr.map_or(0.0, |lobes| lobes.roughness);
+    emit(&reflected, scattered.reflected_share, false, media.incident, roughness);
+    let is_blurred = specular.pbr.is_some_and(|lobes| lobes.transmissive > 0.0);
+    let roughness = if is_blurred { roughness } else { 0.0 };
+    emit(&refracted, scattered.refracted_share, true, media.transmitted, roughness);
+}
+
+/// Returns the direction into which a mirror with this normal, turned to the viewer, sends light that comes
+/// along `incoming`; with the surface's own normal where the other would send it into the surface.
+fn mirrored(incoming: DVec3, normal: DVec3, surface: &Surface) -> DVec3 {
+    let facing = surface.facing_normal();
+    let mirrored = reflect(incoming, normal);
+    let is_wrong_side = mirrored.dot(facing) <= 0.0;
+    (if is_wrong_side { reflect(incoming, facing) } else { mirrored }).normalize()
+}
+
+/// The shares of the light that a surface mirrors and lets through.
+struct SpecularShares {
+    /// The share that is mirrored.
+    reflect: Vec3,
+    /// The share that is let through, of which Fresnel's law takes a part.
+    transmit: Vec3,
+    /// The share of which Fresnel's law mirrors that part.
+    fresnel: Vec3,
+}
+
+impl SpecularShares {
+    fn new(params: &ShadingParams, pbr: Option<&TracedLobes>) -> Self {
+        let ShadingParams { reflect, transmit, .. } = *params;
+        match pbr {
+            None => Self { reflect, transmit, fresnel: transmit },
+            // Only what is transmitted is tinted.
+            Some(lobes) if lobes.transmissive > 0.0 => Self {
+                reflect: lobes.reflection,
+                transmit: lobes.transmission_color * lobes.transmissive,
+                fresnel: Vec3::splat(lobes.transmissive),
+            },
+            Some(lobes) => Self { reflect: lobes.reflection, transmit, fresnel: Vec3::ZERO },
+        }
+    }
 }
 
 /// The directions into which a surface sends light, and the shares that go there.
@@ -119,15 +169,20 @@ struct Scattered {
 /// Scatters light that comes along `incoming`, of length 1.
 fn scatter(
     integrator: &Integrator<'_>,
-    SpecularHit { surface, params, .. }: &SpecularHit,
+    SpecularHit { surface, params, pbr, .. }: &SpecularHit,
     media: &InterfaceMedia,
     incoming: DVec3,
 ) -> Scattered {
     let material = &integrator.scene.materials[surface.material.0 as usize];
     let ior = |interior| integrator.media.dielectrics.medium(interior).ior;
+    let SpecularShares { reflect: mirrored_share, transmit, fresnel } =
+        SpecularShares::new(params, pbr.as_ref());
+    let facing = surface.facing_normal();
+    let is_rough = pbr.is_some_and(|lobes| lobes.transmissive > 0.0 && lobes.roughness > 0.0);
+    let is_blurred_sheet = material.thin && is_rough;
     let scatter_at = |normal: DVec3| {
         let cosine = -normal.dot(incoming);
-        let interface = if params.transmit == Vec3::ZERO {
+        let interface = if transmit == Vec3::ZERO {
             DielectricInterface::new(cosine, 1.0, 1.0)
         } else if material.thin {
             DielectricInterface::thin_sheet(cosine, ior(&media.incident), material.ior)
@@ -135,18 +190,25 @@ fn scatter(
             DielectricInterface::new(cosine, ior(&media.incident), ior(&media.transmitted))
         };
         let is_straight = interface.is_straight();
-        let transmit = params.transmit.as_dvec3();
         Scattered {
             reflected: reflect(incoming, normal).normalize(),
-            refracted: if is_straight { None } else { interface.refract(incoming, normal) },
-            reflected_share: params.reflect.as_dvec3() + transmit * interface.reflected,
-            refracted_share: transmit * (1.0 - interface.reflected),
-            is_uncovered: is_straight && interface.reflected == 0.0 && params.reflect == Vec3::ZERO,
+            refracted: if is_blurred_sheet {
+                // Light goes straight on, as blurred as what is mirrored.
+                let mirrored = reflect(incoming, normal);
+                Some((mirrored - facing * (2.0 * mirrored.dot(facing))).normalize())
+            } else if is_straight {
+                None
+            } else {
+                interface.refract(incoming, normal)
+            },
+            reflected_share: mirrored_share.as_dvec3() + fresnel.as_dvec3() * interface.reflected,
+            refracted_share: transmit.as_dvec3() * (1.0 - interface.reflected),
+            is_uncovered: is_straight && interface.reflected == 0.0 && mirrored_share == Vec3::ZERO,
             is_total: interface.reflected >= 1.0,
         }
     };
-    let facing = surface.facing_normal();
-    let shading = surface.normal * -surface.normal.dot(incoming).signum();
+    let normal = pbr.map_or(surface.normal, |lobes| lobes.microfacet);
+    let shading = normal * -normal.dot(incoming).signum();
     let scattered = scatter_at(shading);
     if shading == facing {
         return scattered;

@@ -1,11 +1,14 @@
 //! The evaluation of the surfaces that a wave hit: positions, normals and shading parameters, before
 //! any light falls on them.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use crate::geometry::{Hit, Hit16, LANES, Lanes, PrimitiveId16, Ray};
 use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::material_cache::scattered_reflectance;
+use crate::integrator::pbr_surfaces::{self, PbrHits, SurfacePoint, TracedLobes};
 use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
 use crate::integrator::wave::Wave;
 use crate::integrator::{Integrator, ShadingFeatures, simd};
@@ -20,6 +23,8 @@ pub(super) struct WaveSurfaces {
     blocks: Vec<LitSurface16>,
     /// The number of blocks in use.
     count: usize,
+    /// The physically based surfaces, by block and lane.
+    pub pbr: PbrHits,
     /// The mirrors and the glass, by ray.
     pub specular: Vec<SpecularHit>,
 }
@@ -32,6 +37,8 @@ pub(super) struct LitSurface16 {
     pub block: usize,
     /// Their positions, normals and materials.
     pub surface: Surface16,
+    /// The physically based ones, in the list of all.
+    pub pbr: Range<usize>,
     /// True for each one that scatters any light.
     pub scatters: Lanes<bool>,
     /// The share of light scattered to all sides.
@@ -58,9 +65,16 @@ pub(super) struct SpecularHit {
     pub surface: Surface,
     /// The shading parameters there.
     pub params: ShadingParams,
+    /// The shares of a physically based surface that are traced, in place of what its parameters reflect.
+    pub pbr: Option<TracedLobes>,
 }
 
 impl WaveSurfaces {
+    /// Returns the blocks of surfaces that scatter light, and the physically based surfaces, to be changed.
+    pub fn lit_mut(&mut self) -> (&mut [LitSurface16], &mut PbrHits) {
+        (&mut self.blocks[..self.count], &mut self.pbr)
+    }
+
     /// Returns the blocks of surfaces that scatter light.
     pub fn lit(&self) -> &[LitSurface16] {
         &self.blocks[..self.count]
@@ -116,8 +130,9 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
 ) {
     let scene = integrator.scene;
     let background = scene.film.background;
-    let WaveSurfaces { blocks, count, specular } = surfaces;
+    let WaveSurfaces { blocks, count, pbr, specular } = surfaces;
     specular.clear();
+    pbr.clear();
     *count = 0;
     radiance.reset(wave.hits.blocks().len());
     for (block, hits) in wave.hits.blocks().iter().enumerate() {
@@ -143,7 +158,8 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
         let is_uniform =
             !TEXTURES && evaluate_uniform_block(integrator, hits, lit, &mut radiance.blocks[block]);
         if !is_uniform {
-            evaluate_block::<TEXTURES>(integrator, wave, hits, lit, radiance, specular, counts);
+            let secondary = (&mut *pbr, &mut *specular);
+            evaluate_block::<TEXTURES>(integrator, wave, hits, lit, radiance, secondary, counts);
         }
         *count += usize::from(lit.scatters.contains(&true));
     }
@@ -170,7 +186,7 @@ fn evaluate_uniform_block(
         return false;
     }
     let material = integrator.materials.get(first);
-    if material.spawns_rays || !material.is_finite {
+    if material.spawns_rays || !material.is_finite || material.is_pbr {
         return false;
     }
     let Reflectance { diffuse, specular, shininess } = material.reflectance;
@@ -178,6 +194,7 @@ fn evaluate_uniform_block(
         lit.diffuse[channel] = [diffuse[channel]; LANES];
         lit.specular[channel] = [specular[channel]; LANES];
     }
+    lit.pbr = 0..0;
     lit.scatters = [diffuse != Vec3::ZERO || specular != Vec3::ZERO; LANES];
     lit.shininess = [shininess; LANES];
     lit.ambient = [1.0; LANES];
@@ -198,7 +215,7 @@ fn evaluate_block<const TEXTURES: bool>(
     hits: &Hit16,
     lit: &mut LitSurface16,
     radiance: &mut WaveRadiance,
-    specular_hits: &mut Vec<SpecularHit>,
+    (pbr_hits, specular_hits): (&mut PbrHits, &mut Vec<SpecularHit>),
     counts: &mut FeatureCounts,
 ) {
     let (scene, cache) = (integrator.scene, &integrator.materials);
@@ -206,6 +223,7 @@ fn evaluate_block<const TEXTURES: bool>(
     lit.has_highlights = false;
     lit.has_mapped_normals = false;
     lit.ambient = [1.0; LANES];
+    lit.pbr = pbr_hits.hits.len()..pbr_hits.hits.len();
     let mut exponent = None;
     let mut shares_exponent = true;
     for i in 0..LANES {
@@ -214,30 +232,68 @@ fn evaluate_block<const TEXTURES: bool>(
         let cached = cache.get(lit.surface.material[i]);
         let (mut params, mut reflectance) = (cached.params, cached.reflectance);
         let (mut is_finite, mut spawns_rays) = (cached.is_finite, cached.spawns_rays);
+        let mut context = TextureContext::default();
+        let is_varied = TEXTURES && cache.varies_on(cached, &hit);
         // Textures, a checker and vertex colours are evaluated at the point, where they count.
-        if TEXTURES && cache.varies_on(cached, &hit) {
+        if is_varied {
             let material = &scene.materials[lit.surface.material[i].0 as usize];
             let surface = lit.surface.surface(i, hit.id);
-            let context = context_on_wave(integrator, wave, ray, &hit, &surface, counts);
+            context = context_on_wave(integrator, wave, ray, &hit, &surface, counts);
             cache.count_lookups(cached, &hit, counts);
-            params = surface::shading_params(scene, material, &context);
-            reflectance = scattered_reflectance(&params);
-            is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
-            spawns_rays &= params.spawns_rays() || !material.spawns_rays();
-            lit.ambient[i] = surface::ambient_occlusion(scene, material, &context);
+            if !cached.is_pbr {
+                params = surface::shading_params(scene, material, &context);
+                reflectance = scattered_reflectance(&params);
+                is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
+                spawns_rays &= params.spawns_rays() || !material.spawns_rays();
+                lit.ambient[i] = surface::ambient_occlusion(scene, material, &context);
+            }
             if cached.has_normal_map {
                 let normal = surface::mapped_normal(scene, &surface, &hit, &context.point);
                 lit.has_mapped_normals |= normal != surface.normal;
                 lit.surface.set_normal(i, normal);
             }
         }
+        let mut varied = None;
+        let mut alpha = 1.0;
+        if cached.is_pbr {
+            counts.pbr += 1;
+            let id = lit.surface.material[i];
+            let pbr = match cache.pbr(id).filter(|_| !is_varied) {
+                Some(cached) => &cached.params,
+                None => {
+                    let material = &scene.materials[id.0 as usize];
+                    varied.insert(surface::pbr_params(scene, material, &context))
+                }
+            };
+            (params, alpha) = (pbr.shading_params(), pbr.alpha);
+            lit.ambient[i] = pbr.ambient;
+            is_finite = params.emission.is_finite() && pbr.factors.base_color.is_finite();
+        }
         if !(is_finite && lit.surface.position(i).is_finite()) {
             radiance.mark_not_finite(lit.block, i, NotFiniteCause::Surface);
             continue;
         }
-        // The surface emits, scatters light, and may send light on.
-        let Reflectance { diffuse, specular, shininess } = reflectance;
         set_lane(&mut radiance.blocks[lit.block], i, params.emission);
+        // A physically based surface.
+        if cached.is_pbr {
+            let surface = lit.surface.surface(i, hit.id);
+            let at = SurfacePoint { ray, hit: &hit, surface: &surface, context: &context };
+            let traced = pbr_surfaces::evaluate(integrator, wave, &at, varied.as_ref(), pbr_hits);
+            // Ambient light comes from all around.
+            let Some(pbr) = pbr_hits.hits.last() else { continue };
+            let albedos = &pbr.blurred.albedos;
+            let ambient = albedos.diffuse + albedos.reflection + albedos.clearcoat;
+            set_lane(&mut lit.diffuse, i, (ambient + albedos.sheen) * alpha);
+            set_lane(&mut lit.specular, i, Vec3::ZERO);
+            lit.scatters[i] = true;
+            if spawns_rays && (!traced.is_empty() || alpha < 1.0) {
+                let pbr = Some(traced);
+                specular_hits.push(SpecularHit { ray: ray as u32, surface, params, pbr });
+            }
+            continue;
+        }
+        // The surface scatters light, and may send light on.
+        let Reflectance { diffuse, specular, shininess } = reflectance;
         lit.scatters[i] = diffuse != Vec3::ZERO || specular != Vec3::ZERO;
         set_lane(&mut lit.diffuse, i, diffuse);
         set_lane(&mut lit.specular, i, specular);
@@ -248,9 +304,10 @@ fn evaluate_block<const TEXTURES: bool>(
         }
         if spawns_rays {
             let surface = lit.surface.surface(i, hit.id);
-            specular_hits.push(SpecularHit { ray: ray as u32, surface, params });
+            specular_hits.push(SpecularHit { ray: ray as u32, surface, params, pbr: None });
         }
     }
+    lit.pbr.end = pbr_hits.hits.len();
     lit.common_exponent = exponent.filter(|_| shares_exponent).and_then(shading::integer_exponent);
 }
 

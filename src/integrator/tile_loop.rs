@@ -3,6 +3,9 @@
 use crate::film::{Pixel, View};
 use crate::geometry::{HitBatch, RayBatch};
 use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
+use crate::integrator::alpha::AlphaSums;
+use crate::integrator::ambient_occlusion::AmbientOcclusion;
+use crate::integrator::light_sources::LightSource;
 use crate::integrator::pixel_sums::PixelSums;
 use crate::integrator::radiance::{GROUP, Radiance16, WaveRadiance};
 use crate::integrator::sample_pattern::SamplePattern;
@@ -12,8 +15,8 @@ use crate::integrator::tiling::Tile;
 use crate::integrator::transmissive_shadows::TransmissiveShadows;
 use crate::integrator::wave::{Wave, WaveQueue};
 use crate::integrator::{
-    Counts, Integrator, back_faces, camera_rays, debug_view, direct_lighting, null_interfaces,
-    secondary_rays, surface_evaluation, transmissive_shadows,
+    Counts, Integrator, back_faces, camera_rays, debug_view, direct_lighting, environment_lighting,
+    null_interfaces, secondary_rays, surface_evaluation, transmissive_shadows,
 };
 use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
@@ -27,12 +30,15 @@ pub struct Scratch {
     tile: Tile,
     waves: WaveQueue,
     surfaces: WaveSurfaces,
+    occlusion: AmbientOcclusion,
     radiance: WaveRadiance,
     shadows: ShadowMemory,
     /// One sample of each pixel of the tile.
     samples: Vec<Radiance16>,
     /// The sums of their samples.
     sums: PixelSums,
+    /// The sums of their alpha, in a transparent picture.
+    alpha: AlphaSums,
     records: PixelRecords,
 }
 
@@ -49,6 +55,8 @@ pub struct RefineStrip<'a> {
     pub first_row: usize,
     /// The means of each pixel's first samples; they become those of all.
     pub pixels: &'a mut [Pixel],
+    /// The same of their alpha; empty unless the picture has alpha.
+    pub alpha: &'a mut [f32],
     /// The records of the pixels.
     pub records: &'a [PixelRecord],
     /// True for each pixel that gets more samples.
@@ -64,13 +72,15 @@ struct ActivePixel {
 }
 
 impl Integrator<'_> {
-    /// Renders the strip that begins at row `first_row`; `pixels` are whole rows. In an adaptive
-    /// picture they become the means of every pixel's first samples, and `records`, as many, the
-    /// records of these; otherwise `records` is empty.
+    /// Renders the strip that begins at row `first_row`; `pixels` are whole rows, and `alpha`, as many, is
+    /// theirs if the picture has alpha, and else empty. In an adaptive picture they become the means of
+    /// every pixel's first samples, and `records`, as many, the records of these; otherwise `records` is
+    /// empty.
     pub fn render_strip(
         &self,
         first_row: usize,
         pixels: &mut [Pixel],
+        alpha: &mut [f32],
         records: &mut [PixelRecord],
         scratch: &mut Scratch,
     ) -> Counts {
@@ -81,6 +91,7 @@ impl Integrator<'_> {
             // The first samples of each pixel of a tile.
             scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
             scratch.sums.clear();
+            scratch.alpha.clear();
             scratch.records.clear();
             for step in 0..=self.samples.first {
                 self.trace_step(step, scratch, &mut counts);
@@ -89,6 +100,9 @@ impl Integrator<'_> {
             let Scratch { tile, sums, records: tile_records, .. } = &*scratch;
             let samples = self.samples.steps[self.samples.first];
             sums.write(self.arch, tile, samples, pixels, width);
+            if self.has_alpha {
+                scratch.alpha.write(tile, samples, alpha, width);
+            }
             if self.is_adaptive() {
                 let mut read = tile_records.records.iter();
                 for run in &tile.runs {
@@ -108,25 +122,39 @@ impl Integrator<'_> {
         // stores: so the two are equal to the bit.
         if taken > 0 {
             scratch.sums.round_means(self.arch, taken);
+            scratch.alpha.round_means(taken);
         }
         // Four at a time, and one by one what is left.
         let (groups, rest) = self.samples.offsets[taken..steps[step]].as_chunks::<GROUP>();
         let groups = groups.iter().map(|group| &group[..]).chain(rest.chunks(1));
+        let mut samples = taken..;
         for group in groups {
             scratch.sums.begin_group(self.arch);
-            for position in group {
-                self.trace_sample(*position, scratch, counts);
+            for sample in samples.by_ref().take(group.len()) {
+                self.trace_sample(sample, scratch, counts);
             }
         }
     }
 
-    /// Traces one sample of each pixel of a tile, at `position` in the pixel, and adds it to the
-    /// sums of its group.
-    fn trace_sample(&self, position: [f64; 2], scratch: &mut Scratch, counts: &mut Counts) {
-        let Scratch { tile, waves, surfaces, radiance, samples, sums, records, .. } = scratch;
+    /// Traces one sample of each pixel of a tile, of this index, and adds it to the sums of its group.
+    fn trace_sample(&self, sample: usize, scratch: &mut Scratch, counts: &mut Counts) {
+        let position = self.samples.offsets[sample];
+        let Scratch {
+            tile,
+            waves,
+            surfaces,
+            occlusion,
+            radiance,
+            samples,
+            sums,
+            alpha,
+            records,
+            ..
+        } = scratch;
         // Camera rays, one through each pixel.
         let mut wave = &mut waves.current;
         wave.paths.clear();
+        wave.sample = sample;
         camera_rays::generate(self.arch, &self.camera, tile, position, &mut wave.rays);
         // Closest hits.
         self.visible_hits(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
@@ -136,6 +164,10 @@ impl Integrator<'_> {
         if self.view != View::Beauty {
             debug_view::set_pixels(self.scene, self.view, wave, &mut sums.group);
             return;
+        }
+        // What is left uncovered is taken away from alpha as it is found.
+        if self.has_alpha {
+            alpha.begin_sample(tile.count);
         }
         // Adaptive sampling compares what the samples of a pixel hit.
         if self.is_adaptive() {
@@ -152,8 +184,22 @@ impl Integrator<'_> {
             }
             // Surfaces, with what they emit.
             surface_evaluation::evaluate(self, wave, surfaces, radiance, &mut counts.work);
+            // The share of the light from all around that arrives.
+            if self.has_ambient_occlusion() {
+                occlusion.find(self, sample, wave, surfaces, counts);
+            }
+            // The environment, where a ray hits nothing, and as surfaces reflect it.
+            if let Some(environment) = &self.scene.environment {
+                let counts = &mut counts.work;
+                environment_lighting::set_background(environment, wave, radiance, counts);
+                environment_lighting::add(self, environment, wave, surfaces, radiance, counts);
+            }
+            // A transparent background brings no light, and covers nothing.
+            if self.has_alpha {
+                alpha.uncover(wave, radiance);
+            }
             // For each light: contributions, shadow rays, and what they let through.
-            self.light_surfaces(wave, surfaces, radiance, &mut scratch.shadows, counts);
+            self.light_surfaces(sample, wave, surfaces, radiance, &mut scratch.shadows, counts);
             // The radiance that comes back along the rays joins the samples of the pixels.
             radiance.add_to_samples(wave, samples, counts);
             // Secondary rays form the next wave.
@@ -180,9 +226,11 @@ impl Integrator<'_> {
         sums.add(self.arch, samples, &mut counts.not_finite.sum);
     }
 
-    /// Adds the light of each source that the surfaces of the current wave reflect.
+    /// Adds the light of each source, for this sample of the pixels, that the surfaces of the current
+    /// wave reflect.
     fn light_surfaces(
         &self,
+        sample: usize,
         wave: &Wave,
         surfaces: &WaveSurfaces,
         radiance: &mut WaveRadiance,
@@ -190,16 +238,19 @@ impl Integrator<'_> {
         counts: &mut Counts,
     ) {
         let ShadowMemory { shadows, glass } = memory;
-        for (i, light) in self.scene.lights.iter().enumerate() {
+        for (i, source) in self.light_sources.of_sample(sample).enumerate() {
             if i > 0 && i % GROUP == 0 {
                 radiance.begin_group(self.arch);
             }
-            if light.kind == LightKind::Ambient {
-                direct_lighting::add_ambient(light, surfaces, self.features.textures, radiance);
+            if let LightSource::Light(light) = source
+                && light.kind == LightKind::Ambient
+            {
+                let has_occlusion = self.features.textures || self.has_ambient_occlusion();
+                direct_lighting::add_ambient(light, surfaces, has_occlusion, radiance);
                 continue;
             }
             // Contributions: of a light that casts shadows, they wait for shadow rays.
-            direct_lighting::reflect(self, light, wave, surfaces, radiance, shadows, counts);
+            direct_lighting::reflect(self, &source, wave, surfaces, radiance, shadows, counts);
             if shadows.rays.is_empty() {
                 continue;
             }
@@ -207,10 +258,22 @@ impl Integrator<'_> {
             counts.rays.shadow += shadows.count();
             if !self.features.transmission {
                 self.occluded(&shadows.rays, &mut shadows.occluded, counts);
-            } else if !transmissive_shadows::find_layers(self, light.shadow, shadows, glass, counts)
-            {
+            } else if !transmissive_shadows::find_layers(
+                self,
+                source.shadow(),
+                shadows,
+                glass,
+                counts,
+            ) {
                 self.occluded(&shadows.rays, &mut shadows.occluded, counts);
-                transmissive_shadows::attenuate(self, light.shadow, wave, shadows, glass, counts);
+                transmissive_shadows::attenuate(
+                    self,
+                    source.shadow(),
+                    wave,
+                    shadows,
+                    glass,
+                    counts,
+                );
             }
             // The contributions that arrive.
             shadows.add_light(self.arch, radiance);
@@ -255,7 +318,7 @@ impl Integrator<'_> {
 
     /// Takes more samples of the pixels of a strip that need them.
     pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
-        let RefineStrip { first_row, pixels, records, refined } = strip;
+        let RefineStrip { first_row, pixels, alpha: strip_alpha, records, refined } = strip;
         let width = self.scene.film.size[0] as usize;
         let rows = pixels.len() / width;
         let SamplePattern { steps, first, .. } = &self.samples;
@@ -274,11 +337,14 @@ impl Integrator<'_> {
             let mut next_active = Vec::new();
             for group in active.chunks(REFINED_TOGETHER) {
                 // A tile of these pixels, with their sums and records so far.
-                let Scratch { tile, sums, records, .. } = scratch;
+                let Scratch { tile, sums, alpha, records, .. } = scratch;
                 tile.set_pixels(
                     group.iter().map(|p| [p.index % width, first_row + p.index / width]),
                 );
                 sums.set_means(group.iter().map(|p| pixels[p.index]), steps[step - 1]);
+                if self.has_alpha {
+                    alpha.set_means(group.iter().map(|p| strip_alpha[p.index]), steps[step - 1]);
+                }
                 records.clear();
                 for &ActivePixel { index, record } in group {
                     records.push(record, pixels[index].into());
@@ -290,6 +356,9 @@ impl Integrator<'_> {
                 for (i, (&ActivePixel { index, .. }, &record)) in read.enumerate() {
                     let goes_on = record.disagrees && step + 1 < steps.len();
                     pixels[index] = scratch.sums.mean(i, steps[step]);
+                    if self.has_alpha {
+                        strip_alpha[index] = scratch.alpha.mean(i, steps[step]);
+                    }
                     if goes_on {
                         next_active.push(ActivePixel { index, record });
                     }

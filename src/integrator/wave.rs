@@ -13,6 +13,8 @@ const MAX_RAYS: usize = 1 << 14;
 /// Rays that are traced together, and their hits.
 #[derive(Default)]
 pub(super) struct Wave {
+    /// The index of the sample of the pixels that the rays belong to.
+    pub sample: usize,
     /// The rays.
     pub rays: RayBatch,
     /// Their closest hits, once they are traced.
@@ -36,6 +38,8 @@ pub(super) struct PathState {
     pub interior: InteriorList,
     /// The cone of the ray, for the level of detail of textures.
     pub cone: RayCone,
+    /// The roughness of the surfaces that the light met, by which an environment is blurred.
+    pub roughness: f32,
 }
 
 impl PathState {
@@ -61,7 +65,15 @@ impl Wave {
             ),
         };
         let cone = integrator.texture_lod.camera_cone(&ray);
-        PathState { sample: i as u32, depth: 0, layers: 0, throughput: DVec3::ONE, interior, cone }
+        PathState {
+            sample: i as u32,
+            depth: 0,
+            layers: 0,
+            throughput: DVec3::ONE,
+            interior,
+            cone,
+            roughness: 0.0,
+        }
     }
 
     fn clear(&mut self) {
@@ -71,7 +83,8 @@ impl Wave {
 
     /// Splits off the rays from number `first` on.
     fn split_off(&mut self, first: usize) -> Self {
-        let mut second = Self { paths: self.paths.split_off(first), ..Self::default() };
+        let paths = self.paths.split_off(first);
+        let mut second = Self { sample: self.sample, paths, ..Self::default() };
         (first..self.rays.len()).for_each(|i| second.rays.push(&self.rays.ray(i)));
         self.rays.truncate(first);
         second
@@ -97,6 +110,7 @@ impl WaveQueue {
     /// on each other, or, if all are of one sample, in the middle, whatever else is traced with
     /// them.
     pub fn advance(&mut self) -> bool {
+        self.next.sample = self.current.sample;
         self.waiting.push(std::mem::take(&mut self.next));
         while let Some(mut wave) = self.waiting.pop() {
             if wave.rays.len() > MAX_RAYS {
@@ -141,6 +155,7 @@ mod tests {
             throughput: DVec3::ONE,
             interior: InteriorList::default(),
             cone: RayCone::default(),
+            roughness: 0.0,
         };
         samples.iter().map(path).collect()
     }

@@ -7,6 +7,7 @@
 mod defaults;
 mod diagnostics;
 mod duplicates;
+mod environment;
 mod framing;
 mod gltf;
 mod images;
@@ -23,9 +24,10 @@ mod uri;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::scene::{Material, MaterialId, Scene, watertight};
+use crate::scene::{Material, MaterialId, Scene, ShadingModel, watertight};
 
 pub use defaults::ground::add_ground;
+pub use environment::EnvironmentSource;
 pub use framing::{Framing, UpAxis};
 pub use limits::{Limit, Limits};
 pub use report::{Asset, AssetAnimation, DropReason, LoadReport, Loaded};
@@ -57,6 +59,12 @@ pub struct LoadOptions {
     /// default materials; in a scene file, for each model that has a variant of this name and
     /// names none itself.
     pub variant: Option<String>,
+    /// The environment, instead of the file's own or of the studio that a bare model gets.
+    pub environment: Option<EnvironmentSource>,
+    /// The shading model of models' materials, instead of the one that their kind has: physically based for
+    /// glTF's and for those of an MTL file that give roughness or metalness, else Lambert's and Phong's. In a
+    /// scene file, for each model that says nothing itself.
+    pub shading: Option<ShadingModel>,
     /// True if files may name others that are neither beside nor below the file that is loaded.
     pub allow_outside: bool,
     /// True if the viewer sees the back faces of one-sided materials, too, as path tracers show glTF
@@ -100,6 +108,18 @@ impl LoadOptions {
     /// Sets the variant of the materials.
     pub fn variant(mut self, name: impl Into<String>) -> Self {
         self.variant = Some(name.into());
+        self
+    }
+
+    /// Sets the environment.
+    pub fn environment(mut self, environment: EnvironmentSource) -> Self {
+        self.environment = Some(environment);
+        self
+    }
+
+    /// Sets the shading model of models' materials.
+    pub fn shading(mut self, shading: ShadingModel) -> Self {
+        self.shading = Some(shading);
         self
     }
 
@@ -170,6 +190,7 @@ impl LoadOptions {
                 needs_images: true,
                 geometry_only: self.geometry_only,
                 provenance: self.provenance,
+                shading: self.shading,
             };
             (model(file, &sandbox, &options)?, true)
         };
@@ -193,11 +214,15 @@ impl LoadOptions {
             share_default_material(&mut scene);
         } else {
             defaults::auto_camera::add_camera(&mut scene, &self.framing).map_err(|e| e.at(path))?;
+            let axes = self.framing.axes();
+            if let Some(environment) = &self.environment {
+                report.warnings.extend(environment.apply(&mut scene, axes, &sandbox)?);
+            }
             if !is_scene_file {
                 scene.film.spp = BARE_MODEL_SPP;
-                defaults::auto_lighting::add_lights(&mut scene);
-            } else if needs_lights {
-                defaults::auto_lighting::add_default_lights(&mut scene);
+                defaults::auto_lighting::light_model(&mut scene, axes, self.environment.is_some());
+            } else if needs_lights && scene.environment.is_none() {
+                defaults::auto_lighting::add_studio(&mut scene, axes);
             }
             defaults::complete(&mut scene);
         }
@@ -266,6 +291,9 @@ struct ModelOptions<'a> {
     geometry_only: bool,
     /// True if the provenance of its primitives is recorded.
     provenance: bool,
+    /// The shading model of its materials; none for that which the kind of material has: physically based
+    /// for glTF's and for those of an MTL file that give roughness or metalness, else Lambert's and Phong's.
+    shading: Option<ShadingModel>,
 }
 
 /// Loads a model file as it is: with its own cameras and lights, or none.

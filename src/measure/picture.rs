@@ -16,7 +16,8 @@ use crate::write::Format;
 pub struct Picture {
     /// The width and height in pixels.
     pub size: [u32; 2],
-    /// The channels' names, in the order of their values.
+    /// The channels' names, in the order of their values. A is alpha: beside it the values of an EXR are
+    /// premultiplied, and those of the other formats straight.
     pub channels: Vec<String>,
     /// The values of each pixel's channels: an EXR's floats, or else bytes over 255.
     pub values: Vec<f32>,
@@ -46,14 +47,31 @@ impl Picture {
         Self::decode(path, &bytes)
     }
 
-    /// Reads two pictures, within limits on both together.
+    /// Reads two pictures, within limits on both together. If only one of them has alpha, the other gets
+    /// it, too, and is opaque.
     ///
     /// # Errors
     /// When a file cannot be read, is none of these formats, or they exceed a limit.
     pub fn read_pair(a: &Path, b: &Path, limits: Limits) -> Result<[Self; 2]> {
         // The memory for both is counted before either is decoded.
         let [first, second] = load::read_for_comparison([a, b], limits)?;
-        Ok([Self::decode(a, &first)?, Self::decode(b, &second)?])
+        let (mut a, mut b) = (Self::decode(a, &first)?, Self::decode(b, &second)?);
+        a.add_alpha_as_in(&b);
+        b.add_alpha_as_in(&a);
+        Ok([a, b])
+    }
+
+    /// Adds the alpha of an opaque picture, if that is all that this one lacks of the channels of another.
+    fn add_alpha_as_in(&mut self, other: &Self) {
+        let Some(at) = other.channels.iter().position(|channel| channel == "A") else { return };
+        let mut channels = self.channels.clone();
+        channels.insert(at.min(channels.len()), "A".to_owned());
+        if channels != other.channels {
+            return;
+        }
+        let opaque = |pixel: &[f32]| [&pixel[..at], &[1.0], &pixel[at..]].concat();
+        self.values = self.values.chunks(self.channels.len()).flat_map(opaque).collect();
+        self.channels = channels;
     }
 
     /// Decodes the bytes of the file at a path.
@@ -67,11 +85,19 @@ impl Picture {
         })?;
         let of_bytes = |format: ImageFormat| {
             let image = image::load_from_memory_with_format(bytes, format);
-            let image = image.map_err(|e| damaged(&e))?.into_rgb8();
+            let image = image.map_err(|e| damaged(&e))?;
+            let size = [image.width(), image.height()];
+            // A picture that is opaque everywhere has no alpha that matters.
+            let rgba = image.color().has_alpha().then(|| image.to_rgba8().into_raw());
+            let rgba = rgba.filter(|rgba| rgba.chunks(4).any(|pixel| pixel[3] < u8::MAX));
+            let (channels, bytes): (&[&str], _) = match rgba {
+                Some(rgba) => (&["R", "G", "B", "A"], rgba),
+                None => (&["R", "G", "B"], image.into_rgb8().into_raw()),
+            };
             Ok(Self {
-                size: image.dimensions().into(),
-                channels: ["R", "G", "B"].map(String::from).into(),
-                values: image.as_raw().iter().map(|&b| f32::from(b) / 255.0).collect(),
+                size,
+                channels: channels.iter().map(|&name| name.to_owned()).collect(),
+                values: bytes.iter().map(|&b| f32::from(b) / 255.0).collect(),
             })
         };
         match format {

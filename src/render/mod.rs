@@ -72,6 +72,12 @@ impl<'s> Renderer<'s> {
         self
     }
 
+    /// Sets whether the background is transparent: see [`FilmSettings::transparent`](crate::scene::FilmSettings).
+    pub fn transparent(mut self, transparent: bool) -> Self {
+        self.scene.to_mut().film.transparent = transparent;
+        self
+    }
+
     /// Sets the backend that finds the hits.
     pub fn backend(mut self, backend: Backend) -> Self {
         self.options.backend = Some(backend);
@@ -122,7 +128,7 @@ impl<'s> Renderer<'s> {
         let (scene, options) = (&*self.scene, &self.options);
         scene.check()?;
         check_camera(scene, options.camera)?;
-        Film::check_memory(scene.film.size)?;
+        Film::check_memory(scene.film.size, scene.film.transparent)?;
         let posed = scene.animation.is_some().then(|| scene.at_time(0.0)).transpose()?;
         let scene = posed.as_ref().unwrap_or(scene);
         in_pool(options.threads, || {
@@ -153,7 +159,7 @@ impl<'s> Renderer<'s> {
         let (scene, options) = (&*self.scene, &self.options);
         scene.check()?;
         check_camera(scene, options.camera)?;
-        Film::check_memory(scene.film.size)?;
+        Film::check_memory(scene.film.size, scene.film.transparent)?;
         in_pool(options.threads, || {
             let (backend, precision) = (options.backend(), options.precision);
             let threads = rayon::current_num_threads();

@@ -3,7 +3,7 @@
 use crate::film::View;
 use crate::integrator::Tiling;
 use crate::intersect::{Backend, BuildQuality, Precision};
-use crate::scene::Scene;
+use crate::scene::{Light, Scene};
 
 /// The options of a rendering; size, samples and background are the scene's film settings.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,13 +36,14 @@ impl RenderOptions {
     pub(super) fn build_quality(&self, scene: &Scene) -> BuildQuality {
         let (spp, lights) = match self.view {
             View::Beauty => {
-                (scene.film.spp, scene.lights.iter().filter(|light| light.casts_shadow()).count())
+                let lights = scene.lights.iter().filter(|light| light.casts_shadow());
+                (scene.film.spp, lights.map(Light::sample_count).sum::<u32>())
             }
             _ => (1, 0),
         };
         let frames = scene.animation.as_ref().map_or(1, |animation| animation.frames);
         let [width, height] = scene.film.size;
-        let factors = [width, height, spp, frames, 1 + lights as u32];
+        let factors = [width, height, spp, frames, 1 + lights];
         let rays = factors.into_iter().map(u64::from).fold(1, u64::saturating_mul);
         self.quality.unwrap_or(BuildQuality::for_rays(rays, scene.primitive_count()))
     }

@@ -43,6 +43,9 @@ pub fn trace(
     let camera = &scene.cameras[options.camera];
     let RenderOptions { view, tiling, .. } = *options;
     let integrator = Integrator::new(scene, intersector, camera, view, tiling);
+    if integrator.has_alpha() {
+        film.alpha = Some(vec![0.0; film.pixels.len()]);
+    }
 
     // Threads share strips of whole rows.
     let rows = tiling.rows;
@@ -61,23 +64,33 @@ pub fn trace(
     let stopwatch = Stopwatch::start();
     let recorded = if passes == 2 { film.pixels.len() } else { 0 };
     let mut records = vec![PixelRecord::default(); recorded];
-    let mut record_strips: Vec<&mut [PixelRecord]> = records.chunks_mut(strip).collect();
-    record_strips.resize_with(strips, Default::default);
-    let first_pass = film.pixels.par_chunks_mut(strip).zip(record_strips).enumerate();
-    first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, records))| {
-        finish_strip(integrator.render_strip(i * rows, pixels, records, scratch));
+    let alpha = film.alpha.as_deref_mut().unwrap_or_default();
+    let others = strips_of(alpha, strip, strips).into_par_iter();
+    let others = others.zip(strips_of(&mut records, strip, strips));
+    let first_pass = film.pixels.par_chunks_mut(strip).zip(others).enumerate();
+    first_pass.for_each_init(Scratch::default, |scratch, (i, (pixels, (alpha, records)))| {
+        finish_strip(integrator.render_strip(i * rows, pixels, alpha, records, scratch));
     });
 
     // Second pass: more samples for the pixels that disagree with themselves or their neighbours.
     if passes == 2 {
         let refined = integrator.pixels_to_refine(&film.pixels, &records);
-        let pixels = film.pixels.par_chunks_mut(strip).enumerate();
+        let pixels = film.pixels.par_chunks_mut(strip).zip(strips_of(alpha, strip, strips));
         let parts = pixels.zip(records.par_chunks(strip).zip(refined.par_chunks(strip)));
-        parts.for_each_init(Scratch::default, |scratch, ((i, pixels), (records, refined))| {
-            let strip = RefineStrip { first_row: i * rows, pixels, records, refined };
+        let parts = parts.enumerate();
+        parts.for_each_init(Scratch::default, |scratch, (i, parts)| {
+            let ((pixels, alpha), (records, refined)) = parts;
+            let strip = RefineStrip { first_row: i * rows, pixels, alpha, records, refined };
             finish_strip(integrator.refine_strip(strip, scratch));
         });
     }
     let counts = counts.into_inner().unwrap_or_else(|e| e.into_inner());
     Traced { film, counts, elapsed: stopwatch.elapsed() }
+}
+
+/// Returns the strips of values of all pixels, or as many empty ones where there are no values.
+fn strips_of<T>(values: &mut [T], strip: usize, count: usize) -> Vec<&mut [T]> {
+    let mut strips: Vec<_> = values.chunks_mut(strip).collect();
+    strips.resize_with(count, Default::default);
+    strips
 }

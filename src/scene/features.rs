@@ -42,11 +42,19 @@ pub enum Feature {
     Refraction,
     /// Back-face culling, for which the side of every hit is looked at.
     Culling,
+    /// Lights with an extent, for which several samples stand.
+    AreaLights,
+    /// Surfaces that emit light and illuminate others, for which many samples stand.
+    EmissiveLights,
+    /// Physically based materials, whose BSDFs are evaluated point by point.
+    Pbr,
+    /// The environment.
+    Environment,
 }
 
 impl Feature {
     /// All features, in the order of reports.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 20] = [
         Self::Spheres,
         Self::Instances,
         Self::Planes,
@@ -63,6 +71,10 @@ impl Feature {
         Self::Reflection,
         Self::Refraction,
         Self::Culling,
+        Self::AreaLights,
+        Self::EmissiveLights,
+        Self::Pbr,
+        Self::Environment,
     ];
 
     /// The name in reports.
@@ -90,6 +102,10 @@ impl Feature {
             Self::Reflection => ("reflection", "materials in use", "are mirrors or glass"),
             Self::Refraction => ("refraction", "materials in use", "let light through"),
             Self::Culling => ("culling", "materials in use", "are one-sided"),
+            Self::AreaLights => ("area-lights", "lights", "have an extent"),
+            Self::EmissiveLights => ("emissive-lights", "materials in use", "illuminate"),
+            Self::Pbr => ("pbr", "materials in use", "are physically based"),
+            Self::Environment => ("environment", "environments", "surround the scene"),
         }
     }
 }
@@ -147,12 +163,16 @@ impl SceneFeatures {
             }
             Feature::SmoothNormals => Usage::count(&meshes, |mesh| !mesh.normals.is_empty()),
             Feature::Highlights => {
-                of_materials(&|m| m.specular != Vec3::ZERO || m.metallic.is_some())
+                of_materials(&|m| !m.is_pbr() && (m.specular != Vec3::ZERO || m.metallic.is_some()))
             }
             Feature::Shadows => Usage::count(&scene.lights, Light::casts_shadow),
             Feature::Reflection => of_materials(&Material::spawns_rays),
             Feature::Refraction => of_materials(&Material::may_transmit),
             Feature::Culling => of_materials(&|m| m.cull_back_faces),
+            Feature::AreaLights => Usage::count(&scene.lights, Light::has_extent),
+            Feature::EmissiveLights => of_materials(&Material::is_light),
+            Feature::Pbr => of_materials(&Material::is_pbr),
+            Feature::Environment => Usage::count(scene.environment.as_slice(), |_| true),
         });
         Self { usage }
     }

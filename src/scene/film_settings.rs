@@ -95,10 +95,17 @@ pub struct FilmSettings {
     pub tone: Tone,
     /// The radiance of rays that hit nothing, linear Rec. 709.
     pub background: Vec3,
+    /// True if the picture has alpha, the share of each pixel that something covers. Rays that come from
+    /// the camera, also straight through what alpha leaves uncovered, then see no background; rays that
+    /// were reflected or refracted do.
+    pub transparent: bool,
     /// The position in a pixel about which its samples are centred.
     pub sample_position: SamplePosition,
     /// The greatest number of reflections and refractions along a light path; 0 shows neither.
     pub max_depth: u32,
+    /// The number of rays by which the share of the environment's and of ambient light that arrives at a surface
+    /// is found; 0 for none, and then all of it arrives.
+    pub ambient_occlusion: u32,
     /// The throughput, in \[0, 1\], at or below which secondary rays are not traced. At 0 only those
     /// are left out that can add nothing.
     pub cutoff: f64,
@@ -117,8 +124,10 @@ impl Default for FilmSettings {
             exposure: 0.0,
             tone: Tone::None,
             background: Vec3::ZERO,
+            transparent: false,
             sample_position: SamplePosition::Center,
             max_depth: 8,
+            ambient_occlusion: 0,
             cutoff: 0.0,
             soft_terminator: true,
         }

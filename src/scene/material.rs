@@ -1,6 +1,8 @@
-//! The material of a surface, by Lambert and Phong, with mirrors and glass.
+//! The material of a surface: by Lambert and Phong, with mirrors and glass, or physically based.
 
 use glam::Vec3;
+use schemars::JsonSchema;
+use serde::Deserialize;
 
 use crate::scene::{AlphaMode, Channel, Coverage, MetallicRoughnessMaps, ShadingParams, TextureId};
 
@@ -8,11 +10,27 @@ use crate::scene::{AlphaMode, Channel, Coverage, MetallicRoughnessMaps, ShadingP
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct MaterialId(pub u32);
 
-/// A Lambert and Phong material.
+/// The shading model of a material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum ShadingModel {
+    /// Lambert's and Phong's, as in the tutorial.
+    #[default]
+    Phong,
+    /// The physically based one of glTF's metallic-roughness materials.
+    Pbr,
+}
+
+/// A material. A physically based one has `shading` and `metallic` set ([`Material::is_pbr`]); the fields
+/// from `diffuse` to `transmit`, except the emission, then are Lambert's and Phong's approximation of it, which
+/// only shadows through it have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The name, unique in a scene file; model files may repeat names.
     pub name: String,
+    /// The shading model.
+    pub shading: ShadingModel,
     /// The share of light scattered in all directions, linear Rec. 709; without Lambert's 1/π, as in
     /// the tutorial.
     pub diffuse: Vec3,
@@ -26,13 +44,17 @@ pub struct Material {
     pub shininess: f32,
     /// The texture that varies `shininess`.
     pub shininess_map: Option<ShininessMap>,
-    /// The emitted radiance, linear Rec. 709; it illuminates nothing else.
+    /// The emitted radiance, linear Rec. 709; it illuminates nothing else unless `illuminates`.
     pub emission: Vec3,
     /// The texture that multiplies `emission`.
     pub emission_map: Option<TextureId>,
     /// True if the colours of a mesh's vertices multiply `emission`: an unlit surface shows its colour
     /// as radiance.
     pub unlit: bool,
+    /// True if what it emits lights other surfaces: spheres and instances of the material are lights, by
+    /// samples of their surfaces. A mesh emits from its front, and from its back unless
+    /// `cull_back_faces`. Planes illuminate nothing.
+    pub illuminates: bool,
     /// The share of light reflected as by a mirror, linear Rec. 709.
     pub reflect: Vec3,
     /// The share of light transmitted as through glass, linear Rec. 709, of which Fresnel's law
@@ -55,12 +77,15 @@ pub struct Material {
     pub cull_back_faces: bool,
     /// The normal map.
     pub normal_map: Option<NormalMap>,
+    /// The normal map of the clearcoat, which without one has the surface's own normal.
+    pub clearcoat_normal_map: Option<NormalMap>,
     /// The map of ambient occlusion.
     pub occlusion_map: Option<OcclusionMap>,
     /// The alpha coverage, if the surface may cover less than all that lies behind it.
     pub coverage: Option<Coverage>,
-    /// The metallic-roughness material from which diffuse, specular, shininess, reflect and transmit are
-    /// computed at each point where a map or a vertex colour counts.
+    /// The metallic-roughness material: physically based shading evaluates it; of Lambert and Phong, diffuse,
+    /// specular, shininess, reflect and transmit are computed from it at each point where a map or a vertex
+    /// colour counts.
     pub metallic: Option<Box<MetallicRoughnessMaps>>,
 }
 
@@ -106,6 +131,7 @@ macro_rules! texture_ids {
             }),
             $material.emission_map.$as_ref(),
             $material.normal_map.$as_ref().map(|NormalMap { texture, .. }| texture),
+            $material.clearcoat_normal_map.$as_ref().map(|NormalMap { texture, .. }| texture),
             $material
                 .occlusion_map
                 .$as_ref()
@@ -117,12 +143,21 @@ macro_rules! texture_ids {
         ];
         let metallic = $material.metallic.$as_deref().map(|maps| {
             [
-                maps.base.$as_ref(),
+                maps.base_color.$as_ref(),
                 maps.specular_color.$as_ref(),
                 maps.metallic.$as_ref().map(|Channel { texture, .. }| texture),
                 maps.roughness.$as_ref().map(|Channel { texture, .. }| texture),
                 maps.specular.$as_ref().map(|Channel { texture, .. }| texture),
                 maps.transmission.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.clearcoat.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.clearcoat_roughness.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.sheen_color.$as_ref(),
+                maps.sheen_roughness.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.anisotropy.$as_ref(),
+                maps.iridescence.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.iridescence_thickness.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.diffuse_transmission.$as_ref().map(|Channel { texture, .. }| texture),
+                maps.diffuse_transmission_color.$as_ref(),
             ]
         });
         own.into_iter().chain(metallic.into_iter().flatten()).flatten()
@@ -133,6 +168,7 @@ impl Default for Material {
     fn default() -> Self {
         Self {
             name: String::new(),
+            shading: ShadingModel::Phong,
             diffuse: Vec3::splat(0.8),
             diffuse_map: None,
             specular: Vec3::ZERO,
@@ -142,6 +178,7 @@ impl Default for Material {
             emission: Vec3::ZERO,
             emission_map: None,
             unlit: false,
+            illuminates: false,
             reflect: Vec3::ZERO,
             transmit: Vec3::ZERO,
             ior: 1.5,
@@ -151,6 +188,7 @@ impl Default for Material {
             double_sided: false,
             cull_back_faces: false,
             normal_map: None,
+            clearcoat_normal_map: None,
             occlusion_map: None,
             coverage: None,
             metallic: None,
@@ -186,7 +224,8 @@ impl Material {
         Self { transmit: Vec3::ONE, ior, ..Self::matte(Vec3::ZERO) }
     }
 
-    /// A material that emits this radiance and scatters nothing; it illuminates nothing else.
+    /// A material that emits this radiance and scatters nothing; it illuminates nothing else, as long as
+    /// `illuminates` is not set.
     pub fn emissive(radiance: Vec3) -> Self {
         Self { emission: radiance, ..Self::matte(Vec3::ZERO) }
     }
@@ -197,18 +236,19 @@ impl Material {
         ShadingParams { diffuse, specular, shininess, emission, reflect, transmit }
     }
 
-    /// Makes it a metallic-roughness material; a plain one if nothing but its base colour varies, which
-    /// then is the diffuse colour.
+    /// Makes it a metallic-roughness material, in its shading model. By Lambert and Phong it is a plain one if
+    /// nothing but its base colour varies, which then is the diffuse colour.
     pub fn set_metallic_roughness(&mut self, maps: MetallicRoughnessMaps) {
         let ShadingParams { diffuse, specular, shininess, reflect, transmit, .. } =
             maps.factors.shading_params();
         (self.diffuse, self.specular, self.shininess) = (diffuse, specular, shininess);
         (self.reflect, self.transmit) = (reflect, transmit);
-        let is_plain = MetallicRoughnessMaps { base: None, ..maps.clone() }
-            == MetallicRoughnessMaps::new(maps.factors)
+        let is_plain = self.shading == ShadingModel::Phong
+            && MetallicRoughnessMaps { base_color: None, ..maps.clone() }
+                == MetallicRoughnessMaps::new(maps.factors)
             && maps.factors.metallic == 0.0
             && maps.factors.transmission == 0.0;
-        self.diffuse_map = if is_plain { maps.base } else { None };
+        self.diffuse_map = if is_plain { maps.base_color } else { None };
         self.metallic = (!is_plain).then(|| Box::new(maps));
     }
 
@@ -218,16 +258,33 @@ impl Material {
         if self.unlit {
             self.emission *= color;
         } else if let Some(mut maps) = self.metallic.take() {
-            maps.factors.base = (maps.factors.base * color).min(Vec3::ONE);
+            let base = &mut maps.factors.base_color;
+            *base = (*base * color).min(Vec3::ONE);
             self.set_metallic_roughness(*maps);
         } else {
             self.diffuse = (self.diffuse * color).min(Vec3::ONE);
         }
     }
 
-    /// True if it reflects as a mirror anywhere.
+    /// True if it is physically based.
+    #[inline]
+    pub fn is_pbr(&self) -> bool {
+        self.shading == ShadingModel::Pbr && self.metallic.is_some()
+    }
+
+    /// True if its objects are lights: it emits light, and that illuminates other surfaces.
+    pub fn is_light(&self) -> bool {
+        self.illuminates && self.emission != Vec3::ZERO
+    }
+
+    /// True if it reflects as a mirror anywhere, or so sharply that reflected rays are traced.
     pub fn may_reflect(&self) -> bool {
-        self.reflect != Vec3::ZERO || self.metallic.as_ref().is_some_and(|m| m.may_reflect())
+        let is_pbr = self.is_pbr();
+        self.reflect != Vec3::ZERO
+            || self
+                .metallic
+                .as_ref()
+                .is_some_and(|maps| maps.may_reflect() || (is_pbr && maps.may_reflect_sharply()))
     }
 
     /// True if it transmits light anywhere, other than through what a mask cuts out.
@@ -303,31 +360,33 @@ mod tests {
             TextureId(next - 1)
         };
         let mut channel = || Channel { texture: id(), channel: 0 };
-        let factors = MetallicRoughness {
-            base: Vec3::ONE,
-            metallic: 1.0,
-            roughness: 1.0,
-            specular: 1.0,
-            specular_color: Vec3::ONE,
-            transmission: 0.0,
-            ior: 1.5,
-        };
         Material {
             diffuse_map: Some(channel().texture),
             specular_map: Some(channel().texture),
             shininess_map: Some(ShininessMap::Factor(channel())),
             emission_map: Some(channel().texture),
             normal_map: Some(NormalMap { texture: channel().texture, scale: 1.0 }),
+            clearcoat_normal_map: Some(NormalMap { texture: channel().texture, scale: 1.0 }),
             occlusion_map: Some(OcclusionMap { map: channel(), strength: 1.0 }),
             coverage: Some(Coverage { alpha: 1.0, map: Some(channel()), mode: AlphaMode::Blend }),
             metallic: Some(Box::new(MetallicRoughnessMaps {
-                base: Some(channel().texture),
+                factors: MetallicRoughness::default(),
+                base_color: Some(channel().texture),
                 specular_color: Some(channel().texture),
                 metallic: Some(channel()),
                 roughness: Some(channel()),
                 specular: Some(channel()),
                 transmission: Some(channel()),
-                ..MetallicRoughnessMaps::new(factors)
+                clearcoat: Some(channel()),
+                clearcoat_roughness: Some(channel()),
+                sheen_color: Some(channel().texture),
+                sheen_roughness: Some(channel()),
+                anisotropy: Some(channel().texture),
+                iridescence: Some(channel()),
+                iridescence_thickness: Some(channel()),
+                iridescence_thickness_minimum: 0.0,
+                diffuse_transmission: Some(channel()),
+                diffuse_transmission_color: Some(channel().texture),
             })),
             ..Material::default()
         }
@@ -347,7 +406,7 @@ mod tests {
     #[test]
     fn every_texture_of_a_material_is_listed() {
         let all: Vec<u32> = full().textures().map(|id| id.0).collect();
-        assert_eq!(all, (0..13).collect::<Vec<_>>());
+        assert_eq!(all, (0..23).collect::<Vec<_>>());
     }
 
     #[test]
@@ -355,6 +414,6 @@ mod tests {
         let mut material = full();
         material.textures_mut().for_each(|id| id.0 += 100);
         let all: Vec<u32> = material.textures().map(|id| id.0).collect();
-        assert_eq!(all, (100..113).collect::<Vec<_>>());
+        assert_eq!(all, (100..123).collect::<Vec<_>>());
     }
 }

@@ -21,6 +21,7 @@ mod camera;
 pub(crate) mod check;
 mod coincidence;
 mod coverage;
+mod environment;
 mod features;
 mod film_settings;
 mod image;
@@ -44,16 +45,19 @@ pub(crate) use camera::RayGenerator;
 pub use camera::{Camera, Projection};
 pub use coincidence::coincident_meshes;
 pub use coverage::{AlphaMode, Coverage};
+pub(crate) use environment::SHARPEST_REFLECTION;
+pub use environment::{Environment, FilteredEnvironment, Sky};
 pub use features::{Feature, SceneFeatures};
 pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
 pub use image::Image;
+pub(crate) use light::{DEFAULT_LIGHT_SAMPLES, MIN_SUN_ANGLE};
+pub use light::{Falloff, Light, LightKind, MAX_LIGHT_SAMPLES, Shadow};
 #[doc(hidden)]
-pub use light::IncidentLight;
-pub use light::{Falloff, Light, LightKind, Shadow};
-pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShininessMap};
+pub use light::{IncidentLight, LightSample};
+pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShadingModel, ShininessMap};
 pub use mesh::{Mesh, MeshId};
 pub use metallic_roughness::{MetallicRoughness, MetallicRoughnessMaps};
-pub(crate) use metallic_roughness::{mirror_share, shininess};
+pub(crate) use metallic_roughness::{mirror_share, ray_share, shininess};
 pub(crate) use positions::GRAIN;
 pub use positions::Positions;
 pub use precision_warnings::{PrecisionWarning, precision_warnings};
@@ -103,6 +107,8 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// The lights.
     pub lights: Vec<Light>,
+    /// The environment, if there is one.
+    pub environment: Option<Environment>,
     /// The animation, if there is one. The other fields are the scene before it is moved;
     /// [`Scene::at_time`] gives the scene at a time.
     pub animation: Option<Animation>,

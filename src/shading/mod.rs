@@ -6,7 +6,7 @@ mod dielectric;
 
 use glam::{DVec3, Vec3};
 
-pub use bsdf::{Bsdf, BsdfSample, MaterialParams};
+pub use bsdf::{Bsdf, BsdfSample, LobeAlbedos};
 pub use dielectric::{DielectricInterface, transmittance};
 
 /// The greatest exponent for which a power is computed by products.

@@ -15,8 +15,8 @@ use crate::geometry::{
 };
 use crate::scene::{IncidentLight, MaterialId, Scene};
 pub use footprint::{Footprint, RayCone, curvature};
-pub use normal_map::mapped_normal;
-pub use shading_params::{ambient_occlusion, shading_params};
+pub use normal_map::{mapped_normal, perturbed_normal, tangent};
+pub use shading_params::{PbrParams, ambient_occlusion, pbr_params, shading_params};
 pub use surface16::Surface16;
 pub use texture_context::TextureContext;
 

@@ -5,7 +5,14 @@ use rayon::prelude::*;
 use crate::film::{Film, View};
 use crate::write::Settings;
 
-/// Encodes a film as bytes: red, green, blue of each pixel, row by row.
+/// The bytes of a pixel: red, green and blue, and alpha if the film has any.
+pub fn bytes_per_pixel(film: &Film) -> usize {
+    if film.alpha.is_some() { 4 } else { 3 }
+}
+
+/// Encodes a film as bytes: red, green, blue of each pixel, and alpha if the film has any, row by row.
+/// Beside alpha stand the bytes of the colour that is covered (straight or unassociated alpha): its
+/// radiance over its alpha. A pixel whose alpha rounds to 0 is all 0.
 ///
 /// Beauty: [`Settings::bytes`]. Normal: each component from \[−1, 1\] to \[0, 255\]. Depth: white at
 /// the nearest hit to a dark grey at the farthest. Id: a colour for each object, hashed from its id.
@@ -34,10 +41,22 @@ pub fn encode(film: &Film, settings: &Settings) -> Vec<u8> {
         View::Id => id_color(pixel.map(|x| x as u32)),
     };
     // All pixels, on all threads.
-    let mut bytes = vec![0; film.pixels.len() * 3];
-    let (triples, _) = bytes.as_chunks_mut::<3>();
-    triples.par_iter_mut().zip(&film.pixels).with_min_len(GRAIN).for_each(|(to, pixel)| {
-        *to = color(pixel);
+    let mut bytes = vec![0; film.pixels.len() * bytes_per_pixel(film)];
+    let Some(alpha) = &film.alpha else {
+        let (triples, _) = bytes.as_chunks_mut::<3>();
+        triples.par_iter_mut().zip(&film.pixels).with_min_len(GRAIN).for_each(|(to, pixel)| {
+            *to = color(pixel);
+        });
+        return bytes;
+    };
+    let (quadruples, _) = bytes.as_chunks_mut::<4>();
+    let pixels = film.pixels.par_iter().zip(alpha);
+    quadruples.par_iter_mut().zip(pixels).with_min_len(GRAIN).for_each(|(to, (pixel, &alpha))| {
+        let coverage = byte(alpha.clamp(0.0, 1.0));
+        if coverage > 0 {
+            let [r, g, b] = color(&pixel.map(|x| x / alpha));
+            *to = [r, g, b, coverage];
+        }
     });
     bytes
 }
@@ -122,7 +141,7 @@ mod tests {
     use crate::scene::{Tone, Transfer};
 
     fn bytes(pixel: [f32; 3], view: View, settings: &Settings) -> Vec<u8> {
-        encode(&Film { size: [1, 1], view, pixels: vec![pixel] }, settings)
+        encode(&Film { size: [1, 1], view, pixels: vec![pixel], alpha: None }, settings)
     }
 
     #[test]
@@ -152,12 +171,28 @@ mod tests {
                 values.extend((0..0x7f80).map(|bits| f32::from_bits(bits << 16)));
                 values.extend([-1.0, -0.0, f32::NAN, f32::MAX]);
                 let pixels: Vec<_> = values.iter().map(|&x| [x; 3]).collect();
-                let film = Film { size: [values.len() as u32, 1], view: View::Beauty, pixels };
+                let film = Film {
+                    size: [values.len() as u32, 1],
+                    view: View::Beauty,
+                    pixels,
+                    alpha: None,
+                };
                 let expected: Vec<u8> =
                     values.iter().flat_map(|&x| settings.bytes([x; 3])).collect();
                 assert!(encode(&film, &settings) == expected, "{settings:?}");
             }
         }
+    }
+
+    #[test]
+    fn alpha_is_straight_beside_the_colour_that_is_covered() {
+        let settings = Settings { transfer: Transfer::None, ..Settings::default() };
+        let pixels = vec![[0.25, 0.125, 0.0], [0.5; 3], [1.0; 3], [0.5; 3]];
+        let alpha = Some(vec![0.25, 1.0, 0.001, 0.0]);
+        let film = Film { size: [4, 1], view: View::Beauty, pixels, alpha };
+        let expected =
+            [[255, 128, 0, 64], [128, 128, 128, 255], [0; 4], [0; 4]].as_flattened().to_vec();
+        assert_eq!(encode(&film, &settings), expected);
     }
 
     #[test]
@@ -169,7 +204,7 @@ mod tests {
     #[test]
     fn nearest_depth_is_white_and_nothing_is_black() {
         let pixels = vec![[2.0; 3], [5.0; 3], [f32::INFINITY; 3]];
-        let film = Film { size: [3, 1], view: View::Depth, pixels };
+        let film = Film { size: [3, 1], view: View::Depth, pixels, alpha: None };
         assert_eq!(encode(&film, &Settings::default()), [255, 255, 255, 38, 38, 38, 0, 0, 0]);
     }
 

@@ -16,23 +16,28 @@ use crate::write::{Settings, write_atomically};
 /// The name of the attribute with the metadata, one entry per line.
 const METADATA: &str = "envers";
 
-/// Writes a tiled EXR, losslessly compressed, with the view's channels. Values of views other than
+/// Writes a tiled EXR, losslessly compressed, with the view's channels, and A if the film has alpha, by
+/// which OpenEXR, too, wants colours premultiplied. Values of views other than
 /// beauty always have 32 bits, whatever `settings.half` says, since depths and ids do not fit in 16.
 /// Radiance beyond 65504, which does not fit either, is clamped to it.
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     // The channels, in 16 or 32 bits.
     let half = settings.half && film.view == View::Beauty;
-    let channels = film.view.channels().iter().enumerate().map(|(i, name)| {
-        let values = film.pixels.iter().map(|pixel| pixel[i]);
+    let channel = |name: &str, values: Vec<f32>| {
         let samples = if half {
             // Clamped, since what is beyond the greatest 16-bit float would become infinite.
             let limit = f32::from(f16::MAX);
-            FlatSamples::F16(values.map(|x| f16::from_f32(x.clamp(-limit, limit))).collect())
+            let to_half = |x: f32| f16::from_f32(x.clamp(-limit, limit));
+            FlatSamples::F16(values.into_iter().map(to_half).collect())
         } else {
-            FlatSamples::F32(values.collect())
+            FlatSamples::F32(values)
         };
-        AnyChannel::new(*name, samples)
-    });
+        AnyChannel::new(name, samples)
+    };
+    let of_view = film.view.channels().iter().enumerate();
+    let of_view =
+        of_view.map(|(i, name)| channel(name, film.pixels.iter().map(|p| p[i]).collect()));
+    let channels = of_view.chain(film.alpha.iter().map(|alpha| channel("A", alpha.clone())));
     // The metadata in a single attribute: the crate writes several in a random order, and so never the
     // same bytes.
     let mut attributes =
@@ -77,7 +82,7 @@ mod tests {
     #[test]
     fn values_come_back_unclamped_and_exact() {
         let pixels = vec![[1e6, -0.25, 0.1], [0.0, 65536.5, 3e-8]];
-        let film = Film { size: [2, 1], view: View::Beauty, pixels };
+        let film = Film { size: [2, 1], view: View::Beauty, pixels, alpha: None };
         let image = written(&film, &Settings::default());
         let red = &image.layer_data.channel_data.list.iter().find(|c| c.name.eq("R")).unwrap();
         assert_eq!(red.sample_data.values_as_f32().collect::<Vec<_>>(), [1e6, 0.0]);
@@ -86,7 +91,7 @@ mod tests {
     #[test]
     fn the_same_film_is_the_same_bytes() {
         let pixels = (0..640 * 480).map(|i| [i as f32, (i as f32).sin(), 0.5]).collect();
-        let film = Film { size: [640, 480], view: View::Beauty, pixels };
+        let film = Film { size: [640, 480], view: View::Beauty, pixels, alpha: None };
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.exr");
         let bytes = || {
@@ -99,7 +104,7 @@ mod tests {
 
     #[test]
     fn half_stores_sixteen_bits() {
-        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1.0; 3]] };
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1.0; 3]], alpha: None };
         let image = written(&film, &Settings { half: true, ..Settings::default() });
         let first = &image.layer_data.channel_data.list[0].sample_data;
         assert!(matches!(first, FlatSamples::F16(_)));
@@ -107,7 +112,7 @@ mod tests {
 
     #[test]
     fn half_stores_what_is_beyond_it_as_its_greatest_number() {
-        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1e6; 3]] };
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[1e6; 3]], alpha: None };
         let image = written(&film, &Settings { half: true, ..Settings::default() });
         let first = &image.layer_data.channel_data.list[0].sample_data;
         assert_eq!(first.values_as_f32().collect::<Vec<_>>(), [65504.0]);
@@ -115,15 +120,27 @@ mod tests {
 
     #[test]
     fn depth_has_the_one_channel_z() {
-        let film = Film { size: [1, 1], view: View::Depth, pixels: vec![[f32::INFINITY; 3]] };
+        let film =
+            Film { size: [1, 1], view: View::Depth, pixels: vec![[f32::INFINITY; 3]], alpha: None };
         let list = written(&film, &Settings::default()).layer_data.channel_data.list;
         let names: Vec<String> = list.iter().map(|c| c.name.to_string()).collect();
         assert_eq!(names, ["Z"]);
     }
 
     #[test]
+    fn alpha_is_a_channel_beside_the_premultiplied_colours() {
+        let (pixels, alpha) = (vec![[0.25, 0.5, 0.125]], Some(vec![0.5]));
+        let film = Film { size: [1, 1], view: View::Beauty, pixels, alpha };
+        let list = written(&film, &Settings::default()).layer_data.channel_data.list;
+        let value = |c: &AnyChannel<FlatSamples>| c.sample_data.value_by_flat_index(0).to_f32();
+        let channels: Vec<_> = list.iter().map(|c| (c.name.to_string(), value(c))).collect();
+        let expected = [("A", 0.5), ("B", 0.125), ("G", 0.5), ("R", 0.25)];
+        assert_eq!(channels, expected.map(|(name, value)| (name.to_owned(), value)));
+    }
+
+    #[test]
     fn metadata_stands_in_the_file() {
-        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.0; 3]] };
+        let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.0; 3]], alpha: None };
         let entry = |name: &str, value: &str| (name.to_owned(), value.to_owned());
         let metadata = vec![entry("spp", "16"), entry("view", "beauty")];
         let image = written(&film, &Settings { metadata, ..Settings::default() });

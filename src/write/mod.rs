@@ -6,7 +6,7 @@
 //! use envers::internals::{Settings, write};
 //!
 //! let folder = tempfile::tempdir().unwrap();
-//! let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.5; 3]] };
+//! let film = Film { size: [1, 1], view: View::Beauty, pixels: vec![[0.5; 3]], alpha: None };
 //! write(&film, &folder.path().join("grey.png"), &Settings::default())?;
 //! # Ok::<(), envers::Error>(())
 //! ```
@@ -28,7 +28,7 @@ use crate::scene::{FilmSettings, Tone, Transfer};
 #[cfg(feature = "cli")]
 pub use atomic::check as check_files;
 pub use atomic::write_atomically;
-pub use bytes::encode as png_bytes;
+pub use bytes::{bytes_per_pixel, encode as png_bytes};
 pub use movie::Movie;
 #[cfg(feature = "cli")]
 pub use target::{folder_of, resolve};
@@ -142,6 +142,21 @@ impl Format {
             .help(format!("at most {limit} on a side; {other} can have more")))
     }
 
+    /// Checks that a picture with alpha can have this format.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub fn check_alpha(self, path: &Path) -> Result<()> {
+        let (message, help) = match self {
+            Format::Jpeg => ("a JPEG has no alpha", "write a .png, .webp or .exr"),
+            Format::Gif => ("a GIF has no alpha between none and all", "write an .apng"),
+            Format::Png | Format::WebP | Format::Exr | Format::Apng => return Ok(()),
+        };
+        Err(Error::input(format!("the background is transparent, and {message}"))
+            .at(path)
+            .help(format!("{help}, or leave the background opaque")))
+    }
+
     /// True if it can hold several frames.
     pub fn is_animated(self) -> bool {
         matches!(self, Format::Gif | Format::Apng)
@@ -167,11 +182,14 @@ pub fn check(path: &Path) -> Result<()> {
 pub fn write(film: &Film, path: &Path, settings: &Settings) -> Result<()> {
     let format = Format::from_path(path)?;
     format.check_size(film.size, path)?;
+    if film.alpha.is_some() {
+        format.check_alpha(path)?;
+    }
     match format {
         Format::Png | Format::Jpeg | Format::WebP => still::write(film, path, settings, format),
         Format::Exr => exr::write(film, path, settings),
         Format::Gif | Format::Apng => {
-            let mut movie = Movie::create(path, film.size, 1, 1.0)?;
+            let mut movie = Movie::create(path, film.size, film.alpha.is_some(), 1, 1.0)?;
             movie.push(film, settings)?;
             movie.finish()
         }

@@ -11,7 +11,7 @@ use gif::{DisposalMethod, Repeat};
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::write::{Format, Settings, atomic::PendingFile, png_bytes};
+use crate::write::{Format, Settings, atomic::PendingFile, bytes_per_pixel, png_bytes};
 
 /// The sampling factor of NeuQuant, which chooses a GIF's colours: from 1 (all pixels) to 30.
 const GIF_SAMPLING: i32 = 10;
@@ -23,6 +23,8 @@ pub struct Movie {
     file: PendingFile,
     encoder: Encoder,
     size: [u32; 2],
+    /// True if the frames have alpha.
+    has_alpha: bool,
     /// The frame rate in frames per second.
     fps: f64,
     frames: u32,
@@ -47,27 +49,36 @@ struct Rectangle {
 }
 
 impl Movie {
-    /// Begins a looping animation of `frames` frames at `fps` frames per second, in the format that the
-    /// extension names.
+    /// Begins a looping animation of `frames` frames, with or without alpha, at `fps` frames per second,
+    /// in the format that the extension names.
     ///
     /// # Errors
-    /// When the format is not animated or cannot have such a size, or the file cannot be written.
-    pub fn create(path: &Path, size: [u32; 2], frames: u32, fps: f64) -> Result<Self> {
+    /// When the format is not animated or cannot have such a size or alpha, or the file cannot be written.
+    pub fn create(
+        path: &Path,
+        size: [u32; 2],
+        has_alpha: bool,
+        frames: u32,
+        fps: f64,
+    ) -> Result<Self> {
         let format = Format::from_path(path)?;
         format.check_size(size, path)?;
+        if has_alpha {
+            format.check_alpha(path)?;
+        }
         let mut file = PendingFile::new(path)?;
         let failed = |e: io::Error| Error::writing(path, &e);
         let handle = file.handle().map_err(failed)?;
         // The header of the format.
         let encoder = match format {
             Format::Gif => begin_gif(handle, size).map_err(gif_error).map(Encoder::Gif),
-            Format::Apng => begin_apng(handle, size, frames, fps).map(Encoder::Apng),
+            Format::Apng => begin_apng(handle, size, has_alpha, frames, fps).map(Encoder::Apng),
             _ => {
                 return Err(Error::input("this format holds one frame").at(path));
             }
         }
         .map_err(failed)?;
-        Ok(Self { file, encoder, size, fps, frames: 0, previous: None })
+        Ok(Self { file, encoder, size, has_alpha, fps, frames: 0, previous: None })
     }
 
     /// Appends a frame, with the bytes that a PNG of it would have.
@@ -76,16 +87,18 @@ impl Movie {
     /// When it cannot be written.
     ///
     /// # Panics
-    /// When its size is not that of the animation.
+    /// When its size is not that of the animation, or only one of the two has alpha.
     pub fn push(&mut self, film: &Film, settings: &Settings) -> Result<()> {
         // The part of the picture that is not as it was in the frame before.
         assert_eq!(film.size, self.size, "all frames of a picture are of one size");
+        assert_eq!(film.alpha.is_some(), self.has_alpha, "all frames have alpha, or none");
         let bytes = png_bytes(film, settings);
+        let (width, depth) = (self.size[0] as usize, bytes_per_pixel(film));
         let part = match &self.previous {
-            Some(previous) => changed_rectangle(previous, &bytes, self.size[0] as usize),
+            Some(previous) => changed_rectangle(previous, &bytes, width, depth),
             None => Rectangle { left: 0, top: 0, width: film.size[0], height: film.size[1] },
         };
-        let pixels = crop(&bytes, self.size[0] as usize, part);
+        let pixels = crop(&bytes, width, depth, part);
         // Its bytes, in the encoder's format.
         let delay = gif_delay(self.frames, self.fps);
         match &mut self.encoder {
@@ -161,11 +174,12 @@ fn begin_gif(
 fn begin_apng(
     file: File,
     [width, height]: [u32; 2],
+    has_alpha: bool,
     frames: u32,
     fps: f64,
 ) -> io::Result<Box<png::Writer<File>>> {
     let mut encoder = png::Encoder::new(file, width, height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);
@@ -199,15 +213,15 @@ fn write_gif(
     encoder.write_frame(&frame).map_err(gif_error)
 }
 
-/// The smallest rectangle around all pixels in which two pictures of this width differ; one pixel for
-/// equal pictures, since no frame can be empty.
-fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
-    let height = after.len() / (3 * width);
+/// The smallest rectangle around all pixels in which two pictures of this width and of `depth` bytes a
+/// pixel differ; one pixel for equal pictures, since no frame can be empty.
+fn changed_rectangle(before: &[u8], after: &[u8], width: usize, depth: usize) -> Rectangle {
+    let height = after.len() / (depth * width);
     let (mut rows, mut columns) = (height..0, width..0);
-    let lines = before.chunks_exact(3 * width).zip(after.chunks_exact(3 * width));
+    let lines = before.chunks_exact(depth * width).zip(after.chunks_exact(depth * width));
     for (y, (a, b)) in lines.enumerate().filter(|(_, (a, b))| a != b) {
         // The first and the last pixel of the row that differ; there are some, since the rows do.
-        let differs = |x: &usize| a[3 * x..3 * x + 3] != b[3 * x..3 * x + 3];
+        let differs = |x: &usize| a[depth * x..][..depth] != b[depth * x..][..depth];
         let first = (0..width).find(differs).unwrap_or(0);
         let last = (0..width).rfind(differs).unwrap_or(0);
         columns = columns.start.min(first)..columns.end.max(last + 1);
@@ -220,12 +234,12 @@ fn changed_rectangle(before: &[u8], after: &[u8], width: usize) -> Rectangle {
     Rectangle { left, top, width: columns.len() as u32, height: rows.len() as u32 }
 }
 
-/// The bytes of a rectangle of a picture of this width.
-fn crop(bytes: &[u8], width: usize, part: Rectangle) -> Vec<u8> {
+/// The bytes of a rectangle of a picture of this width and of `depth` bytes a pixel.
+fn crop(bytes: &[u8], width: usize, depth: usize, part: Rectangle) -> Vec<u8> {
     let [left, top, columns, rows] =
         [part.left, part.top, part.width, part.height].map(|x| x as usize);
-    let lines = bytes.chunks_exact(3 * width).skip(top).take(rows);
-    lines.flat_map(|line| &line[3 * left..3 * (left + columns)]).copied().collect()
+    let lines = bytes.chunks_exact(depth * width).skip(top).take(rows);
+    lines.flat_map(|line| &line[depth * left..depth * (left + columns)]).copied().collect()
 }
 
 #[cfg(test)]
@@ -261,14 +275,14 @@ mod tests {
         let mut after = vec![0; 3 * 4 * 3];
         after[3 * (4 + 1)] = 9;
         after[3 * (8 + 2) + 2] = 7;
-        let part = changed_rectangle(&[0; 3 * 4 * 3], &after, 4);
+        let part = changed_rectangle(&[0; 3 * 4 * 3], &after, 4, 3);
         assert_eq!(part, Rectangle { left: 1, top: 1, width: 2, height: 2 });
-        assert_eq!(crop(&after, 4, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
+        assert_eq!(crop(&after, 4, 3, part), [9, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7]);
     }
 
     #[test]
     fn equal_frames_differ_in_one_pixel() {
-        let part = changed_rectangle(&[5; 12], &[5; 12], 2);
+        let part = changed_rectangle(&[5; 12], &[5; 12], 2, 3);
         assert_eq!(part, Rectangle { left: 0, top: 0, width: 1, height: 1 });
     }
 }

@@ -15,7 +15,9 @@ use crate::write::{Format, Settings, png_bytes, write_atomically};
 /// Writes a JPEG, a lossless WebP or, for any other format, a PNG.
 pub fn write(film: &Film, path: &Path, settings: &Settings, format: Format) -> Result<()> {
     let bytes = png_bytes(film, settings);
-    let ([width, height], color) = (film.size, ExtendedColorType::Rgb8);
+    let [width, height] = film.size;
+    let color =
+        if film.alpha.is_some() { ExtendedColorType::Rgba8 } else { ExtendedColorType::Rgb8 };
     write_atomically(path, |out| {
         let written = match format {
             Format::Jpeg => JpegEncoder::new_with_quality(out, settings.quality)

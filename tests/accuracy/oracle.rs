@@ -244,7 +244,7 @@ fn picture(seed: u64) -> Scene {
     let lens = Projection::FovY(0.8);
     scene.cameras.push(Camera::look_at(position, DVec3::ZERO, DVec3::Y, lens).unwrap());
     for kind in [
-        LightKind::Directional { direction: v(0.0, -0.6, -0.8) },
+        LightKind::Directional { direction: v(0.0, -0.6, -0.8), angle: 0.0 },
         LightKind::Point {
             position: v(3.0, 4.0, 2.0),
             falloff: Falloff::InverseSquare,
@@ -257,6 +257,7 @@ fn picture(seed: u64) -> Scene {
             kind,
             intensity,
             shadow: Shadow::default(),
+            samples: 16,
         });
     }
     scene

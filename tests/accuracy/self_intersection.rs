@@ -25,12 +25,17 @@ fn lamp(scene: &mut Scene, position: DVec3) {
 }
 
 fn sun(scene: &mut Scene, direction: DVec3) {
-    light(scene, LightKind::Directional { direction: direction.normalize() });
+    light(scene, LightKind::Directional { direction: direction.normalize(), angle: 0.0 });
 }
 
 fn light(scene: &mut Scene, kind: LightKind) {
-    let light =
-        Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() };
+    let light = Light {
+        name: String::new(),
+        kind,
+        intensity: Vec3::ONE,
+        shadow: Shadow::default(),
+        samples: 16,
+    };
     scene.lights.push(light);
 }
 
@@ -143,7 +148,7 @@ fn moved(scene: &Scene, turn: DQuat, by: DVec3) -> Scene {
     for light in &mut scene.lights {
         match &mut light.kind {
             LightKind::Point { position, .. } => point(position),
-            LightKind::Directional { direction: d } => direction(d),
+            LightKind::Directional { direction: d, .. } => direction(d),
             _ => unreachable!("no test has such a light"),
         }
     }

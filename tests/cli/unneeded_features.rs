@@ -107,6 +107,17 @@ impl OutOfSight {
             Feature::Reflection => made_of("reflect = 0.5"),
             Feature::Refraction => made_of("transmit = 0.5"),
             Feature::Culling => model("one-sided.glb"),
+            Feature::AreaLights => format!(
+                "[[light]]\nkind = \"sphere\"\nposition = {at:?}\nradius = 0.5\nintensity = 0\n\
+                 visible = false\n"
+            ),
+            // In a ball that keeps its light.
+            Feature::EmissiveLights => {
+                made_of("emission = 1\nilluminates = true")
+                    + &format!("[[sphere]]\ncenter = {at:?}\nradius = 0.7\n")
+            }
+            Feature::Pbr => made_of("roughness = 0.5"),
+            Feature::Environment => "[environment]\ncolor = 0\nvisible = false\n".to_owned(),
         }
     }
 }
@@ -226,6 +237,10 @@ fn trees_planes_pictures_and_normals_are_made_for_features_out_of_sight() {
             let is_done_anyway = match kind {
                 Feature::Spheres | Feature::Planes | Feature::Pictures => true,
                 Feature::AlphaTests | Feature::SmoothNormals => true,
+                // Its light is looked for wherever it may fall.
+                Feature::EmissiveLights => true,
+                // It is all around.
+                Feature::Environment => true,
                 // The BVH always has a level of instances.
                 Feature::Instances if *backend == "rust" => continue,
                 Feature::Instances => true,

@@ -175,6 +175,10 @@ const NOT_LOOKED_FOR: &[(&str, &str)] = &[
     ("ANIMATION_SAMPLER_INPUT_ACCESSOR_WITHOUT_BOUNDS", "as above"),
     ("MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", "as above"),
     (
+        "MESH_PRIMITIVE_NO_TANGENT_SPACE",
+        "without tangents and texture coordinates the direction of a brushed material is arbitrary",
+    ),
+    (
         "ACCESSOR_INDEX_OOB",
         "a fault in the data, which is checked where something shows it, and then counted in the load report",
     ),

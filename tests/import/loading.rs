@@ -1,6 +1,6 @@
 //! The loading of test files, and assertions on errors and warnings.
 
-use envers::{Loaded, Location, Result};
+use envers::{LoadOptions, Loaded, Location, Result};
 use envers_testing::{Folder, Model, data_uri};
 
 /// A folder whose files can be loaded.
@@ -22,6 +22,9 @@ pub trait LoadModel {
 
     /// Writes the file in a folder and loads it.
     fn load_in(&self, folder: &Folder) -> Result<Loaded>;
+
+    /// Writes the file, its buffer in a data URI, and loads it with these options.
+    fn load_with(&self, options: &LoadOptions) -> Result<Loaded>;
 }
 
 impl LoadModel for Model {
@@ -31,6 +34,12 @@ impl LoadModel for Model {
 
     fn load_in(&self, folder: &Folder) -> Result<Loaded> {
         folder.load("model.gltf", self.to_json(Some(&data_uri(self.bin()))).to_string())
+    }
+
+    fn load_with(&self, options: &LoadOptions) -> Result<Loaded> {
+        let folder = Folder::new();
+        let json = self.to_json(Some(&data_uri(self.bin()))).to_string();
+        options.load(folder.write("model.gltf", json))
     }
 }
 

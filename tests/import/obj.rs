@@ -472,7 +472,7 @@ fn an_image_beside_a_black_colour_is_shown() {
     }
     // Also where it is the base of a metal.
     let (_, m) = imaged([255, 0, 0, 255], "Kd 0 0 0\nPm 0.5\nmap_Kd a.png");
-    assert_eq!(m.metallic.unwrap().factors.base, Vec3::ONE);
+    assert_eq!(m.metallic.unwrap().factors.base_color, Vec3::ONE);
     // Without an image black is black.
     let (loaded, m) = with_mtl(&Folder::new(), "newmtl m\nKd 0 0 0");
     assert_eq!((m.diffuse, loaded.report.warnings.len()), (Vec3::ZERO, 0));
@@ -732,8 +732,18 @@ fn roughness_and_metalness_are_gltfs() {
     assert_eq!((metal.diffuse, metal.specular), (Vec3::ZERO, Vec3::new(1.0, 0.5, 0.0)));
     assert!((metal.shininess - 30.0).abs() < 1e-3, "{}", metal.shininess);
     let plastic = transmission("Kd 1 0.5 0\nPr 0.5");
-    assert_eq!((plastic.diffuse, plastic.metallic), (Vec3::new(1.0, 0.5, 0.0), None));
+    assert_eq!(plastic.diffuse, Vec3::new(1.0, 0.5, 0.0));
+    assert!(metal.is_pbr() && plastic.is_pbr() && !transmission("Kd 1 0.5 0").is_pbr());
     assert!((plastic.specular - 0.04).abs().max_element() < 1e-6, "{}", plastic.specular);
+}
+
+#[test]
+fn sheen_clearcoat_and_anisotropy_are_gltfs() {
+    let m = transmission("Pr 0.5\nPs 0.25\nPc 0.75\nPcr 0.125\naniso 0.5\nanisor 0.25");
+    let factors = m.metallic.unwrap().factors;
+    assert_eq!((factors.clearcoat, factors.clearcoat_roughness), (0.75, 0.125));
+    assert_eq!((factors.sheen_color, factors.anisotropy), (Vec3::splat(0.25), 0.5));
+    assert!((factors.anisotropy_rotation - std::f32::consts::FRAC_PI_2).abs() < 1e-6);
 }
 
 #[test]

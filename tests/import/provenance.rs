@@ -342,6 +342,20 @@ fn objects_of_a_scene_file_come_from_their_tables() {
 }
 
 #[test]
+fn the_shapes_of_lights_come_from_their_tables() {
+    let lights = "[[light]]\nkind = \"sphere\"\nposition = [-80, 0, 0]\nradius = 1\n\
+                  [[light]]\nname = \"panel\"\nkind = \"rectangle\"\nposition = [-90, 0, 0]\n\
+                  direction = [0, 0, 1]\nsize = [2, 2]\n";
+    let (_folder, scene) = scene_of_models(&format!("{SCENE}{lights}"));
+    let found = |x: f64| {
+        let table = scene.provenance_of(hit(&scene, x, 0.2)).unwrap().table.unwrap();
+        (table.kind, table.index, table.name.map(str::to_owned))
+    };
+    assert_eq!(found(-80.0), (TableKind::Light, 0, None));
+    assert_eq!(found(-90.0), (TableKind::Light, 1, Some("panel".to_owned())));
+}
+
+#[test]
 fn elements_of_models_in_a_scene_file_are_those_of_their_files() {
     let (_folder, scene) = scene_of_models(SCENE);
     for x in [0.5, 10.5] {

@@ -185,9 +185,13 @@ fn workshop() -> Scene {
     scene.spheres.push(Sphere::new(DVec3::new(2.0, 0.0, 0.0), 0.4, MaterialId(0)));
     scene.lights.push(Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::new(-0.3, -1.0, -0.2).normalize() },
+        kind: LightKind::Directional {
+            direction: DVec3::new(-0.3, -1.0, -0.2).normalize(),
+            angle: 0.0,
+        },
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
+        samples: 16,
     });
     let eye = DVec3::new(0.5, 2.0, 6.0);
     scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8)).unwrap());

@@ -9,3 +9,4 @@ mod light_transport;
 mod not_finite;
 mod radiance;
 mod textures;
+mod transparent;

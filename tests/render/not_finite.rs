@@ -31,6 +31,7 @@ fn lamp(distance: f64, intensity: f32) -> Light {
         kind,
         intensity: Vec3::splat(intensity),
         shadow: Shadow::default(),
+        samples: 16,
     }
 }
 

@@ -21,7 +21,13 @@ fn scene(material: Material) -> Scene {
 }
 
 fn light(kind: LightKind) -> Light {
-    Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() }
+    Light {
+        name: String::new(),
+        kind,
+        intensity: Vec3::ONE,
+        shadow: Shadow::default(),
+        samples: 16,
+    }
 }
 
 fn point(position: DVec3, falloff: Falloff) -> Light {
@@ -79,7 +85,7 @@ fn wall_lit_at_sixty_degrees_has_half_its_diffuse_colour() {
     let mut scene = scene(matt(0.8));
     wall(&mut scene);
     let direction = -DVec3::new(3f64.sqrt() / 2.0, 0.0, 0.5);
-    scene.lights.push(light(LightKind::Directional { direction }));
+    scene.lights.push(light(LightKind::Directional { direction, angle: 0.0 }));
     assert_near(radiance(&scene), 0.4);
 }
 
@@ -117,7 +123,7 @@ fn phong_highlight_is_the_cosine_to_the_power_of_alpha() {
     wall(&mut scene);
     // The view is reflected straight back, and the light stands 60° off it.
     let direction = -DVec3::new(3f64.sqrt() / 2.0, 0.0, 0.5);
-    scene.lights.push(light(LightKind::Directional { direction }));
+    scene.lights.push(light(LightKind::Directional { direction, angle: 0.0 }));
     assert_near(radiance(&scene), 0.5 * 0.125);
 }
 
@@ -142,7 +148,7 @@ fn two_lights_add_up() {
     let mut scene = scene(matt(0.5));
     wall(&mut scene);
     scene.lights.push(point(DVec3::Z * 9.0, Falloff::None));
-    scene.lights.push(light(LightKind::Directional { direction: DVec3::NEG_Z }));
+    scene.lights.push(light(LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 }));
     assert_near(radiance(&scene), 1.0);
 }
 
@@ -156,7 +162,7 @@ fn thousands_of_lights_add_up_to_within_an_ulp() {
         let mut expected = 0.0;
         for i in 0..5000 {
             let intensity = 0.1 + (i % 7) as f32;
-            let sun = light(LightKind::Directional { direction: DVec3::NEG_Z });
+            let sun = light(LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 });
             let shadow = if casts_shadows { Shadow::default() } else { Shadow::None };
             scene.lights.push(Light { intensity: Vec3::splat(intensity), shadow, ..sun });
             expected += f64::from(0.7 * intensity);
@@ -314,7 +320,7 @@ fn ground_far_from_the_origin_does_not_shadow_itself() {
         scene.cameras = vec![Camera::look_at(eye, at, DVec3::Y, lens).unwrap()];
         scene.spheres.push(Sphere::new(at - DVec3::Y * 6.4e6, 6.4e6, MaterialId(0)));
         let toward = DVec3::new(0.2, -1.0, 0.1).normalize();
-        scene.lights.push(light(LightKind::Directional { direction: toward }));
+        scene.lights.push(light(LightKind::Directional { direction: toward, angle: 0.0 }));
         let rendering = Renderer::new(&scene).render().unwrap();
         let lit = 0.5 * -toward.y as f32;
         let ground = rendering.film.pixels.iter().filter(|p| **p != [0.0; 3]).count();

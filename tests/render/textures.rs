@@ -54,9 +54,10 @@ fn stand(scene: &mut Scene, mesh: Mesh, transform: DAffine3) {
 fn sun(toward: DVec3) -> Light {
     Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: -toward.normalize() },
+        kind: LightKind::Directional { direction: -toward.normalize(), angle: 0.0 },
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
+        samples: 16,
     }
 }
 

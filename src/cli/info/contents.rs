@@ -69,6 +69,14 @@ pub struct LightSummary {
     /// The half-angles of a spot, in degrees; null for other lights.
     inner_angle: Option<f64>,
     outer_angle: Option<f64>,
+    /// The angular diameter of a sun, in degrees; null for a point and for other lights.
+    angle: Option<f64>,
+    /// The width and height of a rectangle; null for other lights.
+    size: Option<[f64; 2]>,
+    /// The radius of a disk or a sphere; null for other lights.
+    radius: Option<f64>,
+    /// The number of samples of a light with an extent; null for other lights.
+    samples: Option<u32>,
     casts_shadow: bool,
 }
 
@@ -165,13 +173,18 @@ impl From<&Light> for LightSummary {
             range: None,
             inner_angle: None,
             outer_angle: None,
+            angle: None,
+            size: None,
+            radius: None,
+            samples: light.has_extent().then_some(light.samples),
             casts_shadow: light.casts_shadow(),
         };
         match light.kind {
             LightKind::Ambient => {}
-            LightKind::Directional { direction } => {
+            LightKind::Directional { direction, angle } => {
                 summary.kind = "directional";
                 summary.direction = Some(direction.into());
+                summary.angle = (angle != 0.0).then(|| angle.to_degrees());
             }
             LightKind::Point { position, falloff, range } => {
                 summary.kind = "point";
@@ -183,6 +196,23 @@ impl From<&Light> for LightSummary {
                 summary.direction = Some(direction.into());
                 summary.inner_angle = Some(inner_angle.to_degrees());
                 summary.outer_angle = Some(outer_angle.to_degrees());
+            }
+            LightKind::Rectangle { center, u, v } => {
+                summary.kind = "rectangle";
+                summary.position = Some(center.into());
+                summary.direction = Some(u.cross(v).normalize().into());
+                summary.size = Some([u, v].map(|half| 2.0 * half.length()));
+            }
+            LightKind::Disk { center, normal, radius } => {
+                summary.kind = "disk";
+                summary.position = Some(center.into());
+                summary.direction = Some(normal.into());
+                summary.radius = Some(radius);
+            }
+            LightKind::Sphere { center, radius } => {
+                summary.kind = "sphere";
+                summary.position = Some(center.into());
+                summary.radius = Some(radius);
             }
         }
         summary

@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use crate::geometry::{LANES, Lanes};
+use crate::integrator::light_sources::LightSource;
 use crate::integrator::radiance::set_lane;
 use crate::integrator::surface_evaluation::LitSurface16;
-use crate::scene::{Light, LightKind};
+use crate::scene::LightKind;
 
 /// The light of one source that arrives at sixteen points, if nothing is in between.
 #[derive(Default)]
@@ -24,14 +25,15 @@ pub(super) struct IncidentLight16 {
 impl IncidentLight16 {
     /// Sets it to the light that arrives at the surfaces that scatter any.
     #[inline(always)]
-    pub fn set(&mut self, light: &Light, lit: &LitSurface16) {
+    pub fn set(&mut self, source: &LightSource<'_>, lit: &LitSurface16) {
+        self.arrives = lit.scatters;
+        self.tmax = if source.is_bounded() { 1.0 } else { f64::INFINITY };
+        let &LightSource::Light(light) = source else { return self.set_each(source, lit) };
         for channel in 0..3 {
             self.intensity[channel] = [light.intensity[channel]; LANES];
         }
-        self.arrives = lit.scatters;
-        self.tmax = if light.is_bounded() { 1.0 } else { f64::INFINITY };
         match light.kind {
-            LightKind::Directional { direction } => {
+            LightKind::Directional { direction, .. } => {
                 for axis in 0..3 {
                     self.toward[axis] = [-direction[axis]; LANES];
                 }
@@ -47,17 +49,21 @@ impl IncidentLight16 {
                 }
             }
             // Any other light is evaluated point by point.
-            _ => {
-                for i in (0..LANES).filter(|&i| lit.scatters[i]) {
-                    match light.incident(lit.surface.position(i)) {
-                        None => self.arrives[i] = false,
-                        Some(incident) => {
-                            for axis in 0..3 {
-                                self.toward[axis][i] = incident.toward[axis];
-                            }
-                            set_lane(&mut self.intensity, i, incident.intensity);
-                        }
+            _ => self.set_each(source, lit),
+        }
+    }
+
+    /// Sets it to the light of a source that is evaluated point by point.
+    #[inline(always)]
+    fn set_each(&mut self, source: &LightSource<'_>, lit: &LitSurface16) {
+        for i in (0..LANES).filter(|&i| lit.scatters[i]) {
+            match source.incident(lit.surface.position(i)) {
+                None => self.arrives[i] = false,
+                Some(incident) => {
+                    for axis in 0..3 {
+                        self.toward[axis][i] = incident.toward[axis];
                     }
+                    set_lane(&mut self.intensity, i, incident.intensity);
                 }
             }
         }

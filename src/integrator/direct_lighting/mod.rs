@@ -5,17 +5,22 @@ mod incident_light;
 #[cfg(test)]
 mod tests;
 
+use std::f32::consts::PI;
+
 use glam::{DVec3, Vec3};
 
 use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId16};
 use crate::integrator::counts::FeatureCounts;
+use crate::integrator::light_sources::LightSource;
+use crate::integrator::material_cache::MaterialCache;
+use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::radiance::{Radiance16, WaveRadiance, all_finite, any, lane, set_lane};
 use crate::integrator::shadow_rays::{PendingLight, ShadowQueue};
 use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
-use crate::integrator::{Counts, Integrator, simd};
+use crate::integrator::{Counts, Integrator, ShadingFeatures, simd};
 use crate::scene::Light;
-use crate::shading;
+use crate::shading::{self, Bsdf};
 use crate::surface::Surface16;
 use incident_light::IncidentLight16;
 
@@ -41,11 +46,11 @@ pub(super) fn add_ambient(
     }
 }
 
-/// Works out what the surfaces of a wave reflect of a light. For a light that casts shadows it is
+/// Works out what the surfaces of a wave reflect of a light source. For one that casts shadows it is
 /// queued in `shadows` with a shadow ray for each surface; else it is added to the radiance.
 pub(super) fn reflect(
     integrator: &Integrator<'_>,
-    light: &Light,
+    source: &LightSource<'_>,
     wave: &Wave,
     surfaces: &WaveSurfaces,
     radiance: &mut WaveRadiance,
@@ -53,23 +58,27 @@ pub(super) fn reflect(
     counts: &mut Counts,
 ) {
     // The loop is compiled for what a scene has, and for each instruction set.
-    let (lit, counts) = (surfaces.lit(), &mut counts.work);
+    let counts = &mut counts.work;
     shadows.clear();
     let has_soft_terminator = integrator.features.soft_terminator;
-    let reflect = match (integrator.features.highlights, has_soft_terminator) {
-        (false, false) => dispatch_blocks::<false, false>,
-        (false, true) => dispatch_blocks::<false, true>,
-        (true, false) => dispatch_blocks::<true, false>,
-        (true, true) => dispatch_blocks::<true, true>,
+    let ShadingFeatures { pbr, highlights, .. } = integrator.features;
+    let reflect = match (pbr, highlights, has_soft_terminator) {
+        (false, false, false) => dispatch_blocks::<false, false, false>,
+        (false, false, true) => dispatch_blocks::<false, false, true>,
+        (false, true, false) => dispatch_blocks::<false, true, false>,
+        (false, true, true) => dispatch_blocks::<false, true, true>,
+        (true, _, false) => dispatch_blocks::<true, true, false>,
+        (true, _, true) => dispatch_blocks::<true, true, true>,
     };
-    reflect(integrator.arch, light, wave, lit, radiance, shadows, counts);
+    let materials = &integrator.materials;
+    reflect(integrator.arch, source, wave, (surfaces, materials), radiance, shadows, counts);
 }
 
-fn dispatch_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
+fn dispatch_blocks<const PBR: bool, const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
     arch: pulp::Arch,
-    light: &Light,
+    source: &LightSource<'_>,
     wave: &Wave,
-    lit: &[LitSurface16],
+    surfaces: (&WaveSurfaces, &MaterialCache),
     radiance: &mut WaveRadiance,
     shadows: &mut ShadowQueue,
     counts: &mut FeatureCounts,
@@ -78,30 +87,34 @@ fn dispatch_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
         arch,
         #[inline(always)]
         || {
-            reflect_blocks::<HIGHLIGHTS, SOFT_TERMINATOR>(
-                light, wave, lit, radiance, shadows, counts,
+            reflect_blocks::<PBR, HIGHLIGHTS, SOFT_TERMINATOR>(
+                source, wave, surfaces, radiance, shadows, counts,
             )
         },
     );
 }
 
 #[inline(always)]
-fn reflect_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
-    light: &Light,
+fn reflect_blocks<const PBR: bool, const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
+    source: &LightSource<'_>,
     wave: &Wave,
-    lit_blocks: &[LitSurface16],
+    (surfaces, materials): (&WaveSurfaces, &MaterialCache),
     radiance: &mut WaveRadiance,
     shadows: &mut ShadowQueue,
     counts: &mut FeatureCounts,
 ) {
-    let casts_shadow = light.casts_shadow();
+    let casts_shadow = source.casts_shadow();
+    let mut lit_count = 0;
     let (mut incident, mut reflected) = (IncidentLight16::default(), Reflected16::default());
-    for lit in lit_blocks {
+    for lit in surfaces.lit() {
         let hits = &wave.hits.blocks()[lit.block];
         // The light that arrives, and the share of it that goes to the viewer.
-        incident.set(light, lit);
+        incident.set(source, lit);
         let directions = &wave.rays.blocks()[lit.block].direction;
-        reflected.set::<HIGHLIGHTS, SOFT_TERMINATOR>(lit, &incident, directions, hits);
+        let pbr = if PBR { &surfaces.pbr.hits[lit.pbr.clone()] } else { &[] };
+        let bsdf = |hit: &PbrHit| surfaces.pbr.bsdf(hit, materials);
+        let pbr = PbrLanes { hits: pbr, bsdf: &bsdf };
+        reflected.set::<HIGHLIGHTS, SOFT_TERMINATOR>(lit, &pbr, &incident, directions, hits);
         if !any(&reflected.faces_light) {
             continue;
         }
@@ -126,6 +139,7 @@ fn reflect_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
         } else if !any(&is_lit) {
             continue;
         }
+        lit_count += u64::from(any(&is_lit));
         // Light that may be blocked waits for its shadow ray.
         if casts_shadow {
             let block = lit.block;
@@ -136,6 +150,7 @@ fn reflect_blocks<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
             radiance.add_block(lit.block, &contribution, &is_lit);
         }
     }
+    source.count(lit_count * LANES as u64, counts);
 }
 
 /// Spawns shadow rays from the lit surfaces of a block, seen along `incoming`, toward a light. The other
@@ -195,6 +210,12 @@ fn mark_not_finite(
     }
 }
 
+/// The physically based ones of sixteen surfaces, and their BSDFs.
+struct PbrLanes<'a> {
+    hits: &'a [PbrHit],
+    bsdf: &'a dyn Fn(&PbrHit) -> &'a Bsdf,
+}
+
 /// The light that sixteen surfaces reflect to the viewer, in units of its intensity.
 #[derive(Default)]
 #[repr(C, align(64))]
@@ -216,6 +237,7 @@ impl Reflected16 {
     fn set<const HIGHLIGHTS: bool, const SOFT_TERMINATOR: bool>(
         &mut self,
         lit: &LitSurface16,
+        pbr: &PbrLanes<'_>,
         incident: &IncidentLight16,
         directions: &[Lanes<f64>; 3],
         hits: &Hit16,
@@ -236,6 +258,10 @@ impl Reflected16 {
             }
         }
         self.set_facing(lit, incident, &diffuse, hits);
+        // Light from behind comes through what transmits it diffusely.
+        for hit in pbr.hits.iter().filter(|hit| hit.is_translucent) {
+            self.faces_light[hit.lane] = incident.arrives[hit.lane];
+        }
         if !any(&self.faces_light) {
             return;
         }
@@ -248,9 +274,21 @@ impl Reflected16 {
         if HIGHLIGHTS && lit.has_highlights {
             self.add_highlights(lit, mirrored);
         }
+        self.set_pbr(pbr, &unit);
         // Toward the terminator of a smooth mesh, light fades out.
         if SOFT_TERMINATOR && surface.has_triangles {
             self.fade_to_terminator(surface, &diffuse);
+        }
+    }
+
+    /// Sets the shares of physically based surfaces. Intensities are irradiances divided by π, hence the factor.
+    #[inline(always)]
+    fn set_pbr(&mut self, pbr: &PbrLanes<'_>, toward: &[Lanes<f64>; 3]) {
+        for hit in pbr.hits.iter().filter(|hit| self.faces_light[hit.lane]) {
+            let i = hit.lane;
+            let light = DVec3::new(toward[0][i], toward[1][i], toward[2][i]);
+            let value = (pbr.bsdf)(hit).evaluate(hit.wo, hit.frame.transpose() * light);
+            set_lane(&mut self.share, i, value * (PI * hit.alpha));
         }
     }
 

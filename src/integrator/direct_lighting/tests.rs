@@ -1,5 +1,7 @@
 use super::*;
 
+const NO_PBR: PbrLanes<'_> = PbrLanes { hits: &[], bsdf: &|_| unreachable!() };
+
 /// A white Lambert surface without a highlight.
 fn matte() -> LitSurface16 {
     LitSurface16 { scatters: [true; LANES], diffuse: [[1.0; LANES]; 3], ..LitSurface16::default() }
@@ -28,7 +30,7 @@ fn reflected(mut lit: LitSurface16, view: DVec3, light: DVec3) -> Vec3 {
     let mut reflected = Reflected16::default();
     let mut hits = crate::geometry::HitBatch::default();
     hits.reset_to_misses(LANES);
-    reflected.set::<true, true>(&lit, &incident, &lanes(view), &hits.blocks()[0]);
+    reflected.set::<true, true>(&lit, &NO_PBR, &incident, &lanes(view), &hits.blocks()[0]);
     if reflected.faces_light[0] { lane(&reflected.share, 0) } else { Vec3::ZERO }
 }
 
@@ -72,7 +74,7 @@ fn of_smooth_face(spread: f64, light: f64) -> f32 {
     let mut hits = crate::geometry::HitBatch::default();
     hits.resize(LANES)[0].id.geometry = [PrimitiveId16::MESHES; LANES];
     let mut reflected = Reflected16::default();
-    reflected.set::<false, true>(&lit, &incident, &lanes(DVec3::NEG_Y), &hits.blocks()[0]);
+    reflected.set::<false, true>(&lit, &NO_PBR, &incident, &lanes(DVec3::NEG_Y), &hits.blocks()[0]);
     reflected.share[0][0]
 }
 

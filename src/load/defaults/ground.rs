@@ -22,12 +22,14 @@ pub fn add_ground(scene: &mut Scene, up: DVec3) {
         return;
     }
     // The brightness of white there, where it is the same everywhere.
-    let white = scene.lights.iter().try_fold(Vec3::ZERO, |sum, light| match light.kind {
+    let environment = scene.environment.as_ref();
+    let around = environment.map_or(Vec3::ZERO, |environment| environment.diffuse_light(up));
+    let white = scene.lights.iter().try_fold(around, |sum, light| match light.kind {
         LightKind::Ambient => Some(sum + light.intensity),
-        LightKind::Directional { direction } => {
+        LightKind::Directional { direction, .. } => {
             Some(sum + light.intensity * (-direction.dot(up)).max(0.0) as f32)
         }
-        LightKind::Point { .. } | LightKind::Spot { .. } => None,
+        _ => None,
     });
 
     // The diffuse colour that makes the ground as bright as the background.
@@ -48,7 +50,7 @@ pub fn add_ground(scene: &mut Scene, up: DVec3) {
 mod tests {
     use super::*;
     use crate::load::defaults::auto_camera::add_camera;
-    use crate::load::defaults::auto_lighting::add_lights;
+    use crate::load::defaults::auto_lighting::light_model;
     use crate::load::framing::Framing;
     use crate::scene::{MaterialId, Sphere};
 
@@ -57,21 +59,23 @@ mod tests {
         let mut scene = Scene::default();
         scene.spheres.push(Sphere::new(DVec3::new(0.0, 3.0, 0.0), 2.0, MaterialId(0)));
         add_camera(&mut scene, &Framing::default()).unwrap();
-        add_lights(&mut scene);
+        light_model(&mut scene, glam::DMat3::IDENTITY, false);
         add_ground(&mut scene, DVec3::Y);
         let plane = &scene.planes[0];
         assert!(plane.point.y < 1.0 && plane.point.y > 0.99);
         let diffuse = scene.materials[plane.material.0 as usize].diffuse;
+        let around = scene.environment.as_ref().unwrap().diffuse_light(DVec3::Y).x;
         let bright: f32 = scene
             .lights
             .iter()
             .map(|light| match light.kind {
-                LightKind::Directional { direction } => {
+                LightKind::Directional { direction, .. } => {
                     light.intensity.x * (-direction.y).max(0.0) as f32
                 }
                 _ => light.intensity.x,
             })
-            .sum();
+            .sum::<f32>()
+            + around;
         assert!((diffuse.x * bright - BACKGROUND).abs() < 1e-6);
     }
 

@@ -8,12 +8,14 @@ use crate::load::diagnostics::Diagnostics;
 
 /// The extensions that are accepted.
 #[rustfmt::skip]
-const ACCEPTED: [&str; 33] = [
+const ACCEPTED: [&str; 39] = [
     // Those that are read.
     "EXT_meshopt_compression", "KHR_draco_mesh_compression", "KHR_implicit_shapes",
     "EXT_mesh_gpu_instancing", "EXT_texture_webp", "KHR_lights_punctual",
-    "KHR_materials_emissive_strength", "KHR_materials_ior",
-    "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular",
+    "KHR_materials_anisotropy", "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission", "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength", "KHR_materials_ior", "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness", "KHR_materials_sheen", "KHR_materials_specular",
     "KHR_materials_transmission", "KHR_materials_unlit", "KHR_materials_variants",
     "KHR_materials_volume", "KHR_mesh_quantization", "KHR_node_visibility", "KHR_texture_basisu",
     "KHR_texture_transform",

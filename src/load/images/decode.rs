@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::io::Cursor;
 use std::path::PathBuf;
 
-use image::{ColorType, DynamicImage, ImageDecoder, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageReader, Rgb};
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
@@ -59,6 +59,18 @@ pub fn decode_all<'a, T: Sync>(
         decoded.par_extend(prepared.into_par_iter().map(|image| image?.decode()));
     }
     decoded
+}
+
+/// Decodes the image in a file; returns also how many of its colours' values were negative or not finite, and
+/// became 0.
+///
+/// # Errors
+/// As for the images of [`decode_all`].
+pub fn decode_one(file: OpenedFile, sandbox: &Sandbox) -> Result<(Image, u64)> {
+    let prepared = prepare(Source::File(file), sandbox, true)?;
+    let mut image = prepared.decode_unchecked()?;
+    let invalid = remove_invalid_floats(&mut image.texels);
+    Ok((image, invalid))
 }
 
 /// Reads the bytes of an image if it is needed, and charges the limits for what it will take.
@@ -159,6 +171,13 @@ impl PreparedImage<'_> {
     }
 
     fn decode(self) -> Result<Image> {
+        let mut image = self.decode_unchecked()?;
+        remove_invalid_floats(&mut image.texels);
+        Ok(image)
+    }
+
+    /// Decodes the image with the floats that the file has.
+    fn decode_unchecked(self) -> Result<Image> {
         let Some(pixels) = self.pixels else { return Ok(Image::unread(self.name)) };
         let decode = || {
             if ktx2::is_ktx(&self.bytes) {
@@ -175,7 +194,7 @@ impl PreparedImage<'_> {
             Ok(([image.width(), image.height()], texels(image)))
         };
         let (size, texels) = decode().map_err(|e| self.locate(e))?;
-        Ok(Image::new(self.name, size, with_valid_floats(texels)))
+        Ok(Image::new(self.name, size, texels))
     }
 }
 
@@ -193,9 +212,12 @@ fn channel_bytes(color: ColorType) -> u64 {
 fn texels(image: DynamicImage) -> Texels {
     use DynamicImage as D;
     match image {
-        D::ImageRgb32F(_) | D::ImageRgba32F(_) => {
-            Texels::Floats(pixels(image.into_rgba32f().into_raw()))
+        // Without a copy in between: an environment map may have a gigabyte.
+        D::ImageRgb32F(image) => {
+            let opaque = |&Rgb([r, g, b]): &Rgb<f32>| [r, g, b, 1.0];
+            Texels::Floats(image.pixels().map(opaque).collect())
         }
+        D::ImageRgba32F(_) => Texels::Floats(pixels(image.into_rgba32f().into_raw())),
         D::ImageLuma16(_) | D::ImageLumaA16(_) | D::ImageRgb16(_) | D::ImageRgba16(_) => {
             Texels::Words(pixels(image.into_rgba16().into_raw()))
         }
@@ -203,13 +225,16 @@ fn texels(image: DynamicImage) -> Texels {
     }
 }
 
-/// Sets floats that are negative or not finite to 0.
-fn with_valid_floats(mut texels: Texels) -> Texels {
-    if let Texels::Floats(texels) = &mut texels {
-        let is_valid = |x: &f32| x.is_finite() && *x >= 0.0;
-        texels.as_flattened_mut().iter_mut().filter(|x| !is_valid(x)).for_each(|x| *x = 0.0);
+/// Sets floats that are negative or not finite to 0, and returns how many there were, without alpha.
+fn remove_invalid_floats(texels: &mut Texels) -> u64 {
+    let Texels::Floats(texels) = texels else { return 0 };
+    let is_valid = |x: f32| x.is_finite() && x >= 0.0;
+    let mut count = 0;
+    for texel in texels {
+        count += texel[..3].iter().filter(|x| !is_valid(**x)).count() as u64;
+        *texel = texel.map(|x| if is_valid(x) { x } else { 0.0 });
     }
-    texels
+    count
 }
 
 /// Pixels of four values each.
@@ -221,7 +246,7 @@ fn pixels<T: Copy>(values: Vec<T>) -> Vec<[T; 4]> {
 mod tests {
     use super::*;
     use crate::load::limits::Limits;
-    use image::{ImageBuffer, ImageFormat, Rgb, Rgba};
+    use image::{ImageBuffer, ImageFormat, Rgba};
     use std::path::Path;
 
     fn encoded(image: DynamicImage, format: ImageFormat) -> Vec<u8> {
@@ -284,6 +309,8 @@ mod tests {
     fn floats_that_are_negative_or_not_finite_become_zero() {
         let odd = Rgba([f32::NAN, -1.0, f32::INFINITY, 1.0]);
         let odd = DynamicImage::ImageRgba32F(ImageBuffer::from_pixel(1, 1, odd));
-        assert_eq!(with_valid_floats(texels(odd)), Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
+        let mut odd = texels(odd);
+        assert_eq!(remove_invalid_floats(&mut odd), 3);
+        assert_eq!(odd, Texels::Floats(vec![[0.0, 0.0, 0.0, 1.0]]));
     }
 }

@@ -9,9 +9,7 @@ use glam::{DAffine3, DVec3};
 use self::animation::InstanceAnimation;
 use crate::geometry::Bounds;
 use crate::scene::animation::NodeId;
-use crate::scene::{
-    Instance, LightKind, Material, MaterialId, ObjectProvenance, Plane, Scene, Sphere,
-};
+use crate::scene::{Instance, Light, Material, MaterialId, ObjectProvenance, Plane, Scene, Sphere};
 
 /// A model whose meshes, materials and textures are in a scene, where it can have any number of
 /// instances without being stored again.
@@ -192,10 +190,7 @@ struct SceneIndices {
 
 /// Returns the box around a model, its lights and cameras too.
 fn bounds(model: &Scene) -> Bounds {
-    let lights = model.lights.iter().filter_map(|light| match light.kind {
-        LightKind::Point { position, .. } | LightKind::Spot { position, .. } => Some(position),
-        LightKind::Ambient | LightKind::Directional { .. } => None,
-    });
+    let lights = model.lights.iter().filter_map(Light::position);
     let cameras = model.cameras.iter().map(|camera| camera.position);
     model.bounds().union(Bounds::from_points(lights.chain(cameras)))
 }

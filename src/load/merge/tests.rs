@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::scene::{
-    Camera, Falloff, Image, Light, Mesh, MeshId, Projection, Shadow, Texture, TextureId,
+    Camera, Falloff, Image, LightKind, Mesh, MeshId, Projection, Shadow, Texture, TextureId,
 };
 use glam::{DMat3, DVec3, Vec3};
 use std::sync::Arc;
@@ -32,6 +32,7 @@ fn model() -> Scene {
         },
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
+        samples: 16,
     });
     let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::OrthoHeight(2.0));
     model.cameras.push(camera.unwrap());

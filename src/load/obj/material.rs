@@ -1,5 +1,7 @@
-//! The conversion of MTL materials to Lambert and Phong surfaces, as docs/formats.md explains.
+//! The conversion of MTL materials to Lambert and Phong surfaces, or physically based ones, as
+//! docs/formats.md explains.
 
+use std::f32::consts::TAU;
 use std::path::Path;
 
 use glam::Vec3;
@@ -10,7 +12,7 @@ use super::textures::Textures;
 use crate::load::diagnostics::Diagnostics;
 use crate::scene::{
     AlphaMode, Channel, Coverage, Material, MaterialId, MetallicRoughness, MetallicRoughnessMaps,
-    NormalMap, Scene, ShininessMap, TextureId, Transfer,
+    NormalMap, Scene, ShadingModel, ShininessMap, TextureId, Transfer,
 };
 
 /// The range of shininess that is supported.
@@ -29,6 +31,8 @@ pub struct MaterialBuilder<'a, 'g> {
     pub source: &'a tobj::Material,
     /// The folder of the MTL file.
     pub folder: &'a Path,
+    /// The shading model; none for the one that the material's statements ask for.
+    pub shading: Option<ShadingModel>,
     /// The textures of all materials.
     pub textures: &'a mut Textures<'g>,
     /// The scene that it is added to next.
@@ -124,6 +128,7 @@ impl<'a> MaterialBuilder<'a, '_> {
         if let Some(maps) = metallic {
             material.specular_map = None;
             material.shininess_map = None;
+            material.shading = self.shading.unwrap_or(ShadingModel::Pbr);
             material.set_metallic_roughness(maps);
         }
         let map = self.channel(opacity_map);
@@ -143,7 +148,8 @@ impl<'a> MaterialBuilder<'a, '_> {
     fn metallic(&mut self, material: &Material) -> Option<MetallicRoughnessMaps> {
         let [pr, pm, map_pr, map_pm] =
             ["Pr", "Pm", "map_Pr", "map_Pm"].map(|key| self.statement(key));
-        if [pr, pm, map_pr, map_pm].iter().all(Option::is_none) {
+        let has_statement = [pr, pm, map_pr, map_pm].iter().any(Option::is_some);
+        if !has_statement && self.shading != Some(ShadingModel::Pbr) {
             return None;
         }
         // Maps, and factors beside them.
@@ -156,26 +162,44 @@ impl<'a> MaterialBuilder<'a, '_> {
         // The roughness whose highlight is as wide as that of Ns: 2/α² − 2 with α = roughness².
         let default_roughness = (2.0 / (material.shininess + 2.0)).powf(0.25);
         let factors = MetallicRoughness {
-            base: material.diffuse,
+            base_color: material.diffuse,
             metallic: factor(metallic, pm, 0.0),
             roughness: factor(roughness, pr, default_roughness),
-            specular: 1.0,
-            specular_color: Vec3::ONE,
-            transmission: 0.0,
             ior: self
                 .source
                 .optical_density
                 .map(|ior| ior as f32)
                 .filter(|n| (1.0..=100.0).contains(n))
                 .unwrap_or(DEFAULT_IOR),
+            ..MetallicRoughness::default()
         };
-        let base = material.diffuse_map;
+        let base_color = material.diffuse_map;
+        let factors = self.with_layers(factors);
         Some(MetallicRoughnessMaps {
-            base,
+            base_color,
             metallic,
             roughness,
             ..MetallicRoughnessMaps::new(factors)
         })
+    }
+
+    /// Returns a material with the sheen, the clearcoat and the anisotropy that statements set.
+    fn with_layers(&self, factors: MetallicRoughness) -> MetallicRoughness {
+        let number = |key: &str| -> f32 {
+            let value = self.statement(key).and_then(|text| text.parse().ok());
+            value.filter(|x: &f32| x.is_finite()).unwrap_or(0.0)
+        };
+        let share = |key: &str| number(key).clamp(0.0, 1.0);
+        MetallicRoughness {
+            sheen_color: Vec3::splat(share("Ps")),
+            sheen_roughness: factors.roughness,
+            clearcoat: share("Pc"),
+            clearcoat_roughness: share("Pcr"),
+            anisotropy: share("aniso"),
+            // In turns, as the extension for physically based rendering has it.
+            anisotropy_rotation: number("anisor") * TAU,
+            ..factors
+        }
     }
 
     /// Sets the normal map: `norm`, or a `bump` that turns out to be a normal map.

@@ -14,11 +14,13 @@ use super::textures::Textures;
 use crate::error::Error;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::sandbox::{OpenedFile, Sandbox};
-use crate::scene::{Material, MaterialId, Scene};
+use crate::scene::{Material, MaterialId, Scene, ShadingModel};
 
 /// The materials that an OBJ file can name, each built when a face first uses it.
 pub struct MaterialLibrary<'a> {
     sandbox: &'a Sandbox,
+    /// The shading model of the materials; none for the one that their statements ask for.
+    shading: Option<ShadingModel>,
     /// The materials of the MTL files by name, each with the folder of its file.
     sources: HashMap<String, (tobj::Material, PathBuf)>,
     /// The materials that were added to the scene.
@@ -29,10 +31,11 @@ pub struct MaterialLibrary<'a> {
 }
 
 impl<'a> MaterialLibrary<'a> {
-    /// Returns a library without materials.
-    pub fn new(sandbox: &'a Sandbox) -> Self {
+    /// Returns a library without materials, of which all will have this shading model, if one is given.
+    pub fn new(sandbox: &'a Sandbox, shading: Option<ShadingModel>) -> Self {
         Self {
             sandbox,
+            shading,
             sources: HashMap::new(),
             built: HashMap::new(),
             textures: Textures::new(sandbox),
@@ -153,8 +156,9 @@ impl<'a> MaterialLibrary<'a> {
         let material = match self.sources.remove(name) {
             Some((source, folder)) => {
                 let textures = &mut self.textures;
-                MaterialBuilder { source: &source, folder: &folder, textures, scene, diagnostics }
-                    .build()
+                let shading = self.shading;
+                let (source, folder) = (&source, &*folder);
+                MaterialBuilder { source, folder, shading, textures, scene, diagnostics }.build()
             }
             None => {
                 if !name.is_empty() {

@@ -79,7 +79,7 @@ fn import(path: &Path, bytes: &[u8], sandbox: &Sandbox, options: &ModelOptions) 
     })?;
     let (models, _) = read.map_err(|e| Error::input(format!("the file cannot be read: {e}")))?;
     // A mesh and an instance of each group.
-    let mut library = MaterialLibrary::new(sandbox);
+    let mut library = MaterialLibrary::new(sandbox, options.shading);
     if !options.geometry_only {
         library.read(&info.libraries, path, &mut diagnostics);
         let names = info.groups.iter().map(FaceGroup::material_name);

@@ -45,6 +45,11 @@ fn statement_kind(keyword: &str) -> Option<(&'static str, ValueKind)> {
         "tr" => ("Tr", Number),
         "pr" => ("Pr", Number),
         "pm" => ("Pm", Number),
+        "ps" => ("Ps", Number),
+        "pc" => ("Pc", Number),
+        "pcr" => ("Pcr", Number),
+        "aniso" => ("aniso", Number),
+        "anisor" => ("anisor", Number),
         "illum" => ("illum", IlluminationModel),
         "map_kd" => ("map_Kd", Texture),
         "map_ks" => ("map_Ks", Texture),
@@ -57,9 +62,7 @@ fn statement_kind(keyword: &str) -> Option<(&'static str, ValueKind)> {
         "norm" | "map_kn" => ("norm", Texture),
         // Ambient light is reflected by the diffuse colour.
         "ka" | "map_ka" | "sharpness" | "map_aat" => ("", Ignored),
-        "ps" | "map_ps" => ("", Unsupported("sheen")),
-        "pc" | "pcr" => ("", Unsupported("a clear coat")),
-        "aniso" | "anisor" => ("", Unsupported("anisotropy")),
+        "map_ps" => ("", Unsupported("an image of sheen")),
         "refl" | "map_refl" => ("", Unsupported("an image that is mirrored")),
         "disp" | "map_disp" => ("", Unsupported("displacement")),
         "decal" => ("", Unsupported("a decal")),
@@ -226,9 +229,10 @@ mod tests {
 
     #[test]
     fn unsupported_features_are_reported_unless_they_are_zero() {
-        let (text, said) = normalized("newmtl a\nPs 0\naniso 0.0\nPc 0.5\nrefl -type sphere a.png");
+        let (text, said) =
+            normalized("newmtl a\ndisp 0\nmap_Ps 0.0\nmap_Tr 0.5\nrefl -type sphere a.png");
         assert_eq!(text, "newmtl a\n");
-        assert!(said.len() == 2 && said[0].contains("clear coat"), "{said:?}");
+        assert!(said.len() == 2 && said[0].contains("transparency"), "{said:?}");
     }
 
     #[test]

@@ -91,7 +91,7 @@ impl Samples {
         }
     }
 
-    /// Returns film settings with this number of samples.
+    /// Returns film settings with this number of samples and an opaque background: alpha has no FLIP.
     pub fn film(self, film: &FilmSettings) -> FilmSettings {
         let (spp, adaptive) = match self {
             Samples::Regular(spp) => (spp, None),
@@ -99,7 +99,7 @@ impl Samples {
                 (min, Some(AdaptiveSampling { max, threshold: AdaptiveSampling::THRESHOLD }))
             }
         };
-        FilmSettings { spp, adaptive, ..film.clone() }
+        FilmSettings { spp, adaptive, transparent: false, ..film.clone() }
     }
 
     /// Returns the most samples that a pixel can have.

@@ -83,13 +83,17 @@ impl PerceivedImage {
 
     /// Creates the perceived image of a picture at [`PIXELS_PER_DEGREE`]; none if the picture has no
     /// channels R, G and B. `transfer` is the encoding of its values: sRGB for a PNG, none for an
-    /// EXR.
+    /// EXR. A picture with alpha is seen on black: an EXR is premultiplied, and a PNG is multiplied here.
     pub fn from_picture(picture: &Picture, transfer: Transfer) -> Option<Self> {
         let channel = |name: &str| picture.channels.iter().position(|c| c == name);
         let [r, g, b] = [channel("R")?, channel("G")?, channel("B")?];
         let pixels = picture.values.par_chunks(picture.channels.len());
-        let values: Vec<Vec3> =
-            pixels.map(|p| Vec3::from([p[r], p[g], p[b]].map(|x| transfer.decode(x)))).collect();
+        let alpha = channel("A").filter(|_| transfer != Transfer::None);
+        let linear = |p: &[f32]| {
+            let color = Vec3::from([p[r], p[g], p[b]].map(|x| transfer.decode(x)));
+            alpha.map_or(color, |a| color * p[a])
+        };
+        let values: Vec<Vec3> = pixels.map(linear).collect();
         Some(Self::new(picture.size, &values, PIXELS_PER_DEGREE))
     }
 

@@ -137,7 +137,7 @@ fn scene(side: u32) -> Scene {
     let aside = DVec3::new(-4.0, 6.0, 1.0);
     for (kind, intensity) in [
         (LightKind::Ambient, 0.05),
-        (LightKind::Directional { direction: DVec3::new(0.48, -0.6, -0.64) }, 0.3),
+        (LightKind::Directional { direction: DVec3::new(0.48, -0.6, -0.64), angle: 0.0 }, 0.3),
         (LightKind::Point { position, falloff, range: 40.0 }, 20.0),
         (LightKind::Point { position: aside, falloff: Falloff::None, range: 30.0 }, 0.2),
         (

@@ -28,6 +28,7 @@ impl<'a> PosedScene<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         // A copy of all but the animation, which may have many keyframes.
         let posed = Scene {
+            environment: scene.environment.clone(),
             film: scene.film.clone(),
             cameras: scene.cameras.clone(),
             materials: scene.materials.clone(),
@@ -154,7 +155,7 @@ fn pose_object(
         Animated::Light { light, node, rest, direction: curve, intensity } => {
             // Its direction and intensity change in its own space, which then moves.
             let mut rest = rest.clone();
-            if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } =
+            if let LightKind::Directional { direction, .. } | LightKind::Spot { direction, .. } =
                 &mut rest.kind
                 && let Some(curve) = curve
             {

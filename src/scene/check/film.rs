@@ -11,6 +11,9 @@ pub const MAX_SPP: u32 = 1 << 16;
 /// The greatest number of reflections and refractions along a light path.
 pub const MAX_DEPTH: u32 = 1 << 16;
 
+/// The greatest number of rays of ambient occlusion.
+pub const MAX_OCCLUSION_RAYS: u32 = 1024;
+
 /// Checks the film's settings.
 pub(super) fn check(film: &FilmSettings) -> Result<()> {
     check_size(film.size)?;
@@ -21,6 +24,10 @@ pub(super) fn check(film: &FilmSettings) -> Result<()> {
         format!("the threshold must be from 0 to 1, found {threshold}")
     })?;
     require_color(|| "the background".to_owned(), film.background)?;
+    require(film.ambient_occlusion <= MAX_OCCLUSION_RAYS, || {
+        let found = film.ambient_occlusion;
+        format!("ambient_occlusion must be at most {MAX_OCCLUSION_RAYS} rays, found {found}")
+    })?;
     require(film.max_depth <= MAX_DEPTH, || {
         format!("max_depth must be at most {MAX_DEPTH}, found {}", film.max_depth)
     })?;

@@ -1,17 +1,28 @@
 //! The validity checks of a light.
 
+use std::f64::consts::PI;
+
+use super::MAX_COORDINATE;
 use super::require::{require, require_color, require_position, require_unit_length};
 use crate::error::Result;
-use crate::scene::{Light, LightKind};
+use crate::scene::{Light, LightKind, MAX_LIGHT_SAMPLES, MIN_SUN_ANGLE};
 
 /// Checks light `i`.
 pub(super) fn check(i: usize, light: &Light) -> Result<()> {
     let label = format!("light {i}");
     require_color(|| format!("{label}: intensity"), light.intensity)?;
+    let has_samples = !light.has_extent() || (1..=MAX_LIGHT_SAMPLES).contains(&light.samples);
+    require(has_samples, || {
+        let found = light.samples;
+        format!("{label}: samples must be from 1 to {MAX_LIGHT_SAMPLES}, found {found}")
+    })?;
     match light.kind {
         LightKind::Ambient => Ok(()),
-        LightKind::Directional { direction } => {
-            require_unit_length(|| format!("{label}: direction"), direction)
+        LightKind::Directional { direction, angle } => {
+            require_unit_length(|| format!("{label}: direction"), direction)?;
+            require(angle == 0.0 || (MIN_SUN_ANGLE..=PI).contains(&angle), || {
+                format!("{label}: angle must be 0, or from {MIN_SUN_ANGLE:e} to π, found {angle}")
+            })
         }
         LightKind::Point { position: p, range, .. } => {
             require_position(|| format!("{label}: position"), p)?;
@@ -30,5 +41,32 @@ pub(super) fn check(i: usize, light: &Light) -> Result<()> {
                 format!("{label}: {range}, found {inner} and {outer}")
             })
         }
+        LightKind::Rectangle { center, u, v } => {
+            require_position(|| format!("{label}: center"), center)?;
+            for half_side in [u, v] {
+                require_length(&label, "half-side", half_side.length())?;
+            }
+            let slant = u.dot(v).abs() / (u.length() * v.length());
+            require(slant < 1e-6, || {
+                format!("{label}: u and v must be perpendicular, found {u} and {v}")
+            })
+        }
+        LightKind::Disk { center, normal, radius } => {
+            require_position(|| format!("{label}: center"), center)?;
+            require_unit_length(|| format!("{label}: normal"), normal)?;
+            require_length(&label, "radius", radius)
+        }
+        LightKind::Sphere { center, radius } => {
+            require_position(|| format!("{label}: center"), center)?;
+            require_length(&label, "radius", radius)
+        }
     }
+}
+
+/// Requires that a length of a light with an extent is above 0, and not beyond the greatest coordinate.
+fn require_length(label: &str, name: &str, length: f64) -> Result<()> {
+    // Squares of lengths must not underflow.
+    require((1e-100..=MAX_COORDINATE).contains(&length), || {
+        format!("{label}: {name} must be above 0 and at most 1e15, found {length}")
+    })
 }

@@ -55,8 +55,7 @@ fn check_channels(label: &str, material: &Material) -> Result<()> {
     let channels = material.coverage.and_then(|c| c.map).into_iter();
     let channels = channels.chain(material.occlusion_map.map(|o| o.map));
     let metallic = material.metallic.as_deref();
-    let metallic = metallic.map(|m| [m.metallic, m.roughness, m.specular, m.transmission]);
-    let mut maps = channels.chain(metallic.into_iter().flatten().flatten());
+    let mut maps = channels.chain(metallic.into_iter().flat_map(MetallicRoughnessMaps::channels));
     maps.try_for_each(|map| {
         require(map.channel < 4, || {
             format!("{label}: a picture has channels 0 to 3, not {}", map.channel)
@@ -67,12 +66,29 @@ fn check_channels(label: &str, material: &Material) -> Result<()> {
 /// Checks the factors of a metallic-roughness material.
 fn check_metallic_roughness(label: &str, metallic: &MetallicRoughnessMaps) -> Result<()> {
     let f = &metallic.factors;
-    require_color(|| format!("{label}: the base colour"), f.base)?;
+    require_color(|| format!("{label}: the base colour"), f.base_color)?;
     require_color(|| format!("{label}: the specular colour"), f.specular_color)?;
     require_fraction(label, "metallic", f.metallic)?;
     require_fraction(label, "roughness", f.roughness)?;
     require_fraction(label, "the specular factor", f.specular)?;
     require_fraction(label, "the transmission", f.transmission)?;
+    require_fraction(label, "the clearcoat", f.clearcoat)?;
+    require_fraction(label, "the clearcoat's roughness", f.clearcoat_roughness)?;
+    require_color(|| format!("{label}: the sheen's colour"), f.sheen_color)?;
+    require_fraction(label, "the sheen's roughness", f.sheen_roughness)?;
+    require_fraction(label, "the anisotropy", f.anisotropy)?;
+    require_fraction(label, "the iridescence", f.iridescence)?;
+    require_fraction(label, "the diffuse transmission", f.diffuse_transmission)?;
+    let color = f.diffuse_transmission_color;
+    require_color(|| format!("{label}: the colour of the diffuse transmission"), color)?;
+    let minimum = metallic.iridescence_thickness_minimum;
+    let film = [f.iridescence_ior, f.iridescence_thickness, minimum, f.dispersion];
+    require(film.iter().all(|x| x.is_finite() && *x >= 0.0), || {
+        format!("{label}: its thin film and its dispersion must be finite and at least 0")
+    })?;
+    require(f.anisotropy_rotation.is_finite(), || {
+        format!("{label}: the rotation of its anisotropy must be finite")
+    })?;
     require(f.ior == 0.0 || (0.01..=100.0).contains(&f.ior), || {
         format!("{label}: the ior of its metal must be 0 or from 0.01 to 100, found {}", f.ior)
     })

@@ -17,7 +17,7 @@ mod require;
 mod shape;
 mod texture;
 
-pub use film::{MAX_DEPTH, MAX_SPP, check_samples, check_size};
+pub use film::{MAX_DEPTH, MAX_OCCLUSION_RAYS, MAX_SPP, check_samples, check_size};
 
 pub(in crate::scene) use require::require;
 

@@ -68,6 +68,8 @@ pub enum TableKind {
     Sphere,
     /// A `[[plane]]`.
     Plane,
+    /// A `[[light]]` that is visible.
+    Light,
 }
 
 /// An element of a model file.
@@ -173,6 +175,7 @@ impl fmt::Display for TableProvenance<'_> {
             TableKind::Model => "model",
             TableKind::Sphere => "sphere",
             TableKind::Plane => "plane",
+            TableKind::Light => "light",
         };
         write!(f, "[[{kind}]] {}{}", self.index, quoted(self.name))
     }

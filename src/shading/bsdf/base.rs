@@ -4,13 +4,12 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::energy::Moments;
 use super::fresnel::Fresnel;
 use super::ggx::reflect;
 use super::hemisphere::cosine_pdf;
-use super::params::MaterialParams;
 use super::reflection::{Microfacets, Reflection, multiple_factor};
 use super::refraction::{Refraction, refract};
+use crate::scene::MetallicRoughness;
 
 /// The side of the boundary of a volume on which ωo is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +26,7 @@ struct Glass {
 /// The dielectric is itself a mixture of one that transmits (KHR_materials_transmission) and one with a
 /// diffuse base. Appendix B takes 1 − F(ωo·h) of such a base, so that together they reflect more light
 /// than arrives at grazing angles; here the base gets what the reflection leaves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Base {
     microfacets: Microfacets,
     color: Vec3,
@@ -59,29 +58,39 @@ pub struct BaseLobes<T> {
 impl Base {
     /// The base of a material whose parameters are in their ranges, in a medium of this index of
     /// refraction.
-    pub fn new(params: &MaterialParams, outside: f32) -> Self {
+    pub fn new(params: &MetallicRoughness, outside: f32) -> Self {
         let microfacets = Microfacets::new(params.roughness, params.anisotropy);
         let reflection = |fresnel: Fresnel| {
-            let MaterialParams { iridescence, iridescence_ior, iridescence_thickness, .. } =
+            let MetallicRoughness { iridescence, iridescence_ior, iridescence_thickness, .. } =
                 *params;
             let film =
                 fresnel.with_film(outside, iridescence_ior, iridescence_thickness, iridescence);
             Reflection::new(&microfacets, film)
         };
         let (specular, color) = (params.specular, params.specular_color);
-        let dielectric = reflection(Fresnel::dielectric(outside, params.ior, specular, color));
+        let MetallicRoughness { metallic, transmission, .. } = *params;
+        let dielectric = if metallic < 1.0 {
+            reflection(Fresnel::dielectric(outside, params.ior, specular, color))
+        } else {
+            Reflection::none()
+        };
+        let conductor = if metallic > 0.0 {
+            reflection(Fresnel::conductor(params.base_color))
+        } else {
+            Reflection::none()
+        };
         // With an index of 0 everything is reflected; what is not goes straight through.
         let inside = if params.ior == 0.0 { outside } else { params.ior };
+        let reflectance = dielectric.mean_reflectance;
         let glass = |refraction: Refraction| {
-            let mean = refraction.mean_reflectance(dielectric.mean_reflectance);
+            let mean = refraction.mean_reflectance(reflectance);
             Glass { refraction, multiple: multiple_factor(&microfacets.energy, mean) }
         };
         let refraction = Refraction::new(outside, inside, params.dispersion);
-        let MaterialParams { metallic, transmission, .. } = *params;
         Self {
             microfacets,
             color: params.base_color,
-            conductor: reflection(Fresnel::conductor(params.base_color)),
+            conductor,
             dielectric,
             metal: metallic,
             diffuse: (1.0 - metallic) * (1.0 - transmission),
@@ -205,6 +214,11 @@ impl Base {
         BaseLobes { reflection: 0.0, diffuse: 0.0, refraction, diffuse_transmission: cosine }
     }
 
+    /// Samples the normal of a visible microfacet.
+    pub fn sample_microfacet(&self, wo: DVec3, u: [f64; 2]) -> DVec3 {
+        self.microfacets.ggx.map_or(DVec3::Z, |ggx| ggx.sample(wo, u))
+    }
+
     /// Samples the reflection off microfacets; `None` below the surface.
     pub fn sample_reflection(&self, wo: DVec3, u: [f64; 2]) -> Option<DVec3> {
         let wi = match &self.microfacets.ggx {
@@ -268,10 +282,31 @@ impl Base {
         }
     }
 
-    /// Returns the scale and the bias of F₀ in what is reflected at once.
-    pub fn split_sum(&self, wo: DVec3) -> [f32; 2] {
-        let Moments { all, grazing } = self.microfacets.energy.moments(wo);
-        [all - grazing, grazing]
+    /// Returns the light from ωo that the base reflects at its microfacets, without that of its transmissive
+    /// share, and the light of its diffuse part, reflected and transmitted.
+    pub fn opaque_albedo(&self, wo: DVec3) -> [Vec3; 3] {
+        let mut reflected = Vec3::ZERO;
+        if self.metal > 0.0 {
+            reflected += self.conductor.albedo(&self.microfacets, wo) * self.metal;
+        }
+        if self.diffuse == 0.0 {
+            return [reflected, Vec3::ZERO, Vec3::ZERO];
+        }
+        let dielectric = self.dielectric.albedo(&self.microfacets, wo);
+        reflected += dielectric * self.diffuse;
+        let strongest = match self.dielectric.fresnel.schlick() {
+            Some(_) => dielectric.max_element(),
+            None => self.dielectric.strongest_albedo(&self.microfacets, wo),
+        };
+        let rest = self.diffuse * (1.0 - strongest);
+        let transmitted = rest * self.diffuse_transmission;
+        let color = self.diffuse_transmission_color;
+        [reflected, self.color * (rest - transmitted), color * transmitted]
+    }
+
+    /// The share of the transmissive dielectric, and its colour.
+    pub fn transmissive(&self) -> (f32, Vec3) {
+        (self.transmissive, self.color)
     }
 
     /// Returns the light from ωo that is reflected and transmitted after more than one reflection.

@@ -10,7 +10,7 @@ use super::reflection::{Microfacets, Reflection};
 const IOR: f32 = 1.5;
 
 /// A clearcoat of some strength.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Clearcoat {
     strength: f32,
     microfacets: Microfacets,

@@ -10,13 +10,14 @@ pub const COSINES: usize = 33;
 
 /// The reflectance of microfacets by the cosine of the angle to their normal: F₀ + (F₉₀ − F₀)(1 − c)⁵
 /// (Schlick, 1994; glTF 2.0, B.3.4), mixed with that of a thin film.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fresnel {
     /// The reflectance at normal incidence.
     f0: Vec3,
     /// The reflectance at grazing angles.
     f90: Vec3,
-    film: Option<Film>,
+    /// The thin film, if there is one; few surfaces have any.
+    film: Option<Box<Film>>,
 }
 
 /// A thin film in a reflectance.
@@ -49,9 +50,9 @@ impl Fresnel {
         }
         let film = ThinFilm::new(outside, ior, thickness, self.f0, self.f90);
         let reflectances = [Vec3::ZERO; COSINES];
-        let film = Film { film, share, reflectances };
-        let of = |k| self.mixed(at_node(k, COSINES), &film);
-        Self { film: Some(Film { reflectances: std::array::from_fn(of), ..film }), ..self }
+        let mut film = Box::new(Film { film, share, reflectances });
+        film.reflectances = std::array::from_fn(|k| self.mixed(at_node(k, COSINES), &film));
+        Self { film: Some(film), ..self }
     }
 
     /// Returns the reflectance at an angle with this cosine, in \[0, 1\].

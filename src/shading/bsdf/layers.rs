@@ -4,11 +4,11 @@ use glam::{DVec3, Vec3};
 
 use super::clearcoat::Clearcoat;
 use super::hemisphere::UNIFORM_PDF;
-use super::params::MaterialParams;
 use super::sheen::Sheen;
+use crate::scene::MetallicRoughness;
 
 /// The layers over a base. Directions are given with ωo on the side of the normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     clearcoat: Option<Clearcoat>,
     /// The sheen, and its colour.
@@ -17,7 +17,7 @@ pub struct Layers {
 
 impl Layers {
     /// The layers of a material whose parameters are in their ranges.
-    pub fn new(params: &MaterialParams) -> Self {
+    pub fn new(params: &MetallicRoughness) -> Self {
         let clearcoat = || Clearcoat::new(params.clearcoat, params.clearcoat_roughness);
         let sheen = || (Sheen::new(params.sheen_roughness), params.sheen_color);
         Self {
@@ -33,17 +33,17 @@ impl Layers {
             let below = self.below_clearcoat(wo).min(self.below_clearcoat(wi));
             sum += *color * (below * sheen.evaluate(wo, wi) as f32);
         }
-        sum + self.clearcoat.map_or(0.0, |clearcoat| clearcoat.evaluate(wo, wi))
+        sum + self.clearcoat.as_ref().map_or(0.0, |clearcoat| clearcoat.evaluate(wo, wi))
     }
 
     /// Returns the densities of `wi` among the samples of the clearcoat and of the sheen.
     pub fn pdf(&self, wo: DVec3, wi: DVec3) -> [f64; 2] {
-        [self.clearcoat.map_or(0.0, |clearcoat| clearcoat.pdf(wo, wi)), UNIFORM_PDF]
+        [self.clearcoat.as_ref().map_or(0.0, |clearcoat| clearcoat.pdf(wo, wi)), UNIFORM_PDF]
     }
 
     /// Returns the share of the light from `wo` that the clearcoat and the sheen reflect.
     pub fn albedo(&self, wo: DVec3) -> [Vec3; 2] {
-        let clearcoat = self.clearcoat.map_or(0.0, |clearcoat| clearcoat.albedo(wo));
+        let clearcoat = self.clearcoat.as_ref().map_or(0.0, |clearcoat| clearcoat.albedo(wo));
         let sheen = |(sheen, color): (Sheen, Vec3)| color * sheen.albedo(wo);
         let sheen = self.sheen.map_or(Vec3::ZERO, sheen);
         [Vec3::splat(clearcoat), sheen * self.below_clearcoat(wo)]
@@ -51,12 +51,12 @@ impl Layers {
 
     /// Samples the clearcoat; `None` below the surface.
     pub fn sample_clearcoat(&self, wo: DVec3, u: [f64; 2]) -> Option<DVec3> {
-        self.clearcoat?.sample(wo, u)
+        self.clearcoat.as_ref()?.sample(wo, u)
     }
 
     /// Returns the factor of the clearcoat's reflection if it is a delta lobe.
     pub fn clearcoat_delta(&self, wo: DVec3) -> Option<Vec3> {
-        let clearcoat = self.clearcoat.filter(Clearcoat::is_smooth)?;
+        let clearcoat = self.clearcoat.as_ref().filter(|clearcoat| clearcoat.is_smooth())?;
         Some(Vec3::splat(clearcoat.albedo(wo)))
     }
 
@@ -79,7 +79,7 @@ impl Layers {
     }
 
     fn below_clearcoat(&self, w: DVec3) -> f32 {
-        self.clearcoat.map_or(1.0, |clearcoat| 1.0 - clearcoat.albedo(w))
+        self.clearcoat.as_ref().map_or(1.0, |clearcoat| 1.0 - clearcoat.albedo(w))
     }
 
     fn below_sheen(&self, w: DVec3) -> f32 {

@@ -15,7 +15,7 @@ mod ggx;
 mod hemisphere;
 mod iridescence;
 mod layers;
-mod params;
+mod lobes;
 mod reflection;
 mod refraction;
 mod sheen;
@@ -29,7 +29,8 @@ use glam::{DVec3, Vec3};
 use self::base::Base;
 use self::hemisphere::{sample_cosine, sample_uniform};
 use self::layers::Layers;
-pub use self::params::MaterialParams;
+pub use self::lobes::LobeAlbedos;
+use crate::scene::MetallicRoughness;
 
 /// The number of lobes that are sampled.
 const LOBES: usize = 6;
@@ -63,7 +64,7 @@ const ALL_LOBES: [Lobe; LOBES] = [
 /// Directions have length 1, point away from the surface and are in the local frame: z is the normal, on
 /// the outside of a volume, and x the tangent. ωo is where light goes, ωi where it comes from. A thin
 /// surface is alike on both sides.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Bsdf {
     base: Base,
     layers: Layers,
@@ -99,7 +100,7 @@ struct Frame {
 impl Bsdf {
     /// The BSDF of a material in a medium with index of refraction `outside`. Parameters out of their
     /// ranges are taken as the nearest that are not.
-    pub fn new(params: &MaterialParams, outside: f32) -> Self {
+    pub fn new(params: &MetallicRoughness, outside: f32) -> Self {
         let params = params.in_range();
         let (sin, cos) = f64::from(params.anisotropy_rotation).sin_cos();
         Self {
@@ -194,17 +195,11 @@ impl Bsdf {
     /// without integration. Where a sheen or a clearcoat covers the base it is up to what light loses in
     /// them on its way in, and through rough boundaries of volumes what is lost by reflecting often.
     pub fn albedo(&self, wo: DVec3) -> Vec3 {
-        self.lobe_albedos(self.frame(wo)).into_iter().sum()
+        self.sampled_albedos(self.frame(wo)).into_iter().sum()
     }
 
-    /// Returns the scale and the bias of F₀ in the light from `wo` that the base reflects at once,
-    /// F₀ · scale + bias, for environments that are filtered by roughness (Karis, 2013).
-    pub fn split_sum(&self, wo: DVec3) -> [f32; 2] {
-        self.base.split_sum(self.frame(wo).wo)
-    }
-
-    /// Returns the albedo of each lobe.
-    fn lobe_albedos(&self, Frame { wo, is_inside }: Frame) -> [Vec3; LOBES] {
+    /// Returns the albedo of each lobe that is sampled.
+    fn sampled_albedos(&self, Frame { wo, is_inside }: Frame) -> [Vec3; LOBES] {
         let below = self.layers.transmittance_to(wo, is_inside);
         let base = self.base.albedo(wo, is_inside);
         let [clearcoat, sheen] = if is_inside { [Vec3::ZERO; 2] } else { self.layers.albedo(wo) };
@@ -220,7 +215,7 @@ impl Bsdf {
 
     /// Returns the probability with which each lobe is sampled.
     fn shares(&self, frame: Frame) -> [f32; LOBES] {
-        let mut shares = self.lobe_albedos(frame).map(Vec3::max_element);
+        let mut shares = self.sampled_albedos(frame).map(Vec3::max_element);
         // What is scattered often is sampled as if it were diffuse.
         let [reflected, transmitted] = self.base.multiple_albedo(frame.wo, frame.is_inside);
         shares[Lobe::Diffuse as usize] += reflected.max_element();

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use super::energy::{Energy, alpha, mean_reflectance};
+use super::energy::{Energy, alpha, mean_reflectance, of_schlick};
 use super::fresnel::{COSINES, Fresnel};
 use super::ggx::Ggx;
 
@@ -56,7 +56,7 @@ impl Microfacets {
 }
 
 /// A reflectance of microfacets.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reflection {
     /// The reflectance of each.
     pub fresnel: Fresnel,
@@ -83,10 +83,24 @@ impl Reflection {
         Self { fresnel, multiple, mean_reflectance, mean_strongest }
     }
 
+    /// The reflection of a base that the material does not have.
+    pub fn none() -> Self {
+        Self {
+            fresnel: Fresnel::conductor(Vec3::ZERO),
+            multiple: Vec3::ZERO,
+            mean_reflectance: Vec3::ZERO,
+            mean_strongest: 0.0,
+        }
+    }
+
     /// Returns the share of the light from `wo` that is reflected, however often.
     pub fn albedo(&self, microfacets: &Microfacets, wo: DVec3) -> Vec3 {
-        let once = microfacets.energy.albedo(wo, &self.fresnel);
-        let rest = (1.0 - microfacets.energy.moments(wo).all).max(0.0);
+        let moments = microfacets.energy.moments(wo);
+        let once = match self.fresnel.schlick() {
+            Some(schlick) => of_schlick(schlick, moments),
+            None => microfacets.energy.albedo(wo, &self.fresnel),
+        };
+        let rest = (1.0 - moments.all).max(0.0);
         (once + self.multiple * rest).clamp(Vec3::ZERO, Vec3::ONE)
     }
 

@@ -22,7 +22,7 @@ fn showing(picture: &[u8]) -> Model {
 }
 
 fn texels(scene: &Scene) -> ([u32; 2], &Texels) {
-    let map = material(scene).metallic.as_ref().unwrap().base.unwrap();
+    let map = material(scene).metallic.as_ref().unwrap().base_color.unwrap();
     let image = &scene.textures[map.0 as usize].image;
     ([image.width, image.height], &image.texels)
 }

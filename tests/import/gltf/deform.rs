@@ -328,7 +328,7 @@ fn instances_have_their_own_colours() {
     let four = [0.5, 0., 0., 0.25].repeat(4);
     let scene = colored("_COLOR_0", "VEC4", &four, metal);
     let material = &scene.materials[1];
-    assert_eq!(material.metallic.as_ref().unwrap().factors.base.to_array(), [0.5, 0., 0.]);
+    assert_eq!(material.metallic.as_ref().unwrap().factors.base_color.to_array(), [0.5, 0., 0.]);
     assert_eq!(material.coverage.unwrap().alpha, 0.25);
 }
 

@@ -36,7 +36,7 @@ fn directional_light_travels_along_its_nodes_minus_z() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let node = json!({"rotation": [-half, 0, 0, half], "scale": [3, 3, 3]});
     let scene = with_light(json!({"type": "directional"}), node);
-    let LightKind::Directional { direction } = scene.lights[0].kind else { panic!() };
+    let LightKind::Directional { direction, .. } = scene.lights[0].kind else { panic!() };
     assert!((direction - DVec3::NEG_Y).length() < 1e-7, "{direction}");
 }
 

@@ -1,4 +1,4 @@
-//! Materials on a Phong shader.
+//! Materials: their parameters, and what Lambert and Phong make of them.
 
 use super::*;
 use envers::Loaded;
@@ -175,6 +175,20 @@ fn emission_with_its_strength() {
 }
 
 #[test]
+fn emission_illuminates_above_a_strength_of_one() {
+    let illuminates = |strength: f32, factor: [f32; 3]| {
+        let mut model = Model::triangle();
+        model.material(json!({
+            "emissiveFactor": factor,
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": strength}},
+        }));
+        material(&model.load().unwrap().scene).illuminates
+    };
+    assert!(illuminates(1.5, [1.0, 0.5, 0.0]));
+    assert!(!illuminates(1.0, [1.0; 3]) && !illuminates(9.0, [0.0; 3]));
+}
+
+#[test]
 fn unlit_is_emission_alone() {
     let mut model = Model::triangle();
     model.material(json!({
@@ -229,6 +243,81 @@ fn specular_glossiness() {
 #[test]
 fn extension_used_but_not_required_is_a_warning() {
     let mut model = Model::triangle();
-    model.json["extensionsUsed"] = json!(["KHR_materials_clearcoat"]);
-    assert_warns(&model.load().unwrap(), "KHR_materials_clearcoat");
+    model.json["extensionsUsed"] = json!(["KHR_materials_volume_scatter"]);
+    assert_warns(&model.load().unwrap(), "KHR_materials_volume_scatter");
+}
+
+#[test]
+fn layers_of_extensions_are_read_with_their_textures() {
+    let mut model = Model::triangle();
+    let texture = |i: u32| json!({"index": i});
+    model.json["images"] = json!([{"uri": data_uri(&png(&[[255; 4]]))}]);
+    model.json["textures"] = json!([{"source": 0}, {"source": 0}, {"source": 0}]);
+    model.material(json!({
+        "pbrMetallicRoughness": {"metallicFactor": 0.25, "roughnessFactor": 0.5},
+        "extensions": {
+            "KHR_materials_clearcoat": {
+                "clearcoatFactor": 0.75, "clearcoatRoughnessFactor": 0.125,
+                "clearcoatTexture": texture(0), "clearcoatRoughnessTexture": texture(1),
+                "clearcoatNormalTexture": {"index": 2, "scale": 0.5},
+            },
+            "KHR_materials_sheen": {
+                "sheenColorFactor": [0.1, 0.2, 0.3], "sheenRoughnessFactor": 0.4,
+                "sheenRoughnessTexture": texture(0),
+            },
+            "KHR_materials_anisotropy": {"anisotropyStrength": 0.6, "anisotropyRotation": 1.5},
+            "KHR_materials_iridescence": {
+                "iridescenceFactor": 0.5, "iridescenceIor": 1.8,
+                "iridescenceThicknessMinimum": 200, "iridescenceThicknessMaximum": 600,
+            },
+            "KHR_materials_dispersion": {"dispersion": 0.25},
+            "KHR_materials_diffuse_transmission": {
+                "diffuseTransmissionFactor": 0.3, "diffuseTransmissionColorFactor": [1, 0.5, 0],
+            },
+        },
+    }));
+    let Loaded { scene, report, .. } = model.load().unwrap();
+    assert!(report.warnings.iter().all(|w| w.contains("TEXCOORD_0")), "{:?}", report.warnings);
+    let m = material(&scene);
+    assert!(m.is_pbr());
+    let maps = m.metallic.as_deref().unwrap();
+    let f = &maps.factors;
+    assert_eq!((f.metallic, f.roughness), (0.25, 0.5));
+    assert_eq!((f.clearcoat, f.clearcoat_roughness), (0.75, 0.125));
+    assert_eq!(maps.clearcoat.unwrap().channel, 0);
+    assert_eq!(maps.clearcoat_roughness.unwrap().channel, 1);
+    assert_eq!(m.clearcoat_normal_map.unwrap().scale, 0.5);
+    assert!(close(f.sheen_color, [0.1, 0.2, 0.3]) && f.sheen_roughness == 0.4);
+    assert_eq!(maps.sheen_roughness.unwrap().channel, 3);
+    assert_eq!((f.anisotropy, f.anisotropy_rotation), (0.6, 1.5));
+    assert_eq!((f.iridescence, f.iridescence_ior, f.iridescence_thickness), (0.5, 1.8, 600.0));
+    assert_eq!(maps.iridescence_thickness_minimum, 200.0);
+    assert_eq!((f.dispersion, f.diffuse_transmission), (0.25, 0.3));
+    assert!(close(f.diffuse_transmission_color, [1.0, 0.5, 0.0]));
+}
+
+#[test]
+fn layers_that_are_no_numbers_count_as_missing() {
+    let mut model = Model::triangle();
+    model.material(json!({"extensions": {
+        "KHR_materials_clearcoat": {"clearcoatFactor": "much", "clearcoatTexture": 7},
+        "KHR_materials_sheen": {"sheenColorFactor": [0.5, null]},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 1, "anisotropyRotation": {}},
+        "KHR_materials_iridescence": [],
+    }}));
+    let loaded = model.load().unwrap();
+    let m = material(&loaded.scene);
+    let f = &m.metallic.as_deref().unwrap().factors;
+    assert_eq!((f.clearcoat, f.iridescence, f.anisotropy_rotation), (0.0, 0.0, 0.0));
+    assert!(close(f.sheen_color, [0.5, 0.0, 0.0]));
+}
+
+#[test]
+fn a_layers_texture_that_is_not_there_is_an_error_at_its_place() {
+    let mut model = Model::triangle();
+    model.material(json!({"extensions": {
+        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1], "sheenColorTexture": {"index": 9}},
+    }}));
+    let (path, _) = json_place(model.load());
+    assert_eq!(path, "materials[0].extensions.KHR_materials_sheen.sheenColorTexture.index");
 }

@@ -6,7 +6,7 @@ use envers::{Texture, TextureId};
 use super::*;
 
 fn diffuse_map(scene: &Scene) -> &Texture {
-    let map = material(scene).metallic.as_ref().unwrap().base;
+    let map = material(scene).metallic.as_ref().unwrap().base_color;
     &scene.textures[map.unwrap().0 as usize]
 }
 
@@ -159,7 +159,7 @@ fn a_picture_is_decoded_once_however_many_textures_show_it() {
     model.json["materials"][0]["emissiveFactor"] = json!([1, 1, 1]);
     let scene = model.load().unwrap().scene;
     let m = super::material(&scene);
-    let ids = [m.metallic.as_ref().unwrap().base.unwrap(), m.emission_map.unwrap()];
+    let ids = [m.metallic.as_ref().unwrap().base_color.unwrap(), m.emission_map.unwrap()];
     let [a, b] = ids.map(|id| &scene.textures[id.0 as usize].image);
     assert!(std::sync::Arc::ptr_eq(a, b));
 }

@@ -49,7 +49,6 @@ fn the_usual_misspellings_find_their_keys() {
         ("[[material]]\n¦refraction_index = 1.5\n", "ior"),
         ("[[material]]\n¦glass = true\n", "transmit"),
         ("[[material]]\n¦opacity = 0.5\n", "transmit"),
-        ("[[material]]\n¦metallic = 1\n", "reflect"),
         ("[[material]]\n¦attenuation = 1\n", "absorption"),
         ("[film]\n¦samples = 4\n", "spp"),
         ("[film]\n¦max_bounces = 4\n", "max_depth"),
@@ -74,9 +73,9 @@ fn the_usual_misspellings_find_their_keys() {
 #[test]
 fn a_key_in_the_wrong_table_is_sent_home() {
     let error = refused(&format!("¦size = [10, 10]\n{CAMERA}"));
-    assert_says(&error, "a scene file has no key `size`", "it belongs in [film]");
+    assert_says(&error, "a scene file has no key `size`", "it belongs in [film] or [[light]]");
     let error = refused(&format!("[camera]\n¦radius = 1\n{}", &CAMERA.replace("camera.", "")));
-    assert_eq!(advice(&error), "it belongs in [[sphere]]");
+    assert_eq!(advice(&error), "it belongs in [[light]] or [[sphere]]");
 }
 
 #[test]
@@ -398,12 +397,78 @@ fn a_key_of_another_kind_of_light_names_the_kind() {
     assert_says(
         &error,
         "a directional light has no `position`",
-        "its keys are `direction`, `color`, `intensity` and `shadow`",
+        "its keys are `direction`, `angle`, `color`, `intensity`, `shadow` and `samples`",
     );
     let error = refused_seen("[[light]]\nkind = \"ambient\"\n¦shadow = true\n");
     assert_eq!(error.message(), "an ambient light has no `shadow`");
     let light = "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n";
     refused_seen(&format!("{light}  ¦inner_angle  =  3\n"));
+}
+
+#[test]
+fn a_light_of_no_size_is_refused_at_its_size() {
+    for (keys, expected) in [
+        ("kind = \"rectangle\"\ndirection = [0, -1, 0]\nsize = [1, ¦0]", "above 0"),
+        ("kind = \"rectangle\"\ndirection = [0, -1, 0]\nsize = [¦-1, 2]", "above 0"),
+        ("kind = \"rectangle\"\ndirection = [0, -1, 0]\nsize = ¦3", "two lengths"),
+        ("kind = \"disk\"\ndirection = [0, -1, 0]\nradius = ¦0", "above 0"),
+        ("kind = \"sphere\"\nradius = ¦-1", "above 0"),
+        ("kind = \"sphere\"\nradius = ¦nan", "above 0"),
+        ("kind = \"sphere\"\nradius = 1\nsamples = ¦0", "from 1 to 1024"),
+        ("kind = \"sphere\"\nradius = 1\nsamples = ¦1025", "from 1 to 1024"),
+        ("kind = ¦\"rectangle\"\ndirection = [0, -1, 0]", "needs the key `size`"),
+        ("kind = ¦\"rectangle\"\nsize = [1, 1]", "needs the key `direction`"),
+        ("kind = ¦\"disk\"\ndirection = [0, -1, 0]", "needs the key `radius`"),
+    ] {
+        let error = refused_seen(&format!("[[light]]\nposition = [0, 5, 0]\n{keys}\n"));
+        assert!(error.message().contains(expected), "{keys}: {error}");
+    }
+    for angle in ["¦-1", "¦180.1", "¦1e-9"] {
+        let sun = "[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\n";
+        let error = refused_seen(&format!("{sun}angle = {angle}\n"));
+        assert!(error.message().contains("an angle in degrees"), "{error}");
+    }
+}
+
+#[test]
+fn keys_of_lights_with_an_extent_are_refused_where_they_mean_nothing() {
+    let light = |kind: &str, keys: &str| {
+        let kind = format!("[[light]]\nkind = \"{kind}\"\ndirection = [0, 0, 1]\n");
+        refused_seen(&format!("{kind}position = [0, 0, 0]\n{keys}\n")).message().to_owned()
+    };
+    assert_eq!(light("spot", "¦radius = 1"), "a spot light has no `radius`");
+    assert_eq!(light("spot", "¦samples = 4"), "a spot light has no `samples`");
+    assert_eq!(light("disk", "radius = 1\n¦falloff = \"none\""), "a disk light has no `falloff`");
+    assert_eq!(light("disk", "radius = 1\n¦up = [0, 1, 0]"), "a disk light has no `up`");
+    let message = light("rectangle", "size = [1, 1]\nup = ¦[0, 0, -2]");
+    assert_eq!(message, "the light's `up` points along its `direction`");
+    let sun = "[[light]]\nkind = \"directional\"\ndirection = [0, -1, 0]\n";
+    let error = refused_seen(&format!("{sun}¦samples = 4\n"));
+    assert_eq!(error.message(), "a directional light has `samples` only with an `angle`");
+}
+
+#[test]
+fn a_visible_light_cannot_change_its_brightness() {
+    let lamp = "[[light]]\nname = \"lamp\"\nkind = \"sphere\"\nposition = [0, 0, 0]\nradius = 1\n";
+    let track = "[animation]\nframes = 2\n[[animation.track]]\nobject = \"lamp\"\ntimes = [0, 1]\n";
+    let error = refused_seen(&format!("{lamp}{track}¦intensity = [0, 1]\n"));
+    assert_says(
+        &error,
+        "the shape of a visible light cannot change its brightness",
+        "give the light `visible = false`, or leave out this track",
+    );
+}
+
+#[test]
+fn what_cannot_illuminate_is_refused() {
+    let error = refused_seen("[[material]]\nname = \"lamp\"\n¦illuminates = true\n");
+    let message = "a material that illuminates needs the key `emission`, and not 0";
+    assert_eq!(error.message(), message);
+    let error = refused_seen(
+        "[[material]]\nname = \"lamp\"\nemission = 1\nilluminates = true\n\
+         [[plane]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = ¦\"lamp\"\n",
+    );
+    assert_eq!(error.message(), "an infinite plane cannot illuminate");
 }
 
 #[test]
@@ -555,4 +620,50 @@ fn nesting_without_end_is_refused() {
         let deep = format!("{CAMERA}sphere = {}", open.repeat(100_000));
         assert!(File::new(deep).load().is_err());
     }
+}
+
+#[test]
+fn an_environment_has_one_source_of_its_light() {
+    let error = refused_seen("¦[environment]\nintensity = 2\n");
+    assert_says(
+        &error,
+        "the environment has no light",
+        "give one of `file`, `color` and `built_in`",
+    );
+    let error = refused_seen("¦[environment]\ncolor = 1\nbuilt_in = \"sky\"\n");
+    assert_eq!(error.message(), "the environment has its light from several sources");
+}
+
+#[test]
+fn keys_of_the_sky_are_refused_beside_another_environment() {
+    let error = refused_seen("[environment]\ncolor = 1\n¦turbidity = 3\n");
+    assert_eq!(error.message(), "`turbidity` is about the built-in sky");
+    let error = refused_seen("[environment]\nbuilt_in = \"sky\"\nturbidity = ¦1\n");
+    assert!(error.message().contains("a turbidity from 1.7 to 10"), "{error}");
+}
+
+#[test]
+fn an_environment_map_that_is_not_there_is_refused_at_its_name() {
+    let error = refused_seen("[environment]\nfile = ¦\"a.hdr\"\n");
+    assert!(error.message().contains("a.hdr"), "{error}");
+}
+
+#[test]
+fn a_roughness_is_from_0_to_1() {
+    for value in ["-0.1", "1.5", "nan"] {
+        let text = format!("[[material]]\nname = \"a\"\nroughness = ¦{value}\n");
+        assert!(refused_seen(&text).message().contains("a number from 0 to 1"), "{value}");
+    }
+}
+
+#[test]
+fn a_material_has_the_keys_of_its_shading_model() {
+    let material = "[[material]]\nname = \"a\"\n";
+    let error = refused_seen(&format!("{material}metallic = 1\n¦specular = 1\n"));
+    let message = "`specular` is a key of Phong's model, and the material has the other";
+    assert_eq!(error.message(), message);
+    let error = refused_seen(&format!("{material}¦clearcoat = 1\n"));
+    let message =
+        "`clearcoat` is a key of the physically based model, and the material has the other";
+    assert_says(&error, message, "add `roughness`, which makes it physically based");
 }

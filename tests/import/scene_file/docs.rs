@@ -187,11 +187,11 @@ fn defaults_in_the_schema_are_what_missing_keys_mean() {
 fn the_examples_in_the_documents_load_without_a_warning() {
     let text = std::fs::read_to_string(docs_folder().join("scene.md")).unwrap();
     let examples: Vec<&str> = text.split("```toml\n").skip(1).collect();
-    assert_eq!(examples.len(), 5);
+    assert_eq!(examples.len(), 6);
     for example in examples {
         let mut example = example.split("```").next().unwrap().to_owned();
         // Parts of a file: what they are about comes before them.
-        if example.starts_with("[[material]]") {
+        if example.starts_with("[[material]]") || example.starts_with("[environment]") {
             example = format!("{}{example}", super::CAMERA);
         } else if example.starts_with("[[animation.track]]") {
             let lamp = "[[light]]\nname = \"lamp\"\nkind = \"ambient\"\n";

@@ -25,7 +25,8 @@ fn every_key_of_the_film_is_read() {
     let film = seen(
         "[film]\nsize = [1000, 500]\nspp = 4\ntransfer = \"none\"\nbackground = \"#323232\"\n\
          sample_position = \"corner\"\nexposure = -1.5\ntone = \"aces\"\nmax_depth = 16\ncutoff = 0.25\n\
-         soft_terminator = false\n",
+         ambient_occlusion = 8\n\
+         soft_terminator = false\ntransparent = true\n",
     )
     .film;
     let expected = FilmSettings {
@@ -36,8 +37,10 @@ fn every_key_of_the_film_is_read() {
         exposure: -1.5,
         tone: Tone::Aces,
         background: Vec3::splat(50.0 / 255.0),
+        transparent: true,
         sample_position: SamplePosition::Corner,
         max_depth: 16,
+        ambient_occlusion: 8,
         cutoff: 0.25,
         soft_terminator: false,
     };
@@ -303,6 +306,7 @@ fn a_point_light_is_read() {
         },
         intensity: Vec3::new(4.0, 2.0, 0.0),
         shadow: Shadow::None,
+        samples: 16,
     };
     assert_eq!(seen(text).lights, [expected]);
 }
@@ -318,7 +322,7 @@ fn a_point_light_left_plain_is_the_tutorials() {
 #[test]
 fn a_directional_light_is_read() {
     let light = &seen("[[light]]\nkind = \"directional\"\ndirection = [0, -3, 0]\n").lights[0];
-    assert_eq!(light.kind, LightKind::Directional { direction: -DVec3::Y });
+    assert_eq!(light.kind, LightKind::Directional { direction: -DVec3::Y, angle: 0.0 });
 }
 
 #[test]
@@ -335,6 +339,85 @@ fn a_spot_light_is_read_with_its_angles_in_degrees() {
 fn an_ambient_light_is_read_and_casts_no_shadow() {
     let light = &seen("[[light]]\nkind = \"ambient\"\nintensity = 0.1\n").lights[0];
     assert_eq!((light.kind, light.shadow), (LightKind::Ambient, Shadow::None));
+}
+
+#[test]
+fn a_sun_is_read_with_its_angle_in_degrees() {
+    let text = "[[light]]\nkind = \"directional\"\ndirection = [0, -3, 0]\nangle = 0.53\n\
+                samples = 64\n";
+    let sun = Light::sun(-DVec3::Y).with_angle(0.53f64.to_radians()).with_samples(64);
+    assert_eq!(seen(text).lights, [sun]);
+}
+
+#[test]
+fn a_rectangle_light_is_read_and_seen_from_its_front() {
+    let text = "[[light]]\nname = \"panel\"\nkind = \"rectangle\"\nposition = [1, 5, 0]\n\
+                direction = [0, -2, 0]\nsize = [4, 1]\nintensity = 3\nsamples = 4\n";
+    let scene = seen(text);
+    // The height runs along z where the light shines straight down.
+    let panel = Light::rectangle(DVec3::new(1.0, 5.0, 0.0), DVec3::X * 2.0, DVec3::Z * 0.5);
+    let panel = panel.with_intensity(Vec3::splat(3.0)).with_samples(4).with_name("panel");
+    assert_eq!(scene.lights, [panel]);
+    let [instance] = &scene.instances[..] else { panic!("one shape") };
+    let material = &scene.materials[instance.material.0 as usize];
+    assert_eq!((material.emission, material.cull_back_faces), (Vec3::splat(3.0), true));
+    assert!(!instance.casts_shadow && !material.illuminates);
+    assert_eq!(scene.bounds().lower, DVec3::new(-1.0, 5.0, -0.5));
+    assert_eq!(scene.bounds().upper, DVec3::new(3.0, 5.0, 0.5));
+    assert!(seen(&format!("{text}visible = false\n")).instances.is_empty());
+    // Upright on a wall, and by its own `up`.
+    let axes = |keys: &str| {
+        let text = format!(
+            "[[light]]\nkind = \"rectangle\"\nposition = [0, 0, 0]\nsize = [4, 1]\n{keys}\n"
+        );
+        let LightKind::Rectangle { u, v, .. } = seen(&text).lights[0].kind else { panic!() };
+        [u, v]
+    };
+    assert_eq!(axes("direction = [0, 0, 1]"), [DVec3::X * 2.0, DVec3::Y * 0.5]);
+    assert_eq!(axes("direction = [0, 0, 1]\nup = [1, 0, 5]"), [DVec3::Y * -2.0, DVec3::X * 0.5]);
+}
+
+#[test]
+fn a_disk_light_and_a_sphere_light_are_read_and_seen() {
+    let scene = seen(
+        "[[light]]\nkind = \"disk\"\nposition = [0, 5, 0]\ndirection = [0, -2, 0]\nradius = 2\n\
+         [[light]]\nkind = \"sphere\"\nposition = [9, 5, 0]\nradius = 0.5\n",
+    );
+    let center = DVec3::new(9.0, 5.0, 0.0);
+    assert_eq!(
+        scene.lights,
+        [Light::disk(DVec3::Y * 5.0, -DVec3::Y, 2.0), Light::sphere(center, 0.5)]
+    );
+    assert_eq!((scene.instances.len(), scene.spheres.len()), (1, 1));
+    assert!(!scene.spheres[0].casts_shadow && scene.spheres[0].center == center);
+}
+
+#[test]
+fn a_visible_light_moves_with_its_shape() {
+    let text = "[[light]]\nname = \"a\"\nkind = \"disk\"\nposition = [1, 0, 0]\n\
+                direction = [1, 0, 0]\nradius = 0.5\n\
+                [[light]]\nname = \"b\"\nkind = \"sphere\"\nposition = [0, 0, 0]\nradius = 0.5\n\
+                [animation]\nframes = 24\n\
+                [[animation.orbit]]\nobject = \"a\"\naround = [0, 0, 0]\nperiod = 4\nturn = true\n\
+                [[animation.track]]\nobject = \"b\"\ntimes = [0, 1]\n\
+                position = [[0, 0, 0], [0, 6, 0]]\ninterpolation = \"linear\"\n";
+    let scene = seen(text).at_time(1.0).unwrap();
+    // A quarter of the orbit later, about y.
+    let LightKind::Disk { center, normal, .. } = scene.lights[0].kind else { panic!("a disk") };
+    assert!((center - DVec3::NEG_Z).length() < 1e-12, "{center}");
+    assert!((normal - DVec3::NEG_Z).length() < 1e-12, "{normal}");
+    let shape = scene.instances[0].transform;
+    assert!((shape.translation - center).length() < 1e-12);
+    assert!((shape.matrix3.z_axis - normal).length() < 1e-12);
+    assert_eq!(scene.lights[1].position(), Some(DVec3::Y * 6.0));
+    assert_eq!(scene.spheres[0].center, DVec3::Y * 6.0);
+}
+
+#[test]
+fn a_material_that_illuminates_is_read() {
+    let text = "[[material]]\nname = \"lamp\"\nemission = 4\nilluminates = true\n";
+    assert!(seen(text).materials[0].illuminates);
+    assert!(!seen(&text.replace("true", "false")).materials[0].illuminates);
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Models in scene files.
 
-use envers::{LightKind, Loaded, Scene};
+use envers::{Instance, LightKind, Loaded, Scene};
 use glam::DVec3;
 
 use super::{CAMERA, File};
@@ -117,6 +117,31 @@ fn a_models_lights_can_be_left_out() {
 }
 
 #[test]
+fn a_models_emission_illuminates_only_where_it_is_asked_to() {
+    let file = File::new(format!(
+        "{CAMERA}[[model]]\nfile = \"lamp.obj\"\n\
+         [[model]]\nfile = \"lamp.obj\"\ntranslate = [5, 0, 0]\nilluminates = true\n"
+    ));
+    let material = "newmtl lamp\nKe 2 2 2\nnewmtl wall\nKd 1 1 1\n";
+    let faces = "usemtl lamp\nf 1 2 3\nusemtl wall\nf 1 3 2\n";
+    let model = format!("mtllib lamp.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{faces}");
+    std::fs::write(file.beside("lamp.obj"), model).unwrap();
+    std::fs::write(file.beside("lamp.mtl"), material).unwrap();
+    let Loaded { scene, .. } = file.load().unwrap();
+    let of = |instance: &Instance| &scene.materials[instance.material.0 as usize];
+    let lamps: Vec<bool> = scene.instances.iter().map(|i| of(i).illuminates).collect();
+    assert_eq!(lamps.iter().filter(|&&illuminates| illuminates).count(), 1, "{lamps:?}");
+    let lamp = scene.instances.iter().find(|i| of(i).illuminates).unwrap();
+    assert_eq!((of(lamp).emission.x, lamp.transform.translation.x), (2.0, 5.0));
+
+    // Where nothing emits, a warning says so.
+    std::fs::write(file.beside("lamp.mtl"), material.replace("Ke 2 2 2", "")).unwrap();
+    let warnings = file.load().unwrap().report.warnings;
+    let said = warnings.iter().any(|w| w.contains("nothing emits light"));
+    assert!(said, "{warnings:?}");
+}
+
+#[test]
 fn an_error_in_a_model_names_the_model() {
     let file = file("[[model]]\nfile = \"eye.gltf\"\n");
     let model = file.beside("eye.gltf");
@@ -164,11 +189,12 @@ fn lights_with(rest: &str) -> Vec<LightKind> {
 
 #[test]
 fn a_model_without_any_light_has_the_lights_of_a_bare_model() {
-    let bare = envers::load(file("").beside("two.obj")).unwrap().scene.lights;
-    let bare: Vec<_> = bare.into_iter().map(|light| light.kind).collect();
-    assert_eq!(bare.len(), 3);
-    assert_eq!(lights_with(""), bare);
-    assert_eq!(lights_with("lights = \"auto\""), bare);
+    let bare = envers::load(file("").beside("two.obj")).unwrap().scene;
+    for rest in ["", "lights = \"auto\""] {
+        let scene = scene(&format!("{rest}\n[[model]]\nfile = \"two.obj\"\n"));
+        assert_eq!((scene.lights.len(), scene.lights), (1, bare.lights.clone()));
+        assert!(scene.environment.is_some() && scene.environment == bare.environment);
+    }
 }
 
 #[test]

@@ -149,7 +149,7 @@ fn a_track_changes_where_a_directional_light_travels() {
     let sun = "[[light]]\nname = \"sun\"\nkind = \"directional\"\ndirection = [0, -1, 0]\n";
     let keys = "times = [0, 1]\ndirection = [[0, -1, 0], [-1, 0, 0]]";
     let scene = moved(&format!("{sun}{}", track("sun", keys)), 0.5);
-    let LightKind::Directional { direction } = scene.lights[0].kind else { panic!("the sun") };
+    let LightKind::Directional { direction, .. } = scene.lights[0].kind else { panic!("the sun") };
     assert!(near(direction, [-0.5f64.sqrt(), -0.5f64.sqrt(), 0.]));
 }
 

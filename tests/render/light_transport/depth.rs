@@ -72,9 +72,10 @@ fn ten_thousand_lights_add_up() {
     sphere(&mut scene, DVec3::ZERO, 1.0, Material { diffuse: Vec3::ONE, ..black() });
     let light = Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Z },
+        kind: LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 },
         intensity: Vec3::splat(1.0 / 8192.0),
         shadow: Shadow::default(),
+        samples: 16,
     };
     scene.lights = vec![light; 10_000];
     let (pixel, counts) = rendered(&scene);

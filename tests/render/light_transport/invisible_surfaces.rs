@@ -39,6 +39,7 @@ fn scene() -> Scene {
             kind: LightKind::Point { position, falloff: Falloff::None, range: f64::INFINITY },
             intensity: Vec3::splat(0.4),
             shadow,
+            samples: 16,
         });
     }
     scene

@@ -33,9 +33,10 @@ fn what_a_mirror_leaves_is_diffuse() {
     sphere(&mut scene, DVec3::ZERO, 1.0, half);
     scene.lights.push(Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Z },
+        kind: LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 },
         intensity: Vec3::splat(0.4),
         shadow: Shadow::default(),
+        samples: 16,
     });
     assert_near(radiance(&scene), 0.75 * 0.4 + 0.25 * 0.5);
 }

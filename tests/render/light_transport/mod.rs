@@ -1,6 +1,8 @@
 //! Mirrors and glass, held to what can be worked out by hand.
 
+mod area_lights;
 mod depth;
+mod environment;
 mod glass;
 mod invisible_surfaces;
 mod mirrors;

@@ -154,9 +154,10 @@ fn below(transform: DAffine3, material: Material) -> [f32; 3] {
     scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, white));
     scene.lights.push(Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Y },
+        kind: LightKind::Directional { direction: DVec3::NEG_Y, angle: 0.0 },
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
+        samples: 16,
     });
     square(&mut scene, transform, material);
     radiance(&scene)

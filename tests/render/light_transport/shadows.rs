@@ -20,6 +20,7 @@ fn ground(shadow: Shadow) -> Scene {
         kind: LightKind::Point { position, falloff: Falloff::None, range: f64::INFINITY },
         intensity: Vec3::ONE,
         shadow,
+        samples: 16,
     });
     scene
 }
@@ -118,9 +119,10 @@ fn the_bed_of_a_pond_is_lit_through_the_water() {
     let mut scene = pond();
     scene.lights.push(Light {
         name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Y },
+        kind: LightKind::Directional { direction: DVec3::NEG_Y, angle: 0.0 },
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
+        samples: 16,
     });
     // 4 down and 2 up to the eye.
     assert_near(radiance(&scene), (1.0 - head_on(1.33)) * (-0.6f64).exp());
@@ -135,6 +137,7 @@ fn a_light_in_the_water_is_absorbed_though_nothing_stands_in_its_way() {
         kind: LightKind::Point { position, falloff: Falloff::None, range: f64::INFINITY },
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
+        samples: 16,
     });
     assert_near(radiance(&scene), (-0.5f64).exp());
 }

@@ -10,7 +10,7 @@ use super::nodes::SceneNode;
 use crate::error::Result;
 use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::json::lookup;
-use crate::scene::{Falloff, Light, LightKind, Shadow};
+use crate::scene::{Falloff, Light, LightKind};
 
 /// Returns the light of a node, if it has one of a known kind.
 ///
@@ -44,12 +44,8 @@ pub fn light(
     if !intensity.iter().all(|&x| is_valid(x)) {
         diagnostics.add("{} lights are negative or not finite, which counts as 0", 1, path);
     }
-    Ok(Some(Light {
-        name: node.name_of(&source.name),
-        kind,
-        intensity: Vec3::from(intensity.map(|x| if is_valid(x) { x } else { 0.0 })),
-        shadow: Shadow::default(),
-    }))
+    let intensity = Vec3::from(intensity.map(|x| if is_valid(x) { x } else { 0.0 }));
+    Ok(Some(Light::new(kind).with_name(node.name_of(&source.name)).with_intensity(intensity)))
 }
 
 fn light_kind(
@@ -70,7 +66,7 @@ fn light_kind(
     }
     let range = valid_range.map_or(f64::INFINITY, f64::from);
     Some(match kind {
-        Type::Directional => LightKind::Directional { direction: direction? },
+        Type::Directional => LightKind::Directional { direction: direction?, angle: 0.0 },
         Type::Point => LightKind::Point { position, falloff, range },
         Type::Spot => {
             let spot = source.spot.as_ref();

@@ -42,7 +42,7 @@ use crate::load::limits::Limit;
 use crate::load::report::{LoadReport, Loaded};
 use crate::load::sandbox::Sandbox;
 use crate::scene::animation::Animated;
-use crate::scene::{MaterialId, Mesh, MeshId, Scene};
+use crate::scene::{MaterialId, Mesh, MeshId, Scene, ShadingModel};
 
 /// Imports the scene that a file shows.
 ///
@@ -73,7 +73,12 @@ pub fn import(
         root,
         value: document.value.as_ref(),
         accessors,
-        materials: Materials::new(root, textures, options.geometry_only),
+        materials: Materials::new(
+            root,
+            textures,
+            options.geometry_only,
+            options.shading.unwrap_or(ShadingModel::Pbr),
+        ),
         variants: Variants::read(root, options.variant),
         meshes: HashMap::new(),
         mesh_ids: HashMap::new(),

@@ -27,8 +27,10 @@ pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSetti
         exposure: table.exposure.map_or(default.exposure, |ev| ev.0),
         tone: table.tone.unwrap_or(default.tone),
         background: table.background.map_or(default.background, |c| c.to_linear(transfer)),
+        transparent: table.transparent.unwrap_or(default.transparent),
         sample_position: table.sample_position.unwrap_or(default.sample_position),
         max_depth: table.max_depth.map_or(default.max_depth, |depth| depth.0),
+        ambient_occlusion: table.ambient_occlusion.map_or(0, |rays| rays.0),
         cutoff: table.cutoff.map_or(default.cutoff, |share| share.0),
         soft_terminator: table.soft_terminator.unwrap_or(default.soft_terminator),
     })

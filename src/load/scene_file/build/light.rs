@@ -10,7 +10,7 @@ use crate::load::scene_file::schema::tables::{Kind, LightTable};
 use crate::load::scene_file::source::{Source, Span};
 use crate::load::spelling;
 use crate::scene::animation::Animated;
-use crate::scene::{Light, LightKind, Shadow, Transfer};
+use crate::scene::{DEFAULT_LIGHT_SAMPLES, Light, LightKind, Shadow, Transfer};
 
 /// The default half-angle of a spot light within which it is whole, in degrees.
 const DEFAULT_INNER_ANGLE: f64 = 0.0;
@@ -18,12 +18,13 @@ const DEFAULT_INNER_ANGLE: f64 = 0.0;
 const DEFAULT_OUTER_ANGLE: f64 = 45.0;
 
 impl SceneBuilder<'_> {
-    /// Adds a light.
+    /// Adds the light of a table with this index, and the shape by which it is seen.
     ///
     /// # Errors
     /// When its keys do not fit its kind or each other, or its intensity is beyond f32 at some time.
-    pub fn add_light(&mut self, table: &LightTable) -> Result<()> {
+    pub fn add_light(&mut self, index: usize, table: &LightTable) -> Result<()> {
         let light = light(self.source, table, self.scene.film.transfer)?;
+        self.add_light_shape(index, table, &light)?;
         let animated = self.animated_light(table, &light)?;
         self.add_animated(animated);
         self.scene.lights.push(light);
@@ -36,8 +37,7 @@ impl SceneBuilder<'_> {
         // The light at rest: where a keyed node moves it, at the origin of the node.
         let mut rest = light.clone();
         if motion.is_keyed
-            && let LightKind::Point { position, .. } | LightKind::Spot { position, .. } =
-                &mut rest.kind
+            && let Some(position) = rest.kind.position_mut()
         {
             *position = DVec3::ZERO;
         }
@@ -63,7 +63,7 @@ impl Kind {
     fn keys(self) -> &'static [&'static str] {
         match self {
             Kind::Point => &["position", "color", "intensity", "falloff", "range", "shadow"],
-            Kind::Directional => &["direction", "color", "intensity", "shadow"],
+            Kind::Directional => &["direction", "angle", "color", "intensity", "shadow", "samples"],
             Kind::Spot => &[
                 "position",
                 "direction",
@@ -76,6 +76,30 @@ impl Kind {
                 "shadow",
             ],
             Kind::Ambient => &["color", "intensity"],
+            Kind::Rectangle => &[
+                "position",
+                "direction",
+                "size",
+                "up",
+                "color",
+                "intensity",
+                "shadow",
+                "samples",
+                "visible",
+            ],
+            Kind::Disk => &[
+                "position",
+                "direction",
+                "radius",
+                "color",
+                "intensity",
+                "shadow",
+                "samples",
+                "visible",
+            ],
+            Kind::Sphere => {
+                &["position", "radius", "color", "intensity", "shadow", "samples", "visible"]
+            }
         }
     }
 }
@@ -94,7 +118,16 @@ fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Result<
         _ => table.shadow.as_ref().map(|shadow| shadow.value.0).unwrap_or_default(),
     };
     let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
-    Ok(Light { name, kind, intensity, shadow })
+    let samples = table.samples.as_ref().map_or(DEFAULT_LIGHT_SAMPLES, |s| s.value.0);
+    let light = Light { name, kind, intensity, shadow, samples };
+    if let Some(Spanned { span, .. }) = &table.samples
+        && !light.has_extent()
+    {
+        let message = "a directional light has `samples` only with an `angle`";
+        let help = "without an angle it is a point, and one shadow ray stands for it";
+        return Err(source.error(&source.key_span("samples", span), message).help(help));
+    }
+    Ok(light)
 }
 
 /// Returns the linear colour of a light, white by default.
@@ -119,18 +152,48 @@ fn light_kind(source: &Source<'_>, table: &LightTable) -> Result<LightKind> {
     let position = || table.position.as_ref().map(|p| p.value.0).ok_or_else(|| missing("position"));
     let direction =
         || table.direction.as_ref().map(|d| d.value.0).ok_or_else(|| missing("direction"));
+    let radius = || table.radius.as_ref().map(|r| r.value.0).ok_or_else(|| missing("radius"));
     let falloff = table.falloff.as_ref().map(|f| f.value).unwrap_or_default();
     let range = table.range.as_ref().map_or(f64::INFINITY, |r| r.value.0);
     Ok(match table.kind.value {
         Kind::Ambient => LightKind::Ambient,
-        Kind::Directional => LightKind::Directional { direction: direction()? },
+        Kind::Directional => {
+            let angle = table.angle.as_ref().map_or(0.0, |angle| angle.value.0.to_radians());
+            LightKind::Directional { direction: direction()?, angle }
+        }
         Kind::Point => LightKind::Point { position: position()?, falloff, range },
         Kind::Spot => {
             let (inner_angle, outer_angle) = cone_angles(source, table)?;
             let (position, direction) = (position()?, direction()?);
             LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle }
         }
+        Kind::Rectangle => {
+            let (center, normal) = (position()?, direction()?);
+            let [u, v] = rectangle_axes(source, table, normal)?;
+            let size = table.size.as_ref().ok_or_else(|| missing("size"))?;
+            let [width, height] = size.value.0;
+            LightKind::Rectangle { center, u: u * (0.5 * width), v: v * (0.5 * height) }
+        }
+        Kind::Disk => {
+            LightKind::Disk { center: position()?, normal: direction()?, radius: radius()? }
+        }
+        Kind::Sphere => LightKind::Sphere { center: position()?, radius: radius()? },
     })
+}
+
+/// Returns the unit vectors along the width and the height of a rectangle with this normal.
+fn rectangle_axes(source: &Source<'_>, table: &LightTable, normal: DVec3) -> Result<[DVec3; 2]> {
+    let default_up = if normal.y.abs() > 0.999 { DVec3::Z } else { DVec3::Y };
+    let up = table.up.as_ref().map_or(default_up, |up| up.value.0);
+    let across = up.cross(normal);
+    if let Some(Spanned { span, .. }) = &table.up
+        && across.length() < 1e-9
+    {
+        let message = "the light's `up` points along its `direction`";
+        return Err(source.error(span, message).help("choose an `up` across the direction"));
+    }
+    let across = across.normalize();
+    Ok([across, normal.cross(across)])
 }
 
 /// Returns the inner and the outer half-angle of a spot light, in radians.
@@ -158,11 +221,17 @@ fn check_keys(source: &Source<'_>, table: &LightTable) -> Result<()> {
     let given = [
         ("position", span(&table.position)),
         ("direction", span(&table.direction)),
+        ("size", span(&table.size)),
+        ("up", span(&table.up)),
+        ("radius", span(&table.radius)),
+        ("angle", span(&table.angle)),
         ("inner_angle", span(&table.inner_angle)),
         ("outer_angle", span(&table.outer_angle)),
         ("falloff", span(&table.falloff)),
         ("range", span(&table.range)),
         ("shadow", span(&table.shadow)),
+        ("samples", span(&table.samples)),
+        ("visible", span(&table.visible)),
     ];
     for (key, span) in given {
         if let Some(span) = span

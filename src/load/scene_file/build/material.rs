@@ -1,5 +1,7 @@
 //! The materials.
 
+use glam::Vec3;
+
 use super::SceneBuilder;
 use super::textures::Sampling;
 use crate::error::Result;
@@ -24,8 +26,9 @@ impl SceneBuilder<'_> {
         let material = if self.geometry_only {
             Material { name: name.clone(), ..Material::default() }
         } else {
-            let material = self.material(table)?;
+            let mut material = self.material(table)?;
             self.check_energy(table, &material)?;
+            self.set_pbr(table, &mut material)?;
             material
         };
         let id = self.scene.add_material(material);
@@ -56,14 +59,22 @@ impl SceneBuilder<'_> {
         let transfer = self.scene.film.transfer;
         let color =
             |color: Option<Color>, default| color.map_or(default, |c| c.to_linear(transfer));
+        let emission = color(table.emission, default.emission);
+        if let Some(Spanned { span, value: true }) = &table.illuminates
+            && emission == Vec3::ZERO
+        {
+            let message = "a material that illuminates needs the key `emission`, and not 0";
+            return Err(self.source.error(&self.source.key_span("illuminates", span), message));
+        }
         Ok(Material {
             name: table.name.value.clone(),
             diffuse: color(table.diffuse.as_ref().map(|c| c.value), default.diffuse),
             diffuse_map,
-            specular: color(table.specular, default.specular),
+            specular: color(table.specular.as_ref().map(|c| c.value), default.specular),
             specular_map,
-            shininess: table.shininess.map_or(default.shininess, |s| s.0 as f32),
-            emission: color(table.emission, default.emission),
+            shininess: table.shininess.as_ref().map_or(default.shininess, |s| s.value.0 as f32),
+            emission,
+            illuminates: table.illuminates.as_ref().is_some_and(|illuminates| illuminates.value),
             emission_map,
             normal_map: normal_map.map(|texture| NormalMap { texture, scale: 1.0 }),
             coverage,

@@ -3,12 +3,15 @@
 
 mod animation;
 mod camera;
+mod environment;
 mod film;
 mod image_use;
 mod light;
+mod light_shape;
 mod material;
 mod model;
 mod objects;
+mod pbr_material;
 mod shapes;
 mod textures;
 mod tracks;
@@ -29,7 +32,7 @@ use crate::load::merge::MergedModel;
 use crate::load::sandbox::Sandbox;
 use crate::load::{LoadOptions, LoadReport, Loaded};
 use crate::scene::animation::Animated;
-use crate::scene::{MaterialId, ObjectProvenance, Scene, TableKind};
+use crate::scene::{MaterialId, ObjectProvenance, Scene, ShadingModel, TableKind};
 
 /// Builds the scene that the tables of a file describe.
 ///
@@ -56,6 +59,7 @@ pub fn build_scene(
         source,
         sandbox,
         objects,
+        shading: options.shading,
         geometry_only: options.geometry_only,
         image_use: ImageUse::from_tables(source, tables),
         variant: options.variant.as_deref(),
@@ -74,7 +78,10 @@ pub fn build_scene(
     tables.material.iter().try_for_each(|m| builder.add_material(m))?;
     tables.sphere.iter().enumerate().try_for_each(|(i, s)| builder.add_sphere(i, s))?;
     tables.plane.iter().enumerate().try_for_each(|(i, p)| builder.add_plane(i, p))?;
-    tables.light.iter().try_for_each(|l| builder.add_light(l))?;
+    tables.light.iter().enumerate().try_for_each(|(i, l)| builder.add_light(i, l))?;
+    if let Some(Spanned { span, value: environment }) = &tables.environment {
+        builder.add_environment(&environment.0, span)?;
+    }
     tables.model.iter().enumerate().try_for_each(|(i, m)| builder.add_model(i, m))?;
     builder.warn_of_bright_materials();
     let SceneBuilder { mut scene, report, textures, .. } = builder;
@@ -88,6 +95,8 @@ struct SceneBuilder<'a> {
     sandbox: &'a Sandbox,
     /// The variant of the materials of models that name none.
     variant: Option<&'a str>,
+    /// The shading model of the materials of models that say nothing themselves.
+    shading: Option<ShadingModel>,
     /// True if all materials are the default material.
     geometry_only: bool,
     image_use: ImageUse,

@@ -1,8 +1,8 @@
 //! The models, and their motion.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::SceneBuilder;
 use crate::error::{Error, Result};
@@ -12,8 +12,8 @@ use crate::load::sandbox::OpenedFile;
 use crate::load::scene_file::schema::spanned::Spanned;
 use crate::load::scene_file::schema::tables::ModelTable;
 use crate::load::{self, Loaded, ModelOptions};
-use crate::scene::TableKind;
 use crate::scene::check::MAX_COORDINATE;
+use crate::scene::{Material, Scene, ShadingModel, TableKind};
 
 /// The key by which a model is loaded once, however often a scene file names it.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -24,6 +24,10 @@ pub struct ModelKey {
     animation: Option<String>,
     /// The name of the variant of its materials.
     variant: Option<String>,
+    /// The shading model of its materials.
+    shading: Option<ShadingModel>,
+    /// True if its surfaces that emit light illuminate others.
+    illuminates: bool,
 }
 
 impl SceneBuilder<'_> {
@@ -73,6 +77,8 @@ impl SceneBuilder<'_> {
             path: file.identity.clone(),
             animation: table.animation.as_ref().map(|name| name.value.clone()),
             variant: own_variant.or(self.variant).map(str::to_owned),
+            shading: table.shading.or(self.shading),
+            illuminates: table.illuminates.as_ref().is_some_and(|illuminates| illuminates.value),
         };
         if self.models.contains_key(&key) {
             return Ok(key);
@@ -85,6 +91,7 @@ impl SceneBuilder<'_> {
             needs_images: self.image_use.uses_materials_of_model(&path),
             geometry_only: self.geometry_only,
             provenance: self.scene.provenance.is_some(),
+            shading: key.shading,
         };
         let Loaded { scene: mut model, report } = load::model(file, self.sandbox, &options)?;
         if let Some(Spanned { span, value }) = &table.variant {
@@ -98,8 +105,23 @@ impl SceneBuilder<'_> {
                 path.display()
             ));
         }
+        self.set_illuminates(&mut model, &path, key.illuminates);
         self.models.insert(key.clone(), MergedModel::merge(&mut self.scene, model));
         Ok(key)
+    }
+
+    /// Makes the materials of a model that emit light illuminate other surfaces, or not. An unlit
+    /// material shows its colour, and is no light.
+    fn set_illuminates(&mut self, model: &mut Scene, path: &Path, illuminates: bool) {
+        let emits = |material: &Material| material.emission != Vec3::ZERO && !material.unlit;
+        for material in &mut model.materials {
+            material.illuminates = illuminates && emits(material);
+        }
+        if illuminates && !self.geometry_only && !model.materials.iter().any(emits) {
+            let path = path.display();
+            let warning = format!("{path}: nothing emits light, and so it illuminates nothing");
+            self.report.warnings.push(warning);
+        }
     }
 
     /// Opens a model file. An error of its name is one of the scene file and is reported there.
@@ -160,9 +182,11 @@ mod tests {
             scale: Some(Scale(scale)),
             material: None,
             casts_shadow: None,
+            illuminates: None,
             lights: None,
             animation: None,
             variant: None,
+            shading: None,
         }
     }
 

@@ -34,6 +34,9 @@ impl ObjectKind {
             Self::Light(Kind::Directional) => "a directional light",
             Self::Light(Kind::Spot) => "a spot light",
             Self::Light(Kind::Ambient) => "an ambient light",
+            Self::Light(Kind::Rectangle) => "a rectangle light",
+            Self::Light(Kind::Disk) => "a disk light",
+            Self::Light(Kind::Sphere) => "a sphere light",
             Self::Camera => "a camera",
         }
     }
@@ -138,7 +141,7 @@ impl NamedObjects {
         let object = &self.objects[index];
         let Some(position) = object.position else {
             let message = format!("`{name}` is {}, which is nowhere", object.kind.noun());
-            let help = "name a sphere, a model, a camera, or a point or spot light";
+            let help = "name a sphere, a model, a camera, or a light that has a position";
             return Err(source.error(span, message).help(help));
         };
         Ok(ResolvedPoint { object: Some(index), position })

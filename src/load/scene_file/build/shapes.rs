@@ -49,9 +49,16 @@ impl SceneBuilder<'_> {
     /// Adds the plane of a table with this index.
     ///
     /// # Errors
-    /// When there is no such material.
+    /// When there is no such material, or it illuminates.
     pub fn add_plane(&mut self, index: usize, table: &PlaneTable) -> Result<()> {
         let material = self.material_or_default(table.material.as_ref())?;
+        if let Some(Spanned { span, .. }) = &table.material
+            && self.scene.materials[material.0 as usize].illuminates
+        {
+            let help =
+                "illuminate with a light, a sphere or a mesh; or drop the material's `illuminates`";
+            return Err(self.source.error(span, "an infinite plane cannot illuminate").help(help));
+        }
         let transfer = self.scene.film.transfer;
         let checker = table.checker.as_ref().map(|Table(checker)| Checker {
             colors: checker.colors.0.map(|c| c.to_linear(transfer)),

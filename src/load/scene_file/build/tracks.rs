@@ -58,7 +58,9 @@ impl ObjectKind {
         match self {
             Self::Sphere => &["center", "radius"],
             Self::Model => &["translate", "rotate", "scale"],
-            Self::Light(Kind::Point) => &["position", "intensity"],
+            Self::Light(Kind::Point | Kind::Rectangle | Kind::Disk | Kind::Sphere) => {
+                &["position", "intensity"]
+            }
             Self::Light(Kind::Spot) => &["position", "direction", "intensity"],
             Self::Light(Kind::Directional) => &["direction", "intensity"],
             Self::Light(Kind::Ambient) => &["intensity"],

@@ -17,7 +17,7 @@ use crate::measure::trace::{closest, occluded, ulps_between};
 use crate::render::Renderer;
 use crate::scene::{RayGenerator, Scene};
 use crate::surface::Surface;
-use crate::write::{Settings, png_bytes};
+use crate::write::{Settings, bytes_per_pixel, png_bytes};
 use differences::{CameraRay, Differences, RED, Severity, YELLOW};
 use secondary_rays::SecondaryRayComparer;
 
@@ -187,13 +187,15 @@ impl Comparer<'_> {
         let secondary_rays = SecondaryRayComparer::new(self);
         let (a, b) = (film(self.tested), film(&secondary_rays));
 
-        // The values of the EXR, bit by bit.
+        // The values of the EXR, with any alpha, bit by bit.
+        let alpha = a.alpha.iter().flatten().zip(b.alpha.iter().flatten());
         let values = a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
-        let values = values.filter(|(x, y)| x.to_bits() != y.to_bits()).count() as u64;
+        let values = values.chain(alpha).filter(|(x, y)| x.to_bits() != y.to_bits()).count() as u64;
         let mut difference = PictureDifference { values, pixels: 0, max_channel: 0 };
         // The bytes of the PNG; pixels that differ are marked unless a hit or shadow ray explains them.
+        let depth = bytes_per_pixel(&a);
         let (a, b) = (png_bytes(&a, &settings), png_bytes(&b, &settings));
-        for ((p, q), mark) in a.chunks(3).zip(b.chunks(3)).zip(&mut heatmap.pixels) {
+        for ((p, q), mark) in a.chunks(depth).zip(b.chunks(depth)).zip(&mut heatmap.pixels) {
             let largest = p.iter().zip(q).map(|(x, y)| x.abs_diff(*y)).max().unwrap_or(0);
             difference.max_channel = difference.max_channel.max(largest);
             if largest > 1 {

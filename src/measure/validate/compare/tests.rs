@@ -20,8 +20,13 @@ fn scene() -> Scene {
         falloff: Falloff::None,
         range: f64::INFINITY,
     };
-    let light =
-        Light { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() };
+    let light = Light {
+        name: String::new(),
+        kind,
+        intensity: Vec3::ONE,
+        shadow: Shadow::default(),
+        samples: 16,
+    };
     scene.lights.push(light);
     scene
 }

@@ -1,9 +1,8 @@
 //! The table of the directional albedo of isotropic surfaces.
 
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 use glam::DVec3;
-use rayon::prelude::*;
 
 use super::moments::{Moments, cosine_at, mean_weights, place_of_direction};
 use crate::shading::bsdf::fresnel::COSINES;
@@ -28,8 +27,13 @@ struct Row {
     mean_weights: CosineWeights,
 }
 
-static TABLE: LazyLock<Vec<Row>> =
-    LazyLock::new(|| (0..ROUGHNESSES).into_par_iter().map(Row::compute).collect());
+/// The rows of the table, each computed when it is first used: most materials have one roughness.
+static TABLE: [OnceLock<Row>; ROUGHNESSES] = [const { OnceLock::new() }; ROUGHNESSES];
+
+/// Returns a row of the table.
+fn row(index: usize) -> &'static Row {
+    TABLE[index].get_or_init(|| Row::compute(index))
+}
 
 impl Row {
     fn compute(roughness: usize) -> Self {
@@ -72,9 +76,9 @@ impl Isotropic {
     /// Returns the shares of the light from `wo` that come back from one reflection.
     pub fn moments(&self, wo: DVec3) -> Moments {
         let mut moments = Moments::default();
-        for (row, weight) in self.0.ends() {
+        for (index, weight) in self.0.ends() {
             for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
-                moments.add(TABLE[row].moments[node], weight * share);
+                moments.add(row(index).moments[node], weight * share);
             }
         }
         moments
@@ -83,16 +87,16 @@ impl Isotropic {
     /// Returns the mean of the shares over all directions.
     pub fn mean(&self) -> Moments {
         let mut mean = Moments::default();
-        self.0.ends().iter().for_each(|(row, w)| mean.add(TABLE[*row].mean_moments, *w));
+        self.0.ends().iter().for_each(|(index, w)| mean.add(row(*index).mean_moments, *w));
         mean
     }
 
     /// Returns the factors of the reflectance at each cosine, for light from `wo`.
     pub fn weights(&self, wo: DVec3) -> CosineWeights {
         let mut sum = [0.0; COSINES];
-        for (row, weight) in self.0.ends() {
+        for (index, weight) in self.0.ends() {
             for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
-                add(&mut sum, &TABLE[row].weights[node], weight * share);
+                add(&mut sum, &row(index).weights[node], weight * share);
             }
         }
         sum
@@ -101,7 +105,7 @@ impl Isotropic {
     /// Returns the means of these factors over all directions.
     pub fn mean_weights(&self) -> CosineWeights {
         let mut sum = [0.0; COSINES];
-        self.0.ends().iter().for_each(|(row, w)| add(&mut sum, &TABLE[*row].mean_weights, *w));
+        self.0.ends().iter().for_each(|(index, w)| add(&mut sum, &row(*index).mean_weights, *w));
         sum
     }
 }

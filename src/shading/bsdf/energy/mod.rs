@@ -125,7 +125,7 @@ fn smooth_mean_weights() -> CosineWeights {
 }
 
 /// Returns what Schlick's reflectance F₀ + (F₉₀ − F₀)(1 − c)⁵ makes of the shares.
-fn of_schlick([f0, f90]: [Vec3; 2], moments: Moments) -> Vec3 {
+pub fn of_schlick([f0, f90]: [Vec3; 2], moments: Moments) -> Vec3 {
     f0 * moments.all + (f90 - f0) * moments.grazing
 }
 

@@ -5,7 +5,7 @@ use super::*;
 const GRID: [f64; 4] = [5.0, 35.0, 60.0, 80.0];
 
 /// Returns f |cos θi| of a grid of pairs of directions, on both sides.
-fn values(params: &MaterialParams) -> Vec<Vec3> {
+fn values(params: &MetallicRoughness) -> Vec<Vec3> {
     let bsdf = Bsdf::new(params, 1.0);
     let directions = || GRID.into_iter().chain([125.0, 165.0]);
     let pairs = directions().flat_map(|a| directions().map(move |b| (a, b)));
@@ -15,7 +15,7 @@ fn values(params: &MaterialParams) -> Vec<Vec3> {
 #[test]
 fn extensions_at_zero_leave_the_base_as_it_is() {
     for base in [metal(0.5), plastic(0.5, 1.5), glass(0.5, 1.5)] {
-        let with = |change: fn(&mut MaterialParams)| {
+        let with = |change: fn(&mut MetallicRoughness)| {
             let mut params = base;
             change(&mut params);
             assert_eq!(values(&params), values(&base), "{params:?}");
@@ -32,7 +32,7 @@ fn extensions_at_zero_leave_the_base_as_it_is() {
 #[test]
 fn weak_extensions_are_close_to_none() {
     let base = plastic(0.5, 1.5);
-    let with = |change: fn(&mut MaterialParams)| {
+    let with = |change: fn(&mut MetallicRoughness)| {
         let mut params = base;
         change(&mut params);
         let (found, expected) = (values(&params), values(&base));
@@ -52,8 +52,8 @@ fn weak_extensions_are_close_to_none() {
 #[test]
 fn sheen_brightens_dark_cloth_most_at_grazing_angles() {
     let color = Vec3::new(1.0, 0.5, 0.0);
-    let black = MaterialParams { base_color: Vec3::ZERO, specular: 0.0, ..plastic(1.0, 1.5) };
-    let cloth = MaterialParams { sheen_color: color, sheen_roughness: 0.4, ..black };
+    let black = MetallicRoughness { base_color: Vec3::ZERO, specular: 0.0, ..plastic(1.0, 1.5) };
+    let cloth = MetallicRoughness { sheen_color: color, sheen_roughness: 0.4, ..black };
     let [head_on, grazing] = [5.0, 80.0].map(|angle| furnace(&cloth, at(angle, 0.0), 200)[0]);
     assert!(grazing.x > 2.0 * head_on.x && head_on.x > 0.0, "{head_on} {grazing}");
     assert!((grazing.y / grazing.x - 0.5).abs() < 1e-3 && grazing.z == 0.0, "{grazing}");
@@ -62,7 +62,7 @@ fn sheen_brightens_dark_cloth_most_at_grazing_angles() {
 #[test]
 fn sheen_takes_from_the_base_what_it_reflects() {
     let base = plastic(0.5, 1.5);
-    let cloth = MaterialParams { sheen_color: Vec3::X, sheen_roughness: 0.5, ..base };
+    let cloth = MetallicRoughness { sheen_color: Vec3::X, sheen_roughness: 0.5, ..base };
     let [plain, covered] = [base, cloth].map(|p| furnace(&p, at(60.0, 0.0), 200)[0]);
     assert!(covered.y < plain.y - 0.02, "{covered} {plain}");
     assert!(covered.x <= 1.005, "{covered}");
@@ -70,8 +70,8 @@ fn sheen_takes_from_the_base_what_it_reflects() {
 
 #[test]
 fn clearcoat_adds_a_white_mirror_and_darkens_the_base() {
-    let base = MaterialParams { base_color: Vec3::X, ..metal(0.6) };
-    let coated = MaterialParams { clearcoat: 1.0, ..base };
+    let base = MetallicRoughness { base_color: Vec3::X, ..metal(0.6) };
+    let coated = MetallicRoughness { clearcoat: 1.0, ..base };
     let wo = at(30.0, 0.0);
     let mirror = delta_lobes(&Bsdf::new(&coated, 1.0), wo)[0];
     // Schlick's 0.04 + 0.96 (1 − cos 30°)⁵.
@@ -84,7 +84,7 @@ fn clearcoat_adds_a_white_mirror_and_darkens_the_base() {
 
 #[test]
 fn a_clearcoat_is_not_met_from_within() {
-    let coated = MaterialParams { clearcoat: 1.0, clearcoat_roughness: 0.4, ..glass(0.4, 1.5) };
+    let coated = MetallicRoughness { clearcoat: 1.0, clearcoat_roughness: 0.4, ..glass(0.4, 1.5) };
     let (wo, wi) = (at(160.0, 0.0), at(150.0, 180.0));
     let [plain, covered] =
         [glass(0.4, 1.5), coated].map(|params| Bsdf::new(&params, 1.0).evaluate(wo, wi));
@@ -94,7 +94,7 @@ fn a_clearcoat_is_not_met_from_within() {
 #[test]
 fn anisotropy_widens_the_lobe_along_its_direction() {
     for rotation in [0.0, 40.0] {
-        let params = MaterialParams {
+        let params = MetallicRoughness {
             anisotropy: 0.7,
             anisotropy_rotation: f64::to_radians(rotation) as f32,
             ..metal(0.4)
@@ -110,7 +110,7 @@ fn anisotropy_widens_the_lobe_along_its_direction() {
 
 #[test]
 fn iridescence_colors_white_metal_by_angle_and_thickness() {
-    let film = |thickness: f32| MaterialParams {
+    let film = |thickness: f32| MetallicRoughness {
         iridescence: 1.0,
         iridescence_ior: 1.8,
         iridescence_thickness: thickness,
@@ -127,7 +127,7 @@ fn iridescence_colors_white_metal_by_angle_and_thickness() {
     }
     // Head-on, a film of no thickness is none.
     let none = color(0.0, 0.0);
-    let plain = MaterialParams { iridescence: 0.0, ..film(0.0) };
+    let plain = MetallicRoughness { iridescence: 0.0, ..film(0.0) };
     let expected = delta_lobes(&Bsdf::new(&plain, 1.0), at(0.0, 0.0))[0];
     assert!((none - expected).abs().max_element() < 1e-4, "{none} {expected}");
 }
@@ -135,7 +135,7 @@ fn iridescence_colors_white_metal_by_angle_and_thickness() {
 #[test]
 fn dispersion_bends_blue_more_than_red_by_the_abbe_number() {
     // V = 20: nF − nC = 0.5/20 for n = 1.5.
-    let params = MaterialParams { dispersion: 1.0, ..glass(0.0, 1.5) };
+    let params = MetallicRoughness { dispersion: 1.0, ..glass(0.0, 1.5) };
     let bsdf = Bsdf::new(&params, 1.0);
     let wo = at(50.0, 0.0);
     let mut found = [None; 3];
@@ -155,7 +155,7 @@ fn dispersion_bends_blue_more_than_red_by_the_abbe_number() {
 
 #[test]
 fn diffuse_transmission_moves_light_to_the_other_side() {
-    let leaf = |share| MaterialParams {
+    let leaf = |share| MetallicRoughness {
         diffuse_transmission: share,
         diffuse_transmission_color: Vec3::Y,
         ..plastic(0.5, 1.5)
@@ -170,8 +170,11 @@ fn diffuse_transmission_moves_light_to_the_other_side() {
 
 #[test]
 fn specular_sets_the_strength_and_the_color_of_a_dielectrics_reflection() {
-    let params =
-        |specular, specular_color| MaterialParams { specular, specular_color, ..plastic(0.0, 1.5) };
+    let params = |specular, specular_color| MetallicRoughness {
+        specular,
+        specular_color,
+        ..plastic(0.0, 1.5)
+    };
     let wo = at(5.0, 0.0);
     let mirror = |specular, color| delta_lobes(&Bsdf::new(&params(specular, color), 1.0), wo)[0];
     assert_eq!(mirror(0.0, Vec3::ONE), Vec3::ZERO);

@@ -7,7 +7,7 @@ const ROUGHNESSES: [f32; 9] = [0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0];
 const ANGLES: [f64; 7] = [0.0, 30.0, 55.0, 70.0, 80.0, 86.0, 89.0];
 
 /// The greatest distance from 1 of white materials, over a grid of roughness and angle.
-fn worst(materials: impl Fn(f32) -> Vec<MaterialParams>) -> f32 {
+fn worst(materials: impl Fn(f32) -> Vec<MetallicRoughness>) -> f32 {
     let mut worst = (0.0f32, String::new());
     for roughness in ROUGHNESSES {
         for params in materials(roughness) {
@@ -15,7 +15,7 @@ fn worst(materials: impl Fn(f32) -> Vec<MaterialParams>) -> f32 {
                 let [reflected, transmitted] = furnace(&params, at(angle, 20.0), STEPS);
                 let error = (reflected + transmitted - 1.0).abs().max_element();
                 if error > worst.0 {
-                    let MaterialParams { roughness, ior, metallic, .. } = params;
+                    let MetallicRoughness { roughness, ior, metallic, .. } = params;
                     let place = format!("{roughness} metallic {metallic} ior {ior} at {angle}°");
                     worst = (error, place);
                 }
@@ -39,13 +39,14 @@ fn white_dielectrics_reflect_everything() {
 
 #[test]
 fn white_mixtures_of_metal_and_dielectric_reflect_everything() {
-    let half = |metallic| move |roughness| MaterialParams { metallic, ..plastic(roughness, 1.5) };
+    let half =
+        |metallic| move |roughness| MetallicRoughness { metallic, ..plastic(roughness, 1.5) };
     assert!(worst(|roughness| vec![half(0.25)(roughness), half(0.75)(roughness)]) < 0.005);
 }
 
 #[test]
 fn thin_white_surfaces_send_on_everything() {
-    let thin = |transmission, roughness| MaterialParams {
+    let thin = |transmission, roughness| MetallicRoughness {
         transmission,
         is_thin: true,
         ..glass(roughness, 1.5)
@@ -55,7 +56,8 @@ fn thin_white_surfaces_send_on_everything() {
 
 #[test]
 fn white_leaves_send_on_everything() {
-    let leaf = |roughness| MaterialParams { diffuse_transmission: 0.7, ..plastic(roughness, 1.5) };
+    let leaf =
+        |roughness| MetallicRoughness { diffuse_transmission: 0.7, ..plastic(roughness, 1.5) };
     assert!(worst(|roughness| vec![leaf(roughness)]) < 0.005);
 }
 
@@ -64,7 +66,7 @@ fn anisotropic_white_metal_reflects_everything() {
     let mut worst = 0.0f32;
     for (roughness, anisotropy) in [(0.2, 0.4), (0.35, 0.9), (0.6, 0.6), (0.85, 0.25), (0.15, 1.0)]
     {
-        let params = MaterialParams { anisotropy, anisotropy_rotation: 0.3, ..metal(roughness) };
+        let params = MetallicRoughness { anisotropy, anisotropy_rotation: 0.3, ..metal(roughness) };
         for (angle, azimuth) in
             [(0.0, 0.0), (40.0, 10.0), (65.0, 100.0), (80.0, 50.0), (87.0, 200.0)]
         {
@@ -85,7 +87,7 @@ fn nothing_sends_on_more_light_than_it_receives() {
             for roughness in [params.roughness, 0.0, 1.0] {
                 // Integration does not resolve a narrow ridge.
                 let least = if params.anisotropy > 0.0 { 0.25 } else { 0.0 };
-                let params = MaterialParams { roughness: roughness.max(least), ..params };
+                let params = MetallicRoughness { roughness: roughness.max(least), ..params };
                 let [reflected, transmitted] = furnace(&params, at(angle, 20.0), 256);
                 let sum = (reflected + transmitted).max_element();
                 if sum > worst.0 {
@@ -101,7 +103,7 @@ fn nothing_sends_on_more_light_than_it_receives() {
 #[test]
 fn the_albedo_is_what_the_furnace_finds() {
     // A sheen, a clearcoat and a rough volume lose what the table of the base does not know of.
-    let is_exact = |params: &MaterialParams| {
+    let is_exact = |params: &MetallicRoughness| {
         params.is_thin && params.clearcoat == 0.0 && params.sheen_color == Vec3::ZERO
     };
     for (name, params) in materials().into_iter().filter(|(_, params)| is_exact(params)) {

@@ -4,7 +4,7 @@ use super::*;
 use crate::shading::bsdf::BsdfSample;
 
 /// Returns the delta samples of a material, the reflection first.
-fn delta_samples(params: &MaterialParams, wo: DVec3) -> Vec<BsdfSample> {
+fn delta_samples(params: &MetallicRoughness, wo: DVec3) -> Vec<BsdfSample> {
     let bsdf = Bsdf::new(params, 1.0);
     let mut found: Vec<BsdfSample> = Vec::new();
     for u in midpoints(301) {
@@ -23,7 +23,7 @@ fn schlick(f0: f64, cosine: f64) -> f64 {
 fn smooth_metal_is_a_mirror() {
     let wo = at(60.0, 25.0);
     let gold = Vec3::new(1.0, 0.7, 0.3);
-    let found = delta_samples(&MaterialParams { base_color: gold, ..metal(0.0) }, wo);
+    let found = delta_samples(&MetallicRoughness { base_color: gold, ..metal(0.0) }, wo);
     let [mirror] = found[..] else { panic!("{found:?}") };
     assert!((mirror.wi - DVec3::new(-wo.x, -wo.y, wo.z)).length() < 1e-12);
     let expected = gold.as_dvec3().map(|f0| schlick(f0, 0.5));
@@ -63,7 +63,7 @@ fn beyond_the_critical_angle_glass_is_a_mirror() {
 
 #[test]
 fn light_goes_straight_through_thin_surfaces_and_equal_indices() {
-    let pane = MaterialParams { is_thin: true, ..glass(0.0, 1.5) };
+    let pane = MetallicRoughness { is_thin: true, ..glass(0.0, 1.5) };
     for params in [pane, glass(0.0, 1.0), glass(0.8, 1.0)] {
         for wo in [at(40.0, 10.0), at(140.0, 10.0)] {
             let found = delta_samples(&params, wo);
@@ -75,7 +75,7 @@ fn light_goes_straight_through_thin_surfaces_and_equal_indices() {
 
 #[test]
 fn nothing_goes_through_a_surface_with_index_zero() {
-    let params = MaterialParams { base_color: Vec3::splat(0.5), ..plastic(0.0, 0.0) };
+    let params = MetallicRoughness { base_color: Vec3::splat(0.5), ..plastic(0.0, 0.0) };
     let wo = at(40.0, 0.0);
     let [reflected, transmitted] = furnace(&params, wo, 64);
     assert!((reflected - 1.0).abs().max_element() < 1e-5);
@@ -89,7 +89,7 @@ fn nearly_smooth_surfaces_send_on_as_much_as_smooth_ones() {
         for angle in [20.0, 60.0, 80.0, 150.0, 170.0] {
             let wo = at(angle, 30.0);
             let sum = |roughness: f32| {
-                let bsdf = Bsdf::new(&MaterialParams { roughness, ..params }, 1.0);
+                let bsdf = Bsdf::new(&MetallicRoughness { roughness, ..params }, 1.0);
                 let mut random = Random(2);
                 let mut sum = Vec3::ZERO;
                 for _ in 0..20_000 {
@@ -108,7 +108,7 @@ fn nearly_smooth_surfaces_send_on_as_much_as_smooth_ones() {
 
 #[test]
 fn default_material_is_rough_white_metal() {
-    let bsdf = Bsdf::new(&MaterialParams::default(), 1.0);
+    let bsdf = Bsdf::new(&MetallicRoughness::default(), 1.0);
     assert_eq!(bsdf, Bsdf::new(&metal(1.0), 1.0));
     // α = 1: D = 1/π and G₂ = 1; the rest is scattered often.
     let once = f64::from(bsdf.evaluate(DVec3::Z, DVec3::Z).x)
@@ -120,7 +120,7 @@ fn default_material_is_rough_white_metal() {
 fn the_lobe_of_a_rough_metal_is_the_formula_of_the_specification() {
     // B.3: D, V and F written out for one pair of directions.
     let (roughness, f0) = (0.5f64, 0.6f64);
-    let params = MaterialParams { base_color: Vec3::splat(0.6), ..metal(0.5) };
+    let params = MetallicRoughness { base_color: Vec3::splat(0.6), ..metal(0.5) };
     let (wo, wi) = (at(30.0, 0.0), at(50.0, 160.0));
     let (alpha, h) = (roughness * roughness, (wo + wi).normalize());
     let square = alpha * alpha;
@@ -134,14 +134,19 @@ fn the_lobe_of_a_rough_metal_is_the_formula_of_the_specification() {
 }
 
 #[test]
-fn scale_and_bias_of_f0_make_the_albedo_of_a_single_reflection() {
-    for (roughness, angle) in [(0.2, 30.0), (0.5, 60.0), (0.9, 80.0)] {
-        let wo = at(angle, 0.0);
-        let [scale, bias] = Bsdf::new(&metal(roughness), 1.0).split_sum(wo);
-        // A metal of F₀ = 0 reflects the bias, and little more by scattering often.
-        let black = MaterialParams { base_color: Vec3::ZERO, ..metal(roughness) };
-        let [reflected, _] = furnace(&black, wo, 200);
-        assert!((reflected.x - bias).abs() < 0.004, "{reflected} {bias}");
-        assert!(scale > 0.0 && scale + bias <= 1.001);
+fn albedos_of_the_lobes_of_an_opaque_material_add_up_to_its_albedo() {
+    let varnish =
+        MetallicRoughness { clearcoat: 0.7, clearcoat_roughness: 0.2, ..plastic(0.4, 1.5) };
+    let leaf = MetallicRoughness { diffuse_transmission: 0.4, ..plastic(0.6, 1.4) };
+    for params in [metal(0.3), plastic(0.5, 1.5), varnish, leaf] {
+        let (bsdf, wo) = (Bsdf::new(&params, 1.0), at(40.0, 0.0));
+        let lobes = bsdf.lobe_albedos(wo);
+        let sum = lobes.reflection
+            + lobes.diffuse
+            + lobes.diffuse_transmission
+            + lobes.clearcoat
+            + lobes.sheen;
+        assert_eq!(lobes.transmissive, 0.0);
+        assert!((sum - bsdf.albedo(wo)).abs().max_element() < 1e-6, "{params:?}");
     }
 }

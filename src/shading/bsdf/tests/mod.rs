@@ -11,12 +11,13 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec3, Vec3};
 
+use super::Bsdf;
 use super::table::midpoints;
-use super::{Bsdf, MaterialParams};
+use crate::scene::MetallicRoughness;
 
 /// A clear dielectric boundary of a volume.
-fn glass(roughness: f32, ior: f32) -> MaterialParams {
-    MaterialParams {
+fn glass(roughness: f32, ior: f32) -> MetallicRoughness {
+    MetallicRoughness {
         metallic: 0.0,
         roughness,
         ior,
@@ -26,35 +27,38 @@ fn glass(roughness: f32, ior: f32) -> MaterialParams {
     }
 }
 
-fn metal(roughness: f32) -> MaterialParams {
-    MaterialParams { roughness, ..Default::default() }
+fn metal(roughness: f32) -> MetallicRoughness {
+    MetallicRoughness { roughness, ..Default::default() }
 }
 
-fn plastic(roughness: f32, ior: f32) -> MaterialParams {
-    MaterialParams { metallic: 0.0, roughness, ior, ..Default::default() }
+fn plastic(roughness: f32, ior: f32) -> MetallicRoughness {
+    MetallicRoughness { metallic: 0.0, roughness, ior, ..Default::default() }
 }
 
 /// Materials of every kind, with names.
-fn materials() -> Vec<(&'static str, MaterialParams)> {
+fn materials() -> Vec<(&'static str, MetallicRoughness)> {
     let gold = Vec3::new(1.0, 0.77, 0.34);
     let rose = Vec3::new(0.8, 0.2, 0.3);
-    let varnish = MaterialParams { clearcoat: 1.0, ..metal(0.5) };
+    let varnish = MetallicRoughness { clearcoat: 1.0, ..metal(0.5) };
     vec![
         ("metal", metal(0.6)),
-        ("sharp gold", MaterialParams { base_color: gold, ..metal(0.25) }),
+        ("sharp gold", MetallicRoughness { base_color: gold, ..metal(0.25) }),
         ("rough metal", metal(1.0)),
-        ("brushed", MaterialParams { anisotropy: 0.8, anisotropy_rotation: 0.5, ..metal(0.3) }),
-        ("plastic", MaterialParams { base_color: rose, ..plastic(0.4, 1.5) }),
+        ("brushed", MetallicRoughness { anisotropy: 0.8, anisotropy_rotation: 0.5, ..metal(0.3) }),
+        ("plastic", MetallicRoughness { base_color: rose, ..plastic(0.4, 1.5) }),
         ("diamond white", plastic(0.7, 2.4)),
-        ("half metal", MaterialParams { metallic: 0.5, base_color: rose, ..metal(0.4) }),
-        ("thin pane", MaterialParams { is_thin: true, base_color: gold, ..glass(0.4, 1.5) }),
+        ("half metal", MetallicRoughness { metallic: 0.5, base_color: rose, ..metal(0.4) }),
+        ("thin pane", MetallicRoughness { is_thin: true, base_color: gold, ..glass(0.4, 1.5) }),
         ("frosted", glass(0.5, 1.5)),
         ("clear", glass(0.3, 1.33)),
-        ("half frosted", MaterialParams { transmission: 0.5, base_color: rose, ..glass(0.6, 1.8) }),
-        ("prism", MaterialParams { dispersion: 2.0, ..glass(0.35, 1.7) }),
+        (
+            "half frosted",
+            MetallicRoughness { transmission: 0.5, base_color: rose, ..glass(0.6, 1.8) },
+        ),
+        ("prism", MetallicRoughness { dispersion: 2.0, ..glass(0.35, 1.7) }),
         (
             "leaf",
-            MaterialParams {
+            MetallicRoughness {
                 diffuse_transmission: 0.6,
                 diffuse_transmission_color: gold,
                 base_color: rose,
@@ -63,18 +67,18 @@ fn materials() -> Vec<(&'static str, MaterialParams)> {
         ),
         (
             "velvet",
-            MaterialParams {
+            MetallicRoughness {
                 sheen_color: Vec3::new(0.9, 0.6, 1.0),
                 sheen_roughness: 0.4,
                 ..plastic(0.8, 1.5)
             },
         ),
-        ("rough varnish", MaterialParams { clearcoat_roughness: 0.4, ..varnish }),
+        ("rough varnish", MetallicRoughness { clearcoat_roughness: 0.4, ..varnish }),
         ("varnish", varnish),
-        ("soap", MaterialParams { iridescence: 1.0, ..plastic(0.4, 1.5) }),
+        ("soap", MetallicRoughness { iridescence: 1.0, ..plastic(0.4, 1.5) }),
         (
             "anodized",
-            MaterialParams {
+            MetallicRoughness {
                 iridescence: 0.8,
                 iridescence_ior: 1.8,
                 iridescence_thickness: 300.0,
@@ -84,7 +88,7 @@ fn materials() -> Vec<(&'static str, MaterialParams)> {
         ),
         (
             "colored specular",
-            MaterialParams {
+            MetallicRoughness {
                 specular: 0.7,
                 specular_color: Vec3::new(3.0, 1.0, 0.2),
                 ..plastic(0.5, 1.5)
@@ -92,7 +96,7 @@ fn materials() -> Vec<(&'static str, MaterialParams)> {
         ),
         (
             "everything",
-            MaterialParams {
+            MetallicRoughness {
                 metallic: 0.3,
                 transmission: 0.4,
                 clearcoat: 0.7,
@@ -181,7 +185,7 @@ fn delta_lobes(bsdf: &Bsdf, wo: DVec3) -> [Vec3; 2] {
 }
 
 /// Returns the light that is reflected and transmitted to `wo` in a white world, by integration.
-fn furnace(params: &MaterialParams, wo: DVec3, steps: usize) -> [Vec3; 2] {
+fn furnace(params: &MetallicRoughness, wo: DVec3, steps: usize) -> [Vec3; 2] {
     let bsdf = Bsdf::new(params, 1.0);
     let index = f64::from(params.ior.max(1.0));
     let eta = match params.is_thin {

@@ -4,7 +4,7 @@ use super::*;
 
 /// Asserts that f is the same both ways, as far as f32 tells, where the index of refraction is `index`
 /// within.
-fn assert_reciprocal(name: &str, params: &MaterialParams, sides: [f64; 2]) {
+fn assert_reciprocal(name: &str, params: &MetallicRoughness, sides: [f64; 2]) {
     let bsdf = Bsdf::new(params, 1.0);
     let mut random = Random(17);
     let mut count = 0;
@@ -42,7 +42,7 @@ fn reflection_is_the_same_both_ways() {
 
 #[test]
 fn transmission_is_the_same_both_ways_but_for_the_squares_of_the_indices() {
-    let is_of_one_index = |params: &MaterialParams| {
+    let is_of_one_index = |params: &MetallicRoughness| {
         // Each colour of a dispersive boundary has its own, and diffuse transmission has none.
         params.dispersion == 0.0 && (params.is_thin || params.diffuse_transmission == 0.0)
     };

@@ -20,11 +20,11 @@ fn color(random: &mut Random) -> Vec3 {
     }
 }
 
-fn material(random: &mut Random) -> MaterialParams {
+fn material(random: &mut Random) -> MetallicRoughness {
     // Most factors are 0, so that each is often alone.
     let rare = |random: &mut Random| if random.next() < 0.6 { 0.0 } else { number(random) };
     let iors = [0.0, 1.0, 1.5, 1.000_001, 50.0, 1.0 + 2.0 * random.next() as f32];
-    MaterialParams {
+    MetallicRoughness {
         base_color: color(random),
         metallic: number(random),
         roughness: number(random),
@@ -96,14 +96,14 @@ fn nothing_is_negative_or_not_finite() {
 
 #[test]
 fn parameters_out_of_range_count_as_the_nearest_in_range() {
-    let wild = MaterialParams {
+    let wild = MetallicRoughness {
         base_color: Vec3::new(-1.0, 2.0, f32::NAN),
         metallic: -3.0,
         roughness: f32::INFINITY,
         ior: 0.3,
         ..Default::default()
     };
-    let tame = MaterialParams {
+    let tame = MetallicRoughness {
         base_color: Vec3::new(0.0, 1.0, 1.0),
         metallic: 0.0,
         roughness: 1.0,

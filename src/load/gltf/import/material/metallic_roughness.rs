@@ -1,12 +1,15 @@
 //! Metallic-roughness materials: the core's, with KHR_materials_ior, _specular, _transmission and
-//! _volume.
+//! _volume, and with the extensions that only physically based shading shows.
 
 use glam::Vec3;
 use gltf::json::extensions::material::Volume;
 
+use super::layers;
 use super::reader::{MaterialReader, clamped};
 use crate::error::Result;
-use crate::scene::{Material, MetallicRoughness, MetallicRoughnessMaps, TextureId, mirror_share};
+use crate::scene::{
+    Material, MetallicRoughness, MetallicRoughnessMaps, ShadingModel, TextureId, mirror_share,
+};
 
 /// The index of refraction of materials that name none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -20,15 +23,14 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
     let base = reader
         .color_texture(pbr.base_color_texture.as_ref(), format_args!("{key}.baseColorTexture"))?;
     let factors = MetallicRoughness {
-        base: base_color(reader),
+        base_color: base_color(reader),
         metallic: clamped(pbr.metallic_factor.0),
         roughness: clamped(pbr.roughness_factor.0),
-        specular: 1.0,
-        specular_color: Vec3::ONE,
-        transmission: 0.0,
         ior: ior(reader),
+        ..MetallicRoughness::default()
     };
-    let mut maps = MetallicRoughnessMaps { base, ..MetallicRoughnessMaps::new(factors) };
+    let mut maps =
+        MetallicRoughnessMaps { base_color: base, ..MetallicRoughnessMaps::new(factors) };
 
     // Roughness is in the green channel, and metalness in the blue; a factor of 0 leaves nothing of
     // the map.
@@ -39,11 +41,15 @@ pub fn read(reader: &mut MaterialReader, material: &mut Material) -> Result<Opti
 
     // The extensions change the factors and add maps.
     specular(reader, &mut maps)?;
-    transmission(reader, &mut maps)?;
-    material.set_metallic_roughness(maps);
-    if material.may_transmit() {
-        volume(reader, material);
+    transmission(reader, material.shading, &mut maps)?;
+    if material.shading == ShadingModel::Pbr {
+        material.clearcoat_normal_map = layers::read(reader, &mut maps)?;
     }
+    // Behind a surface that transmits light is a medium, or nothing.
+    if maps.may_transmit() {
+        volume(reader, &mut maps.factors, material);
+    }
+    material.set_metallic_roughness(maps);
     Ok(base)
 }
 
@@ -79,7 +85,11 @@ fn specular(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Re
 }
 
 /// Sets the parameters of KHR_materials_transmission.
-fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -> Result<()> {
+fn transmission(
+    reader: &mut MaterialReader,
+    shading: ShadingModel,
+    maps: &mut MetallicRoughnessMaps,
+) -> Result<()> {
     let Some(source) = reader.extensions.and_then(|e| e.transmission.as_ref()) else {
         return Ok(());
     };
@@ -90,7 +100,8 @@ fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -
     let key = "extensions.KHR_materials_transmission.transmissionTexture";
     maps.transmission = reader.channel(source.transmission_texture.as_ref(), 0, key)?;
     // The light that such a rough surface transmits is too blurred to be drawn sharp.
-    if mirror_share(maps.factors.roughness) == 0.0 && maps.factors.metallic < 1.0 {
+    let is_sharp = mirror_share(maps.factors.roughness) > 0.0;
+    if shading == ShadingModel::Phong && !is_sharp && maps.factors.metallic < 1.0 {
         reader.report_unsupported(if maps.roughness.is_none() {
             "{} frosted materials are drawn clear"
         } else {
@@ -102,12 +113,13 @@ fn transmission(reader: &mut MaterialReader, maps: &mut MetallicRoughnessMaps) -
 
 /// Sets what is behind the surface of a material that transmits light: the medium of
 /// KHR_materials_volume, or nothing.
-fn volume(reader: &MaterialReader, material: &mut Material) {
+fn volume(reader: &MaterialReader, factors: &mut MetallicRoughness, material: &mut Material) {
     let absorption = reader.extensions.and_then(|e| e.volume.as_ref()).and_then(absorption);
     // A surface without a volume behind it is a thin sheet, which does not refract.
     material.thin = absorption.is_none();
+    factors.is_thin = material.thin;
     material.absorption = absorption.unwrap_or_default();
-    material.ior = f64::from(material.metallic.as_ref().map_or(DEFAULT_IOR, |m| m.factors.ior));
+    material.ior = f64::from(factors.ior);
 }
 
 /// Returns the absorption of a volume per unit of length, −ln(attenuationColor) /

@@ -1,5 +1,6 @@
-//! glTF's materials as Lambert and Phong materials, as docs/formats.md explains.
+//! glTF's materials, physically based or as Lambert and Phong materials, as docs/formats.md explains.
 
+mod layers;
 mod metallic_roughness;
 mod reader;
 
@@ -20,7 +21,7 @@ use crate::load::diagnostics::Diagnostics;
 use crate::load::gltf::json::lookup;
 use crate::scene::{
     AlphaMode, Channel, Coverage, Material, MaterialId, NormalMap, OcclusionMap, Scene,
-    ShininessMap, TextureId, Transfer, shininess,
+    ShadingModel, ShininessMap, TextureId, Transfer, shininess,
 };
 
 /// The materials of a file, each imported when a primitive first uses it.
@@ -30,14 +31,21 @@ pub struct Materials<'a> {
     pub textures: Textures<'a>,
     /// True if all are the default material, whatever the file says.
     pub geometry_only: bool,
+    /// The shading model of metallic-roughness materials.
+    pub shading: ShadingModel,
     /// The materials so far, each with the vertex attributes that it needs.
     imported: HashMap<Option<usize>, (MaterialId, NeededAttributes)>,
 }
 
 impl<'a> Materials<'a> {
     /// The materials of a file, of which none is imported.
-    pub fn new(root: &'a json::Root, textures: Textures<'a>, geometry_only: bool) -> Self {
-        Self { root, textures, geometry_only, imported: HashMap::new() }
+    pub fn new(
+        root: &'a json::Root,
+        textures: Textures<'a>,
+        geometry_only: bool,
+        shading: ShadingModel,
+    ) -> Self {
+        Self { root, textures, geometry_only, shading, imported: HashMap::new() }
     }
 
     /// Returns the material with an index, or that of primitives that name none, and the vertex
@@ -76,7 +84,7 @@ impl<'a> Materials<'a> {
                     scene,
                     diagnostics,
                 };
-                (read(&mut reader)?, reader.needed)
+                (read(&mut reader, self.shading)?, reader.needed)
             }
         };
         // All primitives of the material share its id.
@@ -86,8 +94,8 @@ impl<'a> Materials<'a> {
     }
 }
 
-/// Reads a material.
-fn read(reader: &mut MaterialReader) -> Result<Material> {
+/// Reads a material; a metallic-roughness one gets this shading model.
+fn read(reader: &mut MaterialReader, shading: ShadingModel) -> Result<Material> {
     let MaterialReader { source, extensions, .. } = *reader;
     let mut material =
         Material { name: source.name.clone().unwrap_or_default(), ..Material::default() };
@@ -96,7 +104,10 @@ fn read(reader: &mut MaterialReader) -> Result<Material> {
     let glossy = extensions.and_then(|e| e.pbr_specular_glossiness.as_ref());
     let base_map = match glossy {
         Some(glossy) => specular_glossiness(reader, glossy, &mut material)?,
-        None => metallic_roughness::read(reader, &mut material)?,
+        None => {
+            material.shading = shading;
+            metallic_roughness::read(reader, &mut material)?
+        }
     };
 
     // An unlit material shows its base colour as it is.
@@ -159,6 +170,8 @@ fn emission_and_relief(reader: &mut MaterialReader, material: &mut Material) -> 
     let strength = extension.map_or(1.0, |e| e.emissive_strength.0);
     material.emission =
         reader.color(source.emissive_factor.0.map(|f| f * strength), "emissiveFactor");
+    // What is brighter than white is meant to be a light.
+    material.illuminates = strength > 1.0 && material.emission != Vec3::ZERO;
     let info = source.emissive_texture.as_ref().filter(|_| material.emission != Vec3::ZERO);
     material.emission_map = reader.color_texture(info, "emissiveTexture")?;
 

@@ -8,9 +8,9 @@ use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::{Forms, value_schema};
-use crate::scene::Shadow;
 use crate::scene::animation::MAX_FRAMES;
-use crate::scene::check::{MAX_DEPTH, MAX_SPP};
+use crate::scene::check::{MAX_DEPTH, MAX_OCCLUSION_RAYS, MAX_SPP};
+use crate::scene::{MAX_LIGHT_SAMPLES, Shadow};
 
 /// Defines a type of whole number: its name in messages, the numbers that it holds, and its schema.
 macro_rules! whole {
@@ -38,6 +38,14 @@ whole!(
     /// A number of samples per pixel.
     Samples(u32), "a whole number from 1 to 65536", 1..=MAX_SPP,
     { "type": "integer", "minimum": 1, "maximum": 65536 });
+whole!(
+    /// A number of samples of a light.
+    LightSamples(u32), "a whole number from 1 to 1024", 1..=MAX_LIGHT_SAMPLES,
+    { "type": "integer", "minimum": 1, "maximum": 1024 });
+whole!(
+    /// A number of rays of ambient occlusion.
+    OcclusionRays(u32), "a whole number from 0 to 1024", 0..=MAX_OCCLUSION_RAYS,
+    { "type": "integer", "minimum": 0, "maximum": 1024 });
 whole!(
     /// A number of frames.
     FrameCount(u32), "a whole number from 1 to 1000000", 1..=MAX_FRAMES,

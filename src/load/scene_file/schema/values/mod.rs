@@ -13,8 +13,11 @@ use serde::{Deserialize, Deserializer};
 
 use crate::scene::animation::MAX_FPS;
 use crate::scene::check::MAX_COORDINATE;
-pub use integers::{Depth, FrameCount, Priority, SampleRange, Samples, ShadowKind, Size};
-pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Triple, normalize};
+pub use integers::{
+    Depth, FrameCount, LightSamples, OcclusionRays, Priority, SampleRange, Samples, ShadowKind,
+    Size,
+};
+pub use vectors::{Direction, Point, PointOrName, Rotation, Scale, Sides, Triple, normalize};
 
 /// Implements the JSON Schema of a type of value.
 macro_rules! value_schema {
@@ -77,11 +80,20 @@ number!(
     HalfAngle, "an angle in degrees, from 0 to 90", |x| (0.0..=90.0).contains(&x),
     { "type": "number", "minimum": 0, "maximum": 90 });
 number!(
+    /// The angular diameter of a sun, in degrees.
+    SunAngle, "an angle in degrees, from 0.0001 to 180, or 0",
+    |x| x == 0.0 || (1e-4..=180.0).contains(&x),
+    { "type": "number", "minimum": 0, "maximum": 180 });
+number!(
     /// A factor of a scale.
     Factor, "a number other than 0 (at least 1e-15 and at most 1e15 in size)",
     |x| (1e-15..=1e15).contains(&x.abs()),
     { "type": "number", "not": { "const": 0 } });
 
+number!(
+    /// The turbidity of a sky.
+    Turbidity, "a turbidity from 1.7 to 10", |x| (1.7..=10.0).contains(&x),
+    { "type": "number", "minimum": 1.7, "maximum": 10 });
 number!(
     /// An index of refraction.
     Index, "an index of refraction from 0.01 to 100", |x| (0.01..=100.0).contains(&x),

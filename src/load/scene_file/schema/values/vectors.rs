@@ -7,7 +7,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
 
-use super::{Amount, Coordinate, Factor, Forms, Number, value_schema};
+use super::{Amount, Coordinate, Factor, Forms, Length, Number, value_schema};
 
 /// A position, or a displacement, in world space.
 #[derive(Clone, Copy, Debug, JsonSchema)]
@@ -80,6 +80,19 @@ value_schema!(Scale, { "anyOf": [
         "items": { "type": "number", "not": { "const": 0 } },
     },
 ] });
+
+/// The lengths of the two sides of a rectangle.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[schemars(with = "[Length; 2]", description = "")]
+pub struct Sides(pub [f64; 2]);
+
+impl<'de> Deserialize<'de> for Sides {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let sides: [Length; 2] =
+            deserializer.deserialize_any(Forms::list("two lengths, width and height"))?;
+        Ok(Self(sides.map(|side| side.0)))
+    }
+}
 
 /// A number for each of red, green and blue, or one for all.
 #[derive(Clone, Copy, Debug)]

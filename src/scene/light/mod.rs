@@ -1,8 +1,17 @@
-//! The lights, and the light that arrives from them at a point.
+//! The lights: points, suns, spots, ambient light, and lights with an extent.
+
+mod extent;
+mod incident;
 
 use glam::{DAffine3, DVec3, Vec3};
 use schemars::JsonSchema;
 use serde::Deserialize;
+
+pub use extent::{LightSample, MAX_LIGHT_SAMPLES, MIN_SUN_ANGLE};
+pub use incident::IncidentLight;
+
+/// The number of samples of a light with an extent, where nothing else is said.
+pub(crate) const DEFAULT_LIGHT_SAMPLES: u32 = 16;
 
 /// The falloff of a point light or spot with distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
@@ -26,6 +35,9 @@ pub enum LightKind {
     Directional {
         /// The direction in which the light travels, of length 1.
         direction: DVec3,
+        /// The angle from one edge of the sun to the other, in radians: 0 for a point, or in
+        /// \[1e-6, π\].
+        angle: f64,
     },
     /// Light from a point in all directions.
     Point {
@@ -51,6 +63,31 @@ pub enum LightKind {
         /// The half-angle beyond which there is no light, in radians, in (inner, π/2\].
         outer_angle: f64,
     },
+    /// A rectangle that emits light from its front, toward `u` × `v`.
+    Rectangle {
+        /// The centre, in world space.
+        center: DVec3,
+        /// Half of one side, from the centre; not 0.
+        u: DVec3,
+        /// Half of the other side, perpendicular to `u`; not 0.
+        v: DVec3,
+    },
+    /// A disk that emits light from its front.
+    Disk {
+        /// The centre, in world space.
+        center: DVec3,
+        /// The normal, of length 1, toward the side that emits.
+        normal: DVec3,
+        /// The radius, above 0.
+        radius: f64,
+    },
+    /// A sphere that emits light outward.
+    Sphere {
+        /// The centre, in world space.
+        center: DVec3,
+        /// The radius, above 0.
+        radius: f64,
+    },
 }
 
 /// The shadows that a light casts.
@@ -75,21 +112,14 @@ pub struct Light {
     /// The kind, with position and direction.
     pub kind: LightKind,
     /// The colour times the intensity, linear Rec. 709: what a white diffuse surface that faces the
-    /// light reflects (at distance 1 with `inverse_square`).
+    /// light reflects (at distance 1 with `inverse_square`). Of a rectangle, a disk or a sphere it is the
+    /// radiance that the light emits.
     pub intensity: Vec3,
     /// The shadows that it casts.
     pub shadow: Shadow,
-}
-
-/// The light that arrives at a point, before it is known whether it is blocked.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IncidentLight {
-    /// The vector from the point to the light or, for a directional light, toward it.
-    pub toward: DVec3,
-    /// True if the light is at the end of `toward`, where shadow rays end.
-    pub is_bounded: bool,
-    /// The intensity that arrives, with falloff and cone applied.
-    pub intensity: Vec3,
+    /// The number of samples that stand for the light if it has an extent, from 1 to
+    /// [`MAX_LIGHT_SAMPLES`]; other lights have no use for it.
+    pub samples: u32,
 }
 
 /// White lights of intensity 1 with tinted shadows.
@@ -105,6 +135,12 @@ pub struct IncidentLight {
 /// assert_eq!(lamp.incident(DVec3::ZERO).unwrap().intensity, Vec3::splat(2.0));
 /// let sun = Light::sun(DVec3::new(1.0, -2.0, 0.5)).with_shadow(Shadow::Opaque);
 /// assert!(!sun.is_bounded());
+///
+/// // Lights with an extent cast soft shadows; what they have for intensity is radiance.
+/// let panel = Light::rectangle(DVec3::Y * 3.0, DVec3::X, DVec3::Z * 0.5).with_samples(64);
+/// let spotlight = Light::disk(DVec3::Y * 3.0, DVec3::NEG_Y, 0.5);
+/// let (bulb, real_sun) = (Light::sphere(DVec3::Y, 0.1), sun.with_angle(0.53f64.to_radians()));
+/// assert!([panel, spotlight, bulb, real_sun].iter().all(Light::has_extent));
 /// ```
 impl Light {
     /// An ambient light of this intensity.
@@ -114,7 +150,7 @@ impl Light {
 
     /// A directional light that travels in `direction`, of any length but zero.
     pub fn sun(direction: DVec3) -> Self {
-        Self::new(LightKind::Directional { direction: direction.normalize() })
+        Self::new(LightKind::Directional { direction: direction.normalize(), angle: 0.0 })
     }
 
     /// A point light without falloff and with infinite range.
@@ -130,9 +166,26 @@ impl Light {
         Self::new(LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle })
     }
 
-    /// A white light of intensity 1 with tinted shadows.
+    /// A rectangle with half-sides `u` and `v`, which are perpendicular and of any length but zero; it
+    /// emits light toward `u` × `v`.
+    pub fn rectangle(center: DVec3, u: DVec3, v: DVec3) -> Self {
+        Self::new(LightKind::Rectangle { center, u, v })
+    }
+
+    /// A disk that emits light toward `normal`, of any length but zero.
+    pub fn disk(center: DVec3, normal: DVec3, radius: f64) -> Self {
+        Self::new(LightKind::Disk { center, normal: normal.normalize(), radius })
+    }
+
+    /// A sphere that emits light.
+    pub fn sphere(center: DVec3, radius: f64) -> Self {
+        Self::new(LightKind::Sphere { center, radius })
+    }
+
+    /// A white light of intensity 1 with tinted shadows, and with 16 samples if it has an extent.
     pub fn new(kind: LightKind) -> Self {
-        Self { name: String::new(), kind, intensity: Vec3::ONE, shadow: Shadow::default() }
+        let (name, shadow) = (String::new(), Shadow::default());
+        Self { name, kind, intensity: Vec3::ONE, shadow, samples: DEFAULT_LIGHT_SAMPLES }
     }
 
     /// Sets the intensity, linear Rec. 709.
@@ -162,6 +215,21 @@ impl Light {
         self
     }
 
+    /// Sets the angular diameter of a directional light, in radians; other lights have none.
+    #[must_use]
+    pub fn with_angle(mut self, new: f64) -> Self {
+        if let LightKind::Directional { angle, .. } = &mut self.kind {
+            *angle = new;
+        }
+        self
+    }
+
+    /// Sets the number of samples that stand for a light with an extent.
+    #[must_use]
+    pub fn with_samples(self, samples: u32) -> Self {
+        Self { samples, ..self }
+    }
+
     /// True if it casts shadows; ambient light has no direction in which anything could block it.
     pub fn casts_shadow(&self) -> bool {
         self.shadow != Shadow::None && self.kind != LightKind::Ambient
@@ -170,7 +238,13 @@ impl Light {
     /// True if it has a position, rather than being infinitely far away or ambient.
     #[inline]
     pub fn is_bounded(&self) -> bool {
-        matches!(self.kind, LightKind::Point { .. } | LightKind::Spot { .. })
+        !matches!(self.kind, LightKind::Ambient | LightKind::Directional { .. })
+    }
+
+    /// The position, if it has one: the centre of a light with an extent.
+    pub fn position(&self) -> Option<DVec3> {
+        let mut kind = self.kind;
+        kind.position_mut().map(|position| *position)
     }
 
     /// True if the same intensity arrives from it at all points: a point light without falloff and
@@ -180,68 +254,44 @@ impl Light {
         matches!(self.kind, LightKind::Point { falloff: Falloff::None, range: f64::INFINITY, .. })
     }
 
-    /// The light with its position and direction transformed. Intensity and range do not scale, as
-    /// in KHR_lights_punctual.
+    /// The light with its position and directions transformed. Intensity, range and size do not scale,
+    /// as in KHR_lights_punctual.
     pub fn transformed(&self, transform: &DAffine3) -> Self {
         let turned = |v: DVec3| transform.transform_vector3(v).normalize();
         let mut light = self.clone();
         let kind = &mut light.kind;
-        if let LightKind::Point { position, .. } | LightKind::Spot { position, .. } = kind {
+        if let Some(position) = kind.position_mut() {
             *position = transform.transform_point3(*position);
         }
-        if let LightKind::Directional { direction } | LightKind::Spot { direction, .. } = kind {
-            *direction = turned(*direction);
+        match kind {
+            LightKind::Directional { direction, .. }
+            | LightKind::Spot { direction, .. }
+            | LightKind::Disk { normal: direction, .. } => *direction = turned(*direction),
+            LightKind::Rectangle { u, v, .. } => {
+                // The front stays the front, also in a mirror.
+                let normal = turned(u.cross(*v));
+                let (u_length, v_length) = (u.length(), v.length());
+                let across = turned(*u);
+                let across = (across - normal * across.dot(normal)).normalize();
+                (*u, *v) = (across * u_length, normal.cross(across) * v_length);
+            }
+            LightKind::Ambient | LightKind::Point { .. } | LightKind::Sphere { .. } => {}
         }
         light
     }
+}
 
-    /// The light that arrives at `point` if nothing blocks it; `None` when no light does, and for
-    /// ambient light, which has no direction.
-    pub fn incident(&self, point: DVec3) -> Option<IncidentLight> {
-        let (position, falloff, range) = match self.kind {
-            LightKind::Ambient => return None,
-            LightKind::Directional { direction } => {
-                let (toward, intensity) = (-direction, self.intensity);
-                return Some(IncidentLight { toward, is_bounded: false, intensity });
-            }
-            LightKind::Point { position, falloff, range }
-            | LightKind::Spot { position, falloff, range, .. } => (position, falloff, range),
-        };
-        // The way to a light with a position; at that position itself no light arrives.
-        let toward = position - point;
-        let distance_squared = toward.length_squared();
-        if distance_squared == 0.0 {
-            return None;
+impl LightKind {
+    /// The position, mutable, of a light that has one.
+    pub(crate) fn position_mut(&mut self) -> Option<&mut DVec3> {
+        match self {
+            Self::Ambient | Self::Directional { .. } => None,
+            Self::Point { position, .. } | Self::Spot { position, .. } => Some(position),
+            Self::Rectangle { center, .. }
+            | Self::Disk { center, .. }
+            | Self::Sphere { center, .. } => Some(center),
         }
-
-        // The share that falloff, range and cone leave.
-        let mut share = match falloff {
-            Falloff::None => 1.0,
-            Falloff::InverseSquare => 1.0 / distance_squared,
-        };
-        share *= range_attenuation(distance_squared, range);
-        if let LightKind::Spot { direction, inner_angle, outer_angle, .. } = self.kind {
-            let cosine = -direction.dot(toward) / distance_squared.sqrt();
-            share *= cone_attenuation(cosine, inner_angle, outer_angle);
-        }
-        let intensity = self.intensity * share as f32;
-        (share > 0.0).then_some(IncidentLight { toward, is_bounded: true, intensity })
     }
-}
-
-/// The attenuation toward `range`, where it is 0: max(min(1 − (d/range)⁴, 1), 0), as
-/// KHR_lights_punctual recommends.
-fn range_attenuation(distance_squared: f64, range: f64) -> f64 {
-    let ratio = distance_squared / (range * range);
-    (1.0 - ratio * ratio).clamp(0.0, 1.0)
-}
-
-/// The attenuation from 1 within the inner angle to 0 beyond the outer one: the square of a ramp over
-/// the cosine, as KHR_lights_punctual recommends.
-fn cone_attenuation(cosine: f64, inner_angle: f64, outer_angle: f64) -> f64 {
-    let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
-    let ramp = ((cosine - outer) / (inner - outer).max(1e-9)).clamp(0.0, 1.0);
-    ramp * ramp
 }
 
 #[cfg(test)]
@@ -254,6 +304,7 @@ mod tests {
             kind: LightKind::Point { position: DVec3::ZERO, falloff, range },
             intensity: Vec3::splat(8.0),
             shadow: Shadow::default(),
+            samples: 16,
         }
     }
 
@@ -264,6 +315,7 @@ mod tests {
             kind,
             intensity: Vec3::ONE,
             shadow: Shadow::Tinted,
+            samples: 16,
         };
         let (position, direction) = (DVec3::new(1.0, 2.0, 3.0), DVec3::NEG_Y);
         let (falloff, range) = (Falloff::None, f64::INFINITY);
@@ -271,7 +323,10 @@ mod tests {
         let spot =
             LightKind::Spot { position, direction, falloff, range, inner_angle, outer_angle };
         assert_eq!(Light::ambient(Vec3::ONE), white(LightKind::Ambient));
-        assert_eq!(Light::sun(direction * 4.0), white(LightKind::Directional { direction }));
+        assert_eq!(
+            Light::sun(direction * 4.0),
+            white(LightKind::Directional { direction, angle: 0.0 })
+        );
         assert_eq!(Light::point(position), white(LightKind::Point { position, falloff, range }));
         assert_eq!(Light::spot(position, direction * 4.0, 0.1, 0.2), white(spot));
     }
@@ -295,43 +350,18 @@ mod tests {
     }
 
     #[test]
-    fn inverse_square_at_distance_two_is_a_quarter() {
-        let light = point_light(Falloff::InverseSquare, f64::INFINITY);
-        assert_eq!(light.incident(DVec3::X * 2.0).unwrap().intensity, Vec3::splat(2.0));
-    }
-
-    #[test]
-    fn no_falloff_at_any_distance() {
-        let light = point_light(Falloff::None, f64::INFINITY);
-        assert_eq!(light.incident(DVec3::X * 2e6).unwrap().intensity, Vec3::splat(8.0));
-    }
-
-    #[test]
-    fn nothing_arrives_beyond_the_range() {
-        assert_eq!(point_light(Falloff::None, 3.0).incident(DVec3::X * 3.5), None);
-    }
-
-    #[test]
-    fn nothing_arrives_at_the_light_itself() {
-        assert_eq!(point_light(Falloff::InverseSquare, 3.0).incident(DVec3::ZERO), None);
-    }
-
-    #[test]
-    fn spot_is_whole_inside_and_dark_outside_its_cone() {
-        let spot = Light {
-            kind: LightKind::Spot {
-                position: DVec3::ZERO,
-                direction: DVec3::Z,
-                falloff: Falloff::None,
-                range: f64::INFINITY,
-                inner_angle: 0.1,
-                outer_angle: 0.2,
-            },
-            ..point_light(Falloff::None, f64::INFINITY)
-        };
-        let at = |angle: f64| DVec3::new(angle.sin(), 0.0, angle.cos()) * 5.0;
-        assert_eq!(spot.incident(at(0.09)).unwrap().intensity, Vec3::splat(8.0));
-        assert!(spot.incident(at(0.15)).unwrap().intensity.x < 8.0);
-        assert_eq!(spot.incident(at(0.21)), None);
+    fn a_rectangle_keeps_its_size_and_its_front_when_it_is_moved_or_mirrored() {
+        let light = Light::rectangle(DVec3::X, DVec3::X * 2.0, DVec3::Y * 0.5);
+        let turn = DAffine3::from_rotation_x(0.7);
+        let mirror = DAffine3::from_scale(DVec3::new(-3.0, 1.0, 1.0));
+        for transform in [turn, mirror, turn * mirror] {
+            let LightKind::Rectangle { center, u, v } = light.transformed(&transform).kind else {
+                panic!("a rectangle");
+            };
+            assert!((center - transform.transform_point3(DVec3::X)).length() < 1e-15);
+            assert!((u.length() - 2.0).abs() < 1e-15 && (v.length() - 0.5).abs() < 1e-15);
+            let normal = transform.transform_vector3(DVec3::Z).normalize();
+            assert!((u.cross(v) - normal).length() < 1e-14);
+        }
     }
 }

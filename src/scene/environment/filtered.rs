@@ -1,0 +1,379 @@
+//! An environment filtered for surfaces that blur it: its irradiance by normal, and its reflections by
+//! direction and roughness.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::cube_map::{self, CubeMap};
+use super::lookup;
+use crate::scene::{Image, Transfer};
+
+/// The number of texels along a face of the map of irradiance, and of the cells whose light it sums.
+const IRRADIANCE_SIZE: usize = 16;
+
+/// The number of filtered reflections: those of the roughnesses 1/10, 2/10, …, 1.
+const LEVELS: usize = 10;
+
+/// The number of samples of a filtered reflection.
+const SAMPLES: usize = 64;
+
+/// The greatest number of texels along a face of the finest map.
+const MAX_SIZE: usize = 128;
+
+/// The least numbers of rows and columns that are visited: pixels of smaller maps are visited several times.
+const MIN_ROWS: usize = 64;
+const MIN_COLUMNS: usize = 128;
+
+/// The number of parts into which a map is divided: not that of the threads, so that sums have one order.
+const PARTS: usize = 8;
+
+/// An environment filtered for diffuse and rough reflections, in the axes of its map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilteredEnvironment {
+    /// The irradiance of a surface divided by π, by its normal: what a white diffuse surface reflects.
+    irradiance: CubeMap,
+    /// The mean of the radiance that microfacets of each roughness reflect, by the mirrored direction.
+    levels: Vec<CubeMap>,
+    mean: Vec3,
+}
+
+impl FilteredEnvironment {
+    /// Filters a map, on all threads of the current pool.
+    pub(super) fn new(map: &Image, transfer: Transfer) -> Self {
+        let Light { cells, texels, size } = Light::collect(map, transfer);
+        let sum: DVec3 = cells.iter().map(|cell| cell.sum.as_dvec3()).sum();
+        let pyramid = pyramid(texels, size);
+        Self {
+            irradiance: irradiance(&cells),
+            levels: (1..=LEVELS).map(|level| reflection(level, size, &pyramid)).collect(),
+            mean: (sum / (4.0 * std::f64::consts::PI)).as_vec3(),
+        }
+    }
+
+    /// Returns the irradiance of a surface with this normal divided by π: what it reflects if it is white and
+    /// diffuse.
+    #[inline]
+    pub fn diffuse(&self, normal: Vec3) -> Vec3 {
+        self.irradiance.lookup(normal)
+    }
+
+    /// Returns the mean of the radiance around a mirrored direction that microfacets of this roughness, at
+    /// least 1/10, reflect: the first of the two sums of Karis (*Real Shading in Unreal Engine 4*, 2013), for
+    /// which the surface is seen head-on.
+    #[inline]
+    pub fn reflection(&self, direction: Vec3, roughness: f32) -> Vec3 {
+        let place = (roughness * LEVELS as f32 - 1.0).clamp(0.0, (LEVELS - 1) as f32);
+        let level = (place as usize).min(LEVELS - 2);
+        let fraction = place - level as f32;
+        if fraction == 1.0 {
+            return self.levels[level + 1].lookup(direction);
+        }
+        let near = self.levels[level].lookup(direction);
+        near.lerp(self.levels[level + 1].lookup(direction), fraction)
+    }
+
+    /// Returns the mean radiance over all directions.
+    pub(super) fn mean(&self) -> Vec3 {
+        self.mean
+    }
+}
+
+/// The roughness of the sharpest filtered reflection.
+pub const SHARPEST_REFLECTION: f32 = 1.0 / LEVELS as f32;
+
+/// The light of a map, by directions.
+struct Light {
+    /// The cells of directions, `IRRADIANCE_SIZE` along a face.
+    cells: Vec<Cell>,
+    /// The mean radiance in each texel of a cube map, and its solid angle.
+    texels: Vec<(Vec3, f32)>,
+    /// The number of these texels along a face.
+    size: usize,
+}
+
+/// The light from a cell of directions.
+#[derive(Clone, Copy, Default)]
+struct Cell {
+    /// The integral of radiance over the cell.
+    sum: Vec3,
+    /// The same of radiance times direction, for red, green and blue: the irradiance of a surface that sees
+    /// the whole cell is the product with its normal.
+    vectors: [Vec3; 3],
+}
+
+impl Light {
+    /// Adds up the pixels of a map by where they are seen.
+    fn collect(map: &Image, transfer: Transfer) -> Self {
+        let (width, height) = (map.width as usize, map.height as usize);
+        // Small maps are visited at several places of each pixel.
+        let columns = width * MIN_COLUMNS.div_ceil(width);
+        let rows = height * MIN_ROWS.div_ceil(height);
+        // Each texel has the centre of some pixel, or nearly each.
+        let size = (1 << (rows / 4).ilog2()).min(MAX_SIZE);
+        let azimuths: Vec<(f32, f32)> = (0..columns)
+            .map(|x| (((x as f32 + 0.5) / columns as f32 - 0.5) * TAU).sin_cos())
+            .collect();
+        let part = |part: usize| {
+            let mut cells = vec![Cell::default(); 6 * IRRADIANCE_SIZE * IRRADIANCE_SIZE];
+            let mut texels = vec![(Vec3::ZERO, 0.0f32); 6 * size * size];
+            for y in part * rows / PARTS..(part + 1) * rows / PARTS {
+                let elevation = (0.5 - (y as f32 + 0.5) / rows as f32) * PI;
+                let (sin_elevation, cos_elevation) = elevation.sin_cos();
+                // The solid angle of a pixel: exact for the band that the row is.
+                let band = 2.0 * cos_elevation * (PI / (2.0 * rows as f32)).sin();
+                let solid_angle = band * TAU / columns as f32;
+                let row = y * height / rows * width;
+                for (x, (sin_azimuth, cos_azimuth)) in azimuths.iter().enumerate() {
+                    let radiance =
+                        map.texels.linear(row + x * width / columns, transfer).truncate();
+                    let direction = Vec3::new(
+                        cos_elevation * cos_azimuth,
+                        sin_elevation,
+                        cos_elevation * sin_azimuth,
+                    );
+                    let light = radiance * solid_angle;
+                    let cell = &mut cells[cube_map::texel_of(direction, IRRADIANCE_SIZE)];
+                    cell.sum += light;
+                    for channel in 0..3 {
+                        cell.vectors[channel] += direction * light[channel];
+                    }
+                    let texel = &mut texels[cube_map::texel_of(direction, size)];
+                    texel.0 += light;
+                    texel.1 += solid_angle;
+                }
+            }
+            (cells, texels)
+        };
+        let parts: Vec<_> = (0..PARTS).into_par_iter().map(part).collect();
+
+        // The sums of the parts, in their order.
+        let mut parts = parts.into_iter();
+        let (mut cells, mut texels) = parts.next().expect("there are several parts");
+        for (more_cells, more_texels) in parts {
+            for (cell, more) in cells.iter_mut().zip(more_cells) {
+                cell.sum += more.sum;
+                (0..3).for_each(|channel| cell.vectors[channel] += more.vectors[channel]);
+            }
+            for (texel, more) in texels.iter_mut().zip(more_texels) {
+                texel.0 += more.0;
+                texel.1 += more.1;
+            }
+        }
+        // A texel that no pixel's centre is in has the radiance at its own.
+        let even = 4.0 * PI / (6 * size * size) as f32;
+        for (index, texel) in texels.iter_mut().enumerate() {
+            *texel = if texel.1 > 0.0 {
+                (texel.0 / texel.1, texel.1)
+            } else {
+                (lookup(map, transfer, cube_map::center_of(index, size)), even)
+            };
+        }
+        Self { cells, texels, size }
+    }
+}
+
+/// Returns the irradiance by normal, divided by π.
+fn irradiance(cells: &[Cell]) -> CubeMap {
+    CubeMap::from_fn(IRRADIANCE_SIZE, |normal| {
+        let mut sum = Vec3::ZERO;
+        for Cell { vectors: [r, g, b], .. } in cells {
+            sum += Vec3::new(normal.dot(*r), normal.dot(*g), normal.dot(*b)).max(Vec3::ZERO);
+        }
+        sum / PI
+    })
+}
+
+/// Returns ever coarser maps of the radiance, the finest first.
+fn pyramid(mut texels: Vec<(Vec3, f32)>, mut size: usize) -> Vec<CubeMap> {
+    let mut levels = Vec::new();
+    loop {
+        levels.push(CubeMap::from_fn(size, |d| texels[cube_map::texel_of(d, size)].0));
+        if size == 1 {
+            return levels;
+        }
+        let half = size / 2;
+        let merged = |index: usize| {
+            let (face, y, x) = (index / (half * half), index / half % half, index % half);
+            let first = (face * size + 2 * y) * size + 2 * x;
+            let four = [first, first + 1, first + size, first + size + 1];
+            let sum: f32 = four.iter().map(|&i| texels[i].1).sum();
+            let light: Vec3 = four.iter().map(|&i| texels[i].0 * texels[i].1).sum();
+            (light / sum, sum)
+        };
+        texels = (0..6 * half * half).map(merged).collect();
+        size = half;
+    }
+}
+
+/// A direction in which light is reflected, about the mirrored direction.
+struct ReflectedSample {
+    /// The direction, with the mirrored one along z.
+    direction: Vec3,
+    /// The weight.
+    weight: f32,
+    /// The level of the pyramid whose texels have half of the solid angle that the sample stands for: they are
+    /// interpolated.
+    level: f32,
+}
+
+/// Returns the reflections by microfacets of a roughness; `size` is that of the finest map of the pyramid.
+///
+/// The samples are those of the distribution of microfacets seen head-on. Each reads the level of the pyramid
+/// with texels of its size (Křivánek and Colbert, *Real-time Shading with Filtered Importance Sampling*, 2008).
+fn reflection(level: usize, size: usize, pyramid: &[CubeMap]) -> CubeMap {
+    let roughness = level as f32 / LEVELS as f32;
+    let samples = reflected_samples(roughness * roughness, size);
+    let total: f32 = samples.iter().map(|sample| sample.weight).sum();
+    // The rougher, the fewer texels show all there is.
+    let least = if roughness < 0.5 { IRRADIANCE_SIZE } else { IRRADIANCE_SIZE / 2 };
+    let own_size = (size >> (level - 1)).max(least.min(size));
+    CubeMap::from_fn(own_size, |mirrored| {
+        let (x, y) = mirrored.any_orthonormal_pair();
+        let mut sum = Vec3::ZERO;
+        for ReflectedSample { direction, weight, level } in &samples {
+            let toward = x * direction.x + y * direction.y + mirrored * direction.z;
+            sum += lookup_level(pyramid, toward, *level) * *weight;
+        }
+        sum / total
+    })
+}
+
+fn reflected_samples(alpha: f32, size: usize) -> Vec<ReflectedSample> {
+    let texel = 4.0 * PI / (6 * size * size) as f32;
+    let sample = |i: usize| {
+        // Points that are spread by the golden ratio.
+        let u = (i as f32 + 0.5) / SAMPLES as f32;
+        let phi = TAU * (i as f32 * 0.618_034).fract();
+        // The microfacet, and the direction into which it reflects what comes head-on.
+        let square = (1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u);
+        let cosine = 2.0 * square - 1.0;
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let density = {
+            let d = square * (alpha * alpha - 1.0) + 1.0;
+            alpha * alpha / (PI * d * d) / 4.0
+        };
+        let solid_angle = 1.0 / (SAMPLES as f32 * density);
+        ReflectedSample {
+            direction: Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine),
+            weight: cosine.max(0.0),
+            level: (0.5 * (solid_angle / texel).log2() - 0.5).max(0.0),
+        }
+    };
+    (0..SAMPLES).map(sample).filter(|sample| sample.weight > 0.0).collect()
+}
+
+fn lookup_level(pyramid: &[CubeMap], direction: Vec3, level: f32) -> Vec3 {
+    let first = (level as usize).min(pyramid.len() - 1);
+    let second = (first + 1).min(pyramid.len() - 1);
+    let near = pyramid[first].lookup(direction);
+    near.lerp(pyramid[second].lookup(direction), (level - first as f32).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Texels;
+    use crate::scene::environment::direction_at;
+
+    fn filtered(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> FilteredEnvironment {
+        let [width, height] = size.map(|x| x as usize);
+        let texel = |i: usize| {
+            let (x, y) = (i % width, i / width);
+            let [u, v] = [(x, width), (y, height)].map(|(x, n)| (x as f32 + 0.5) / n as f32);
+            radiance(direction_at(u, v)).extend(1.0).to_array()
+        };
+        let texels = Texels::Floats((0..width * height).map(texel).collect());
+        FilteredEnvironment::new(&Image::new("", size, texels), Transfer::Srgb)
+    }
+
+    const DIRECTIONS: [Vec3; 5] = [
+        Vec3::X,
+        Vec3::NEG_Y,
+        Vec3::new(0.6, 0.0, 0.8),
+        Vec3::new(-0.48, 0.64, 0.6),
+        Vec3::new(0.36, -0.48, -0.8),
+    ];
+
+    #[test]
+    fn an_even_environment_is_even_however_it_is_filtered() {
+        for size in [[1, 1], [7, 3], [512, 256]] {
+            let environment = filtered(size, |_| Vec3::new(1.0, 0.5, 0.25));
+            for direction in DIRECTIONS {
+                let found = [0.1, 0.25, 0.5, 1.0].map(|r| environment.reflection(direction, r));
+                for found in found.into_iter().chain([environment.diffuse(direction)]) {
+                    let ratio = found / Vec3::new(1.0, 0.5, 0.25);
+                    assert!((ratio - 1.0).abs().max_element() < 2e-3, "{size:?} {found}");
+                }
+            }
+            assert!((environment.mean().x - 1.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn irradiance_under_a_bright_half_is_that_of_the_half_that_is_seen() {
+        // The upper half of directions has radiance 1: E/π is (1 + cos θ)/2 for a normal at θ from the top.
+        let environment = filtered([1024, 512], |d| Vec3::splat(if d.y > 0.0 { 1.0 } else { 0.0 }));
+        for direction in DIRECTIONS {
+            let expected = 0.5 * (1.0 + direction.y);
+            let found = environment.diffuse(direction).x;
+            assert!((found - expected).abs() < 2e-3, "{direction}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn irradiance_of_a_small_sun_is_that_of_a_directional_light() {
+        let sun = Vec3::new(0.48, 0.6, 0.64);
+        let environment =
+            filtered([2048, 1024], |d| Vec3::splat(if d.dot(sun) > 0.9998 { 1e4 } else { 0.0 }));
+        // Its irradiance if it faces the sun: 4π times the mean.
+        let facing = environment.mean().x * 4.0;
+        for direction in DIRECTIONS {
+            let expected = direction.dot(sun).max(0.0) * facing;
+            let found = environment.diffuse(direction).x;
+            assert!((found - expected).abs() < 0.01 * facing, "{direction}: {found} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_rougher_a_reflection_the_wider_is_a_light_in_it() {
+        let environment =
+            filtered([1024, 512], |d| Vec3::splat(if d.x > 0.99 { 100.0 } else { 0.0 }));
+        let at = |roughness, angle: f32| {
+            environment.reflection(Vec3::new(angle.cos(), angle.sin(), 0.0), roughness).x
+        };
+        assert!((at(0.1, 0.0) - 100.0).abs() < 3.0, "{}", at(0.1, 0.0));
+        assert!(at(0.1, 0.5) < 0.3 && at(0.5, 0.5) > 2.0, "{} {}", at(0.1, 0.5), at(0.5, 0.5));
+        assert!(at(1.0, 0.0) < at(0.5, 0.0) && at(0.5, 0.0) < at(0.2, 0.0));
+    }
+
+    #[test]
+    fn a_filtered_reflection_is_the_integral_over_the_microfacets() {
+        let light = |d: Vec3| 1.0 + d.x + 2.0 * d.y * d.y;
+        let environment = filtered([512, 256], |d| Vec3::splat(light(d)));
+        for roughness in [0.3f32, 0.6, 1.0] {
+            let alpha = roughness * roughness;
+            for mirrored in DIRECTIONS {
+                // The integral, on a fine grid of microfacets.
+                let (x, y) = mirrored.any_orthonormal_pair();
+                let (mut sum, mut total) = (0.0, 0.0);
+                for i in 0..300 {
+                    let u = (i as f32 + 0.5) / 300.0;
+                    let square = (1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u);
+                    let cosine = 2.0 * square - 1.0;
+                    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+                    for j in 0..60 {
+                        let phi = TAU * j as f32 / 60.0;
+                        let l = x * (sine * phi.cos()) + y * (sine * phi.sin()) + mirrored * cosine;
+                        sum += light(l) * cosine.max(0.0);
+                        total += cosine.max(0.0);
+                    }
+                }
+                let found = environment.reflection(mirrored, roughness).x;
+                let expected = sum / total;
+                assert!((found / expected - 1.0).abs() < 0.03, "{roughness}: {found} {expected}");
+            }
+        }
+    }
+}
