@@ -38,9 +38,9 @@ pub(super) struct AmbientOcclusion {
 /// The light whose occlusion is found.
 #[derive(Clone, Copy, PartialEq)]
 enum Arriving {
-    /// That which arrives at diffuse surfaces, with the cosine of its angle to the normal.
+    /// Light on diffuse surfaces, with the cosine of its angle to the normal.
     Diffuse,
-    /// That which the microfacets of rough surfaces reflect.
+    /// Light that the microfacets of rough surfaces reflect.
     Reflection,
 }
 

@@ -1,6 +1,6 @@
 //! The light of the environment: what rays that hit nothing see, and what surfaces reflect of it.
 //!
-//! It has no noise. Diffuse light is the irradiance by the normal. What a rough surface reflects is the
+//! The pictures have no noise. Diffuse light is the irradiance by the normal. What a rough surface reflects is the
 //! filtered environment in the mirrored direction, times the surface's albedo (the split-sum approximation of
 //! Karis, *Real Shading in Unreal Engine 4*, 2013).
 

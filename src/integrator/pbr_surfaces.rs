@@ -41,9 +41,9 @@ pub(super) struct PbrHit {
 /// The place of the BSDF of a surface.
 #[derive(Clone, Copy)]
 pub(super) enum BsdfPlace {
-    /// That of a material without textures.
+    /// The BSDF of a material without textures.
     Material(MaterialId),
-    /// The number among those that were made for the points of the wave.
+    /// The number of the BSDF among those that were made for the points of the wave.
     Point(usize),
 }
 

@@ -65,7 +65,7 @@ pub fn decode_all<'a, T: Sync>(
 /// became 0.
 ///
 /// # Errors
-/// As for the images of [`decode_all`].
+/// When the image cannot be opened or read, is damaged or too large, or exceeds a limit, as in [`decode_all`].
 pub fn decode_one(file: OpenedFile, sandbox: &Sandbox) -> Result<(Image, u64)> {
     let prepared = prepare(Source::File(file), sandbox, true)?;
     let mut image = prepared.decode_unchecked()?;

@@ -10,6 +10,7 @@
 //! ```
 
 mod camera;
+mod environment;
 mod film;
 mod light;
 mod material;
@@ -52,6 +53,7 @@ impl Scene {
         (0..self.instances.len()).try_for_each(|i| self.check_instance(i, moved.contains(&i)))?;
         self.check_textures()?;
         check_extent(&self.bounds())?;
+        self.environment.iter().try_for_each(environment::check)?;
         self.check_lights_and_cameras()?;
         self.animation.iter().try_for_each(|animation| animation.check(self))
     }

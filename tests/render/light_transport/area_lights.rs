@@ -35,7 +35,7 @@ fn assert_converges(light: Light, expected: f64, bounds: [f64; 3]) {
     }
 }
 
-/// What a white surface at the origin, of normal y, reflects of a rectangle above it, of radiance 1:
+/// The light that a white surface at the origin, of normal y, reflects of a rectangle above it, of radiance 1:
 /// Lambert's formula for a polygon.
 fn lambert_polygon(center: DVec3, u: DVec3, v: DVec3) -> f64 {
     let corners = [center - u - v, center + u - v, center + u + v, center - u + v];
