@@ -245,8 +245,7 @@ pub fn ray_from_text(text: &str) -> std::result::Result<Ray, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Falloff, LightKind, Material, Plane, Shadow, Sphere};
-    use glam::Vec3;
+    use crate::scene::{Falloff, LightKind, Material, Plane, Sphere};
     use proptest::prelude::*;
 
     fn scene() -> Scene {
@@ -259,13 +258,7 @@ mod tests {
             falloff: Falloff::None,
             range: f64::INFINITY,
         };
-        let light = Light {
-            name: String::new(),
-            kind,
-            intensity: Vec3::ONE,
-            shadow: Shadow::default(),
-            samples: 16,
-        };
+        let light = Light::new(kind);
         scene.lights.push(light);
         scene
     }

@@ -29,13 +29,7 @@ fn sun(scene: &mut Scene, direction: DVec3) {
 }
 
 fn light(scene: &mut Scene, kind: LightKind) {
-    let light = Light {
-        name: String::new(),
-        kind,
-        intensity: Vec3::ONE,
-        shadow: Shadow::default(),
-        samples: 16,
-    };
+    let light = Light::new(kind);
     scene.lights.push(light);
 }
 

@@ -8,9 +8,9 @@ use envers::scene::animation::{
 };
 use envers::{
     Backend, Bounds, Camera, Coherence, Instance, Intersector, Light, LightKind, MaterialId, Mesh,
-    Precision, Projection, Ray, RenderOptions, Renderer, Scene, Shadow, Sphere,
+    Precision, Projection, Ray, RenderOptions, Renderer, Scene, Sphere,
 };
-use glam::{DAffine3, DVec3, Vec3};
+use glam::{DAffine3, DVec3};
 
 /// The spheres of the tutorial's scene.
 const SUN: usize = 0;
@@ -183,16 +183,10 @@ fn workshop() -> Scene {
         scene.instances.push(Instance::new(wheel, beside, material));
     }
     scene.spheres.push(Sphere::new(DVec3::new(2.0, 0.0, 0.0), 0.4, MaterialId(0)));
-    scene.lights.push(Light {
-        name: String::new(),
-        kind: LightKind::Directional {
-            direction: DVec3::new(-0.3, -1.0, -0.2).normalize(),
-            angle: 0.0,
-        },
-        intensity: Vec3::ONE,
-        shadow: Shadow::default(),
-        samples: 16,
-    });
+    scene.lights.push(Light::new(LightKind::Directional {
+        direction: DVec3::new(-0.3, -1.0, -0.2).normalize(),
+        angle: 0.0,
+    }));
     let eye = DVec3::new(0.5, 2.0, 6.0);
     scene.cameras.push(Camera::look_at(eye, DVec3::ZERO, DVec3::Y, Projection::FovY(0.8)).unwrap());
     let mut animation = Animation::new(6, 24.0);

@@ -3,7 +3,7 @@
 use envers::internals::NotFinite;
 use envers::{
     Backend, Camera, Falloff, Instance, Light, LightKind, Material, MaterialId, Mesh, Projection,
-    RenderOptions, Renderer, Scene, Shadow, Sphere,
+    RenderOptions, Renderer, Scene, Sphere,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -26,13 +26,7 @@ fn wall(material: Material) -> Scene {
 fn lamp(distance: f64, intensity: f32) -> Light {
     let (position, range) = (DVec3::Z * distance, f64::INFINITY);
     let kind = LightKind::Point { position, falloff: Falloff::InverseSquare, range };
-    Light {
-        name: String::new(),
-        kind,
-        intensity: Vec3::splat(intensity),
-        shadow: Shadow::default(),
-        samples: 16,
-    }
+    Light::new(kind).with_intensity(Vec3::splat(intensity))
 }
 
 fn matt(diffuse: f32) -> Material {

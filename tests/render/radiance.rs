@@ -21,13 +21,7 @@ fn scene(material: Material) -> Scene {
 }
 
 fn light(kind: LightKind) -> Light {
-    Light {
-        name: String::new(),
-        kind,
-        intensity: Vec3::ONE,
-        shadow: Shadow::default(),
-        samples: 16,
-    }
+    Light::new(kind)
 }
 
 fn point(position: DVec3, falloff: Falloff) -> Light {

@@ -5,7 +5,7 @@ use envers::scene::{Channel, Coverage, Filter, NormalMap, OcclusionMap, Transfer
 use envers::{
     AlphaMode, Backend, BruteForce, Bvh, Camera, Coherence, Geometry, Hit, Image, Instance,
     Intersector, Light, LightKind, Material, MaterialId, Mesh, Plane, Precision, Projection, Ray,
-    RenderOptions, Renderer, Scene, Shadow, Sphere, Texture, TextureId,
+    RenderOptions, Renderer, Scene, Sphere, Texture, TextureId,
 };
 use envers_testing::Random;
 use glam::{DAffine3, DVec3, Vec3};
@@ -52,13 +52,7 @@ fn stand(scene: &mut Scene, mesh: Mesh, transform: DAffine3) {
 }
 
 fn sun(toward: DVec3) -> Light {
-    Light {
-        name: String::new(),
-        kind: LightKind::Directional { direction: -toward.normalize(), angle: 0.0 },
-        intensity: Vec3::ONE,
-        shadow: Shadow::default(),
-        samples: 16,
-    }
+    Light::new(LightKind::Directional { direction: -toward.normalize(), angle: 0.0 })
 }
 
 fn ambient() -> Light {

@@ -67,16 +67,10 @@ fn mirrors_alone_refract_nothing() {
 fn ten_thousand_lights_add_up() {
     use envers::Light;
     use envers::LightKind;
-    use envers::Shadow;
     let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
     sphere(&mut scene, DVec3::ZERO, 1.0, Material { diffuse: Vec3::ONE, ..black() });
-    let light = Light {
-        name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 },
-        intensity: Vec3::splat(1.0 / 8192.0),
-        shadow: Shadow::default(),
-        samples: 16,
-    };
+    let light = Light::new(LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 })
+        .with_intensity(Vec3::splat(1.0 / 8192.0));
     scene.lights = vec![light; 10_000];
     let (pixel, counts) = rendered(&scene);
     assert_near(pixel, 10_000.0 / 8192.0);

@@ -26,18 +26,14 @@ fn a_coloured_mirror_tints_what_it_shows() {
 fn what_a_mirror_leaves_is_diffuse() {
     use envers::Light;
     use envers::LightKind;
-    use envers::Shadow;
     let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
     scene.film.background = Vec3::splat(0.5);
     let half = Material { diffuse: Vec3::ONE, ..mirror(0.25) };
     sphere(&mut scene, DVec3::ZERO, 1.0, half);
-    scene.lights.push(Light {
-        name: String::new(),
-        kind: LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 },
-        intensity: Vec3::splat(0.4),
-        shadow: Shadow::default(),
-        samples: 16,
-    });
+    scene.lights.push(
+        Light::new(LightKind::Directional { direction: DVec3::NEG_Z, angle: 0.0 })
+            .with_intensity(Vec3::splat(0.4)),
+    );
     assert_near(radiance(&scene), 0.75 * 0.4 + 0.25 * 0.5);
 }
 

@@ -1,8 +1,6 @@
 use super::*;
 use crate::intersect::Bvh;
-use crate::scene::{
-    Camera, Falloff, Light, LightKind, Material, Plane, Projection, Shadow, Sphere,
-};
+use crate::scene::{Camera, Falloff, Light, LightKind, Material, Plane, Projection, Sphere};
 use glam::{DVec3, Vec3};
 
 /// Returns a sphere over the ground and a light, in 16 × 16 pixels.
@@ -20,13 +18,7 @@ fn scene() -> Scene {
         falloff: Falloff::None,
         range: f64::INFINITY,
     };
-    let light = Light {
-        name: String::new(),
-        kind,
-        intensity: Vec3::ONE,
-        shadow: Shadow::default(),
-        samples: 16,
-    };
+    let light = Light::new(kind);
     scene.lights.push(light);
     scene
 }
