@@ -16,7 +16,6 @@ use crate::integrator::shadow_rays::ShadowQueue;
 use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
 use crate::integrator::{Counts, Integrator};
-use crate::intersect::Coherence;
 use crate::scene::Environment;
 
 /// The roughness by which the environment is blurred along a ray, which stands for many directions.
@@ -113,7 +112,7 @@ impl AmbientOcclusion {
             // Transparent surfaces block nothing.
             let rays = &self.queue.rays;
             let occluded = &mut self.queue.occluded;
-            integrator.intersector.occluded_batch(rays, Coherence::Incoherent, occluded);
+            integrator.occluded(rays, occluded, counts);
             for (block, (sums, weights)) in self.sums.iter_mut().zip(&self.weights).enumerate() {
                 for i in 0..LANES {
                     counts.rays.shadow += u64::from(weights[i] > 0.0);

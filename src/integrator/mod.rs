@@ -24,6 +24,7 @@ mod pixel_sums;
 mod radiance;
 #[cfg(test)]
 mod reciprocity;
+mod refinement;
 mod sample_pattern;
 mod secondary_rays;
 mod shadow_rays;
@@ -48,6 +49,7 @@ pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
 use light_sources::LightSources;
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
+pub use refinement::RefineStrip;
 use sample_pattern::SamplePattern;
 #[cfg(all(feature = "measure", any(feature = "embree", test)))]
 pub use sample_pattern::sample_positions;
@@ -55,7 +57,7 @@ pub use sample_pattern::sample_steps;
 #[cfg(feature = "cli")]
 pub use secondary_rays::MAX_LAYERS;
 use texture_lod::TextureLod;
-pub use tile_loop::{RefineStrip, Scratch};
+pub use tile_loop::Scratch;
 pub use tiling::Tiling;
 use transmissive_bounds::TransmissiveBounds;
 

@@ -8,7 +8,6 @@ use crate::integrator::ambient_occlusion::AmbientOcclusion;
 use crate::integrator::light_sources::LightSource;
 use crate::integrator::pixel_sums::PixelSums;
 use crate::integrator::radiance::{GROUP, Radiance16, WaveRadiance};
-use crate::integrator::sample_pattern::SamplePattern;
 use crate::integrator::shadow_rays::ShadowQueue;
 use crate::integrator::surface_evaluation::WaveSurfaces;
 use crate::integrator::tiling::Tile;
@@ -21,13 +20,10 @@ use crate::integrator::{
 use crate::intersect::{Coherence, Query};
 use crate::scene::LightKind;
 
-/// The number of pixels that are refined together.
-const REFINED_TOGETHER: usize = 1024;
-
 /// Memory that a thread uses again and again.
 #[derive(Default)]
 pub struct Scratch {
-    tile: Tile,
+    pub(super) tile: Tile,
     waves: WaveQueue,
     surfaces: WaveSurfaces,
     occlusion: AmbientOcclusion,
@@ -36,10 +32,10 @@ pub struct Scratch {
     /// One sample of each pixel of the tile.
     samples: Vec<Radiance16>,
     /// The sums of their samples.
-    sums: PixelSums,
+    pub(super) sums: PixelSums,
     /// The sums of their alpha, in a transparent picture.
-    alpha: AlphaSums,
-    records: PixelRecords,
+    pub(super) alpha: AlphaSums,
+    pub(super) records: PixelRecords,
 }
 
 /// Memory for the shadow rays to one light.
@@ -47,28 +43,6 @@ pub struct Scratch {
 struct ShadowMemory {
     shadows: ShadowQueue,
     glass: TransmissiveShadows,
-}
-
-/// A strip of an adaptive picture after the first pass, in whole rows.
-pub struct RefineStrip<'a> {
-    /// The row of the picture where it begins.
-    pub first_row: usize,
-    /// The means of each pixel's first samples; they become those of all.
-    pub pixels: &'a mut [Pixel],
-    /// The same of their alpha; empty unless the picture has alpha.
-    pub alpha: &'a mut [f32],
-    /// The records of the pixels.
-    pub records: &'a [PixelRecord],
-    /// True for each pixel that gets more samples.
-    pub refined: &'a [bool],
-}
-
-/// A pixel that gets more samples.
-#[derive(Clone, Copy)]
-struct ActivePixel {
-    /// The index of the pixel in the strip.
-    index: usize,
-    record: PixelRecord,
 }
 
 impl Integrator<'_> {
@@ -115,7 +89,7 @@ impl Integrator<'_> {
     }
 
     /// Traces the samples of one step of each pixel of a tile, and adds them to the sums of those before.
-    fn trace_step(&self, step: usize, scratch: &mut Scratch, counts: &mut Counts) {
+    pub(super) fn trace_step(&self, step: usize, scratch: &mut Scratch, counts: &mut Counts) {
         let steps = &self.samples.steps;
         let taken = if step == 0 { 0 } else { steps[step - 1] };
         // Wherever a step may be the last of a pass, a regular picture, too, goes on from what a film
@@ -310,62 +284,9 @@ impl Integrator<'_> {
     }
 
     /// Finds which shadow rays are occluded.
-    fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
+    pub(super) fn occluded(&self, rays: &RayBatch, occluded: &mut Vec<bool>, counts: &mut Counts) {
         self.intersector.occluded_batch(rays, Coherence::Coherent, occluded);
         let has_filter = self.intersector.uses_filter(Query::Occluded, rays);
         counts.work.add_extra_tests(self.scene, has_filter, rays);
-    }
-
-    /// Takes more samples of the pixels of a strip that need them.
-    pub fn refine_strip(&self, strip: RefineStrip<'_>, scratch: &mut Scratch) -> Counts {
-        let RefineStrip { first_row, pixels, alpha: strip_alpha, records, refined } = strip;
-        let width = self.scene.film.size[0] as usize;
-        let rows = pixels.len() / width;
-        let SamplePattern { steps, first, .. } = &self.samples;
-        let mut counts = Counts::default();
-        // They are taken in the order in which tiles order their rays.
-        let mut active: Vec<ActivePixel> = Vec::new();
-        for column in (0..width).step_by(self.tiling.columns) {
-            scratch.tile.set(&self.tiling, [column, first_row], [width, rows]);
-            for run in &scratch.tile.runs {
-                let run = scratch.tile.run_in_strip(run, width).filter(|&i| refined[i]);
-                active.extend(run.map(|index| ActivePixel { index, record: records[index] }));
-            }
-        }
-        for step in first + 1..steps.len() {
-            counts.refined[step - first - 1] += active.len() as u64;
-            let mut next_active = Vec::new();
-            for group in active.chunks(REFINED_TOGETHER) {
-                // A tile of these pixels, with their sums and records so far.
-                let Scratch { tile, sums, alpha, records, .. } = scratch;
-                tile.set_pixels(
-                    group.iter().map(|p| [p.index % width, first_row + p.index / width]),
-                );
-                sums.set_means(group.iter().map(|p| pixels[p.index]), steps[step - 1]);
-                if self.has_alpha {
-                    alpha.set_means(group.iter().map(|p| strip_alpha[p.index]), steps[step - 1]);
-                }
-                records.clear();
-                for &ActivePixel { index, record } in group {
-                    records.push(record, pixels[index].into());
-                }
-                // The samples of this step.
-                self.trace_step(step, scratch, &mut counts);
-                // Pixels whose samples disagree go on, if there are more to take.
-                let read = group.iter().zip(&scratch.records.records);
-                for (i, (&ActivePixel { index, .. }, &record)) in read.enumerate() {
-                    let goes_on = record.disagrees && step + 1 < steps.len();
-                    pixels[index] = scratch.sums.mean(i, steps[step]);
-                    if self.has_alpha {
-                        strip_alpha[index] = scratch.alpha.mean(i, steps[step]);
-                    }
-                    if goes_on {
-                        next_active.push(ActivePixel { index, record });
-                    }
-                }
-            }
-            active = next_active;
-        }
-        counts
     }
 }

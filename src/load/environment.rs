@@ -60,7 +60,11 @@ impl EnvironmentSource {
                 Some(environment)
             }
             Self::Map(path) => {
-                let (map, warning) = read_map(sandbox.open_named(path)?, sandbox)?;
+                let file = sandbox.open_named(path).map_err(|error| match path.extension() {
+                    Some(_) => error,
+                    None => error.help("the built-in environments are `studio` and `sky`"),
+                })?;
+                let (map, warning) = read_map(file, sandbox)?;
                 warnings.extend(warning);
                 Some(Environment::new(map, Transfer::Srgb))
             }

@@ -1,4 +1,8 @@
+use glam::DVec3;
+
 use super::*;
+use crate::geometry::PrimitiveId16;
+use crate::shading;
 
 const NO_PBR: PbrLanes<'_> = PbrLanes { hits: &[], bsdf: &|_| unreachable!() };
 

@@ -5,8 +5,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use super::SceneBuilder;
 use crate::error::Result;
 use crate::load::environment::read_map;
+use crate::load::scene_file::schema::light_tables::{BuiltIn, EnvironmentTable};
 use crate::load::scene_file::schema::spanned::Spanned;
-use crate::load::scene_file::schema::tables::{BuiltIn, EnvironmentTable};
 use crate::load::scene_file::source::Span;
 use crate::scene::{Environment, Sky, Transfer};
 

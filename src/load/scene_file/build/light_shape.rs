@@ -5,8 +5,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::SceneBuilder;
 use crate::error::Result;
 use crate::geometry::sampling::tangents;
+use crate::load::scene_file::schema::light_tables::LightTable;
 use crate::load::scene_file::schema::spanned::Spanned;
-use crate::load::scene_file::schema::tables::LightTable;
 use crate::scene::animation::Animated;
 use crate::scene::{Instance, Light, LightKind, Material, Mesh, MeshProvenance, Sphere, TableKind};
 

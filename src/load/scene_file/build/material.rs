@@ -6,8 +6,8 @@ use super::SceneBuilder;
 use super::textures::Sampling;
 use crate::error::Result;
 use crate::load::scene_file::schema::color::Color;
+use crate::load::scene_file::schema::material_table::{MapAlpha, MaterialTable};
 use crate::load::scene_file::schema::spanned::Spanned;
-use crate::load::scene_file::schema::tables::{MapAlpha, MaterialTable};
 use crate::load::spelling;
 use crate::scene::{
     AlphaMode, Channel, Coverage, Material, MaterialId, NormalMap, TextureId, Transfer,

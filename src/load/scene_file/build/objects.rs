@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use crate::error::Result;
+use crate::load::scene_file::schema::light_tables::Kind;
 use crate::load::scene_file::schema::spanned::Spanned;
-use crate::load::scene_file::schema::tables::{Kind, SceneTable};
+use crate::load::scene_file::schema::tables::SceneTable;
 use crate::load::scene_file::schema::values::PointOrName;
 use crate::load::scene_file::source::{Source, Span};
 use crate::load::spelling;

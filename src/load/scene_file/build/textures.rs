@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::load::images::decode;
 use crate::load::images::texture_cache::{ImageIndex, TextureCache, set_image};
 use crate::load::sandbox::Sandbox;
+use crate::load::scene_file::schema::material_table::MapFilter;
 use crate::load::scene_file::schema::spanned::Spanned;
-use crate::load::scene_file::schema::tables::MapFilter;
 use crate::load::scene_file::source::Source;
 use crate::scene::{Filter, Scene, Texture, TextureId, Transfer};
 

@@ -3,6 +3,8 @@
 pub mod animation_tables;
 pub mod color;
 pub mod json_schema;
+pub mod light_tables;
+pub mod material_table;
 pub mod spanned;
 pub mod tables;
 pub mod values;
