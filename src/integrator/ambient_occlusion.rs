@@ -19,7 +19,7 @@ use crate::integrator::{Counts, Integrator};
 use crate::scene::Environment;
 
 /// The roughness by which the environment is blurred along a ray, which stands for many directions.
-const BLUR: f32 = 0.5;
+pub(super) const BLUR: f32 = 0.5;
 
 /// The least albedo of a rough reflection that has rays of its own; another one is occluded like diffuse light.
 const MIN_REFLECTION: f32 = 0.1;

@@ -4,16 +4,34 @@
 //! filtered environment in the mirrored direction, times the surface's albedo (the split-sum approximation of
 //! Karis, *Real Shading in Unreal Engine 4*, 2013).
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
 use crate::geometry::LANES;
 use crate::integrator::Integrator;
+use crate::integrator::ambient_occlusion::BLUR;
 use crate::integrator::counts::FeatureCounts;
+use crate::integrator::opaque_surfaces::OpaqueLobes;
 use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::radiance::{DARK, WaveRadiance, set_lane};
 use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
-use crate::scene::{Environment, SHARPEST_REFLECTION};
+use crate::scene::{Environment, SHARPEST_REFLECTION, Scene};
+
+/// Filters the environment of a scene, if there is one, for what its materials reflect.
+pub(super) fn prepare(scene: &Scene) {
+    let Some(environment) = &scene.environment else { return };
+    let filtered = environment.filtered();
+    if scene.film.ambient_occlusion > 0 {
+        filtered.prepare(BLUR..=BLUR);
+    }
+    for material in scene.materials_in_use() {
+        match material.metallic.as_deref().filter(|_| material.is_pbr()) {
+            Some(maps) => maps.blurred_roughnesses().for_each(|range| filtered.prepare(range)),
+            None if material.specular != Vec3::ZERO => filtered.prepare(0.0..=1.0),
+            None => {}
+        }
+    }
+}
 
 /// Sets the radiance along the rays of a wave that hit nothing to that of the environment, but for camera rays
 /// in an environment that these do not see.
@@ -66,12 +84,20 @@ pub(super) fn add(
     radiance: &mut WaveRadiance,
     counts: &mut FeatureCounts,
 ) {
+    let to_map = environment.to_map.as_mat3();
     for lit in surfaces.lit() {
         let mut added = DARK;
         let hits = &surfaces.pbr.hits[lit.pbr.clone()];
         let mut by_lambert = lit.scatters;
         hits.iter().for_each(|hit| by_lambert[hit.lane] = false);
         counts.environment += lit.scatters.iter().filter(|is| **is).count() as u64;
+        if let Some(opaque) = lit.opaque.map(|index| &surfaces.pbr.opaque[index]) {
+            for i in (0..LANES).filter(|&i| opaque.is_opaque[i]) {
+                by_lambert[i] = false;
+                let lobes = opaque.lobes(i);
+                set_lane(&mut added, i, by_lobes(environment, &to_map, lit, i, &lobes));
+            }
+        }
         for i in (0..LANES).filter(|&i| by_lambert[i]) {
             let (_, incoming) = wave.rays.blocks()[lit.block].origin_and_direction(i);
             set_lane(&mut added, i, by_phong(integrator, environment, lit, i, incoming));
@@ -109,6 +135,23 @@ fn by_phong(
     diffuse + specular * reflected(environment, mirrored, roughness) * share
 }
 
+/// Returns what an opaque physically based surface reflects.
+#[inline(always)]
+fn by_lobes(
+    environment: &Environment,
+    to_map: &Mat3,
+    lit: &LitSurface16,
+    i: usize,
+    lobes: &OpaqueLobes,
+) -> Vec3 {
+    let filtered = environment.filtered();
+    let (open, normal) = (lit.ambient[i], *to_map * lit.surface.normal(i).as_vec3());
+    let diffuse = lobes.diffuse * filtered.diffuse(normal) * open;
+    let light = filtered.reflection(*to_map * lobes.mirrored, lobes.roughness);
+    let share = specular_occlusion(open, lobes.cosine, lobes.roughness);
+    (diffuse + lobes.reflection * light * share) * environment.intensity
+}
+
 /// Returns what a physically based surface reflects, but for what reflected rays see.
 fn by_bsdf(
     integrator: &Integrator<'_>,
@@ -129,7 +172,8 @@ fn by_bsdf(
         let share = if integrator.has_ambient_occlusion() {
             arriving(integrator, hit.reflection_share, albedos.reflection)
         } else {
-            Vec3::splat(specular_occlusion(lit.ambient[i], hit))
+            let cosine = hit.wo.z.abs() as f32;
+            Vec3::splat(specular_occlusion(lit.ambient[i], cosine, hit.blurred.roughness))
         };
         sum += albedos.reflection * light * share;
     }
@@ -153,11 +197,10 @@ fn arriving(integrator: &Integrator<'_>, open: f32, albedo: Vec3) -> Vec3 {
 
 /// Returns the share of a reflection that arrives where this share of diffuse light does (Lagarde and
 /// de Rousiers, *Moving Frostbite to Physically Based Rendering*, 2014).
-fn specular_occlusion(ambient: f32, hit: &PbrHit) -> f32 {
+fn specular_occlusion(ambient: f32, cosine: f32, roughness: f32) -> f32 {
     if ambient >= 1.0 {
         return 1.0;
     }
-    let exponent = (-16.0 * hit.blurred.roughness - 1.0).exp2();
-    let cosine = hit.wo.z.abs() as f32;
+    let exponent = (-16.0 * roughness - 1.0).exp2();
     ((cosine + ambient).powf(exponent) - 1.0 + ambient).clamp(0.0, 1.0)
 }

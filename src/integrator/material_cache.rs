@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::{Geometry, Hit};
 use crate::integrator::counts::FeatureCounts;
+use crate::integrator::opaque_surfaces::OpaqueMaterial;
 use crate::scene::{Material, MaterialId, Mesh, Scene, ShadingParams};
 use crate::shading::{Bsdf, LobeAlbedos, Reflectance};
 use crate::surface::{self, PbrParams, TextureContext};
@@ -17,6 +18,8 @@ pub(super) struct MaterialCache {
     has_checker: Vec<bool>,
     /// True for each mesh with vertex colours.
     has_vertex_colors: Vec<bool>,
+    /// True if opaque surfaces are shaded side by side: not where rays find how much each reflects.
+    pub has_opaque: bool,
 }
 
 /// A physically based material as it is where no texture, checker or vertex colour changes it.
@@ -25,8 +28,10 @@ pub(super) struct CachedPbr {
     pub params: PbrParams,
     /// The BSDF.
     pub bsdf: Bsdf,
+    /// The material as one that is shaded side by side with others, if it is.
+    pub opaque: Option<OpaqueMaterial>,
     /// The albedos of its lobes from the outside, at evenly spread cosines from 0 to 1; empty where they depend on
-    /// more than the cosine.
+    /// more than the cosine, and where they are not needed.
     albedos: Vec<LobeAlbedos>,
 }
 
@@ -34,15 +39,18 @@ pub(super) struct CachedPbr {
 const COSINES: usize = 65;
 
 impl CachedPbr {
-    fn new(scene: &Scene, material: &Material) -> Self {
+    /// A material; `has_opaque` if opaque surfaces are shaded side by side.
+    fn new(scene: &Scene, material: &Material, has_opaque: bool) -> Self {
         let params = surface::pbr_params(scene, material, &TextureContext::default());
         let bsdf = Bsdf::new(&params.factors, 1.0);
+        let opaque = OpaqueMaterial::new(&params).filter(|_| has_opaque);
         let albedo = |i: usize| {
             let cosine = (i as f64 / (COSINES - 1) as f64).max(1e-3);
             bsdf.lobe_albedos(DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine))
         };
-        let count = if params.factors.anisotropy == 0.0 { COSINES } else { 0 };
-        Self { albedos: (0..count).map(albedo).collect(), params, bsdf }
+        let is_by_cosine = params.factors.anisotropy == 0.0 && opaque.is_none();
+        let count = if is_by_cosine { COSINES } else { 0 };
+        Self { albedos: (0..count).map(albedo).collect(), params, bsdf, opaque }
     }
 
     /// Returns the albedos of the lobes for light from `wo`.
@@ -114,9 +122,10 @@ impl MaterialCache {
     /// Builds the cache of a scene.
     pub fn new(scene: &Scene) -> Self {
         let cached = |material| CachedMaterial::new(scene, material);
+        let has_opaque = scene.film.ambient_occlusion == 0;
         let pbr = |material: &Material| {
             let is_cached = material.is_pbr() && !material.is_textured();
-            is_cached.then(|| CachedPbr::new(scene, material))
+            is_cached.then(|| CachedPbr::new(scene, material, has_opaque))
         };
         let has_colors = |mesh: &Mesh| !(mesh.colors.is_empty() && mesh.alphas.is_empty());
         Self {
@@ -124,6 +133,7 @@ impl MaterialCache {
             pbr: scene.materials.iter().map(pbr).collect(),
             has_checker: scene.planes.iter().map(|plane| plane.checker.is_some()).collect(),
             has_vertex_colors: scene.meshes.iter().map(|mesh| has_colors(mesh)).collect(),
+            has_opaque,
         }
     }
 

@@ -19,6 +19,7 @@ mod light_sources;
 mod material_cache;
 mod nested_dielectrics;
 mod null_interfaces;
+mod opaque_surfaces;
 mod pbr_surfaces;
 mod pixel_sums;
 mod radiance;
@@ -170,9 +171,7 @@ impl<'a> Integrator<'a> {
         };
         let camera = camera.ray_generator(scene.film.size);
         // Filtered now, on all threads: a thread that waits for another's result could not be shared.
-        scene.environment.iter().for_each(|environment| {
-            environment.filtered();
-        });
+        environment_lighting::prepare(scene);
         let features = SceneFeatures::from_scene(scene);
         let has = |feature| features.uses(feature);
         let textures = [Feature::Uv, Feature::Checkers, Feature::VertexColors, Feature::NormalMaps];

@@ -6,6 +6,7 @@ use crate::geometry::sampling::sobol_point;
 use crate::geometry::{Hit, LANES, Side};
 use crate::integrator::Integrator;
 use crate::integrator::material_cache::MaterialCache;
+use crate::integrator::opaque_surfaces::OpaqueSurfaces16;
 use crate::integrator::wave::Wave;
 use crate::scene::{Material, MaterialId, MetallicRoughness, ray_share};
 use crate::shading::{self, Bsdf, LobeAlbedos};
@@ -54,6 +55,8 @@ pub(super) struct PbrHits {
     pub hits: Vec<PbrHit>,
     /// The BSDFs of those whose material varies.
     bsdfs: Vec<Bsdf>,
+    /// The opaque ones, which are not among the others, block by block.
+    pub opaque: Vec<OpaqueSurfaces16>,
 }
 
 impl PbrHits {
@@ -61,6 +64,7 @@ impl PbrHits {
     pub fn clear(&mut self) {
         self.hits.clear();
         self.bsdfs.clear();
+        self.opaque.clear();
     }
 
     /// Returns the BSDF of a surface.

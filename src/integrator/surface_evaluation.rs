@@ -8,6 +8,7 @@ use glam::Vec3;
 use crate::geometry::{Hit, Hit16, LANES, Lanes, PrimitiveId16, Ray};
 use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::material_cache::scattered_reflectance;
+use crate::integrator::opaque_surfaces::{OpaqueMaterial, OpaqueSurfaces16};
 use crate::integrator::pbr_surfaces::{self, PbrHits, SurfacePoint, TracedLobes};
 use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
 use crate::integrator::wave::Wave;
@@ -39,6 +40,8 @@ pub(super) struct LitSurface16 {
     pub surface: Surface16,
     /// The physically based ones, in the list of all.
     pub pbr: Range<usize>,
+    /// The opaque physically based ones, in the list of blocks of these.
+    pub opaque: Option<usize>,
     /// True for each one that scatters any light.
     pub scatters: Lanes<bool>,
     /// The share of light scattered to all sides.
@@ -155,13 +158,31 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
         }
         // Shading parameters; a block on which no light falls is overwritten by the next.
         lit.block = block;
-        let is_uniform =
-            !TEXTURES && evaluate_uniform_block(integrator, hits, lit, &mut radiance.blocks[block]);
+        lit.opaque = None;
+        let is_uniform = !TEXTURES
+            && evaluate_uniform_block(integrator, hits, lit, pbr, &mut radiance.blocks[block]);
         if !is_uniform {
             let secondary = (&mut *pbr, &mut *specular);
             evaluate_block::<TEXTURES>(integrator, wave, hits, lit, radiance, secondary, counts);
         }
+        if let Some(index) = lit.opaque {
+            set_opaque_viewer(wave, &mut pbr.opaque[index], lit);
+            counts.pbr += if is_uniform { LANES as u64 } else { 0 };
+        }
         *count += usize::from(lit.scatters.contains(&true));
+    }
+}
+
+/// Computes what the opaque physically based surfaces of a block reflect from all around.
+#[inline(always)]
+fn set_opaque_viewer(wave: &Wave, opaque: &mut OpaqueSurfaces16, lit: &mut LitSurface16) {
+    let incoming = &wave.rays.blocks()[lit.block].direction;
+    let ambient = opaque.set_viewer(&lit.surface, incoming);
+    for channel in 0..3 {
+        for i in 0..LANES {
+            let x = &mut lit.diffuse[channel][i];
+            *x = if opaque.is_opaque[i] { ambient[channel][i] } else { *x };
+        }
     }
 }
 
@@ -172,6 +193,7 @@ fn evaluate_uniform_block(
     integrator: &Integrator<'_>,
     hits: &Hit16,
     lit: &mut LitSurface16,
+    pbr_hits: &mut PbrHits,
     radiance: &mut Radiance16,
 ) -> bool {
     let first = lit.surface.material[0];
@@ -186,10 +208,19 @@ fn evaluate_uniform_block(
         return false;
     }
     let material = integrator.materials.get(first);
-    if material.spawns_rays || !material.is_finite || material.is_pbr {
+    if material.spawns_rays || !material.is_finite {
         return false;
     }
-    let Reflectance { diffuse, specular, shininess } = material.reflectance;
+    let mut reflectance = material.reflectance;
+    if material.is_pbr {
+        let cached = integrator.materials.pbr(first);
+        let Some(opaque) = cached.and_then(|cached| cached.opaque.as_ref()) else { return false };
+        lit.opaque = Some(pbr_hits.opaque.len());
+        pbr_hits.opaque.push(OpaqueSurfaces16::new(opaque, true));
+        // Its share of ambient light is known when all is set.
+        reflectance = Reflectance { diffuse: Vec3::ONE, specular: Vec3::ZERO, shininess: 1.0 };
+    }
+    let Reflectance { diffuse, specular, shininess } = reflectance;
     for channel in 0..3 {
         lit.diffuse[channel] = [diffuse[channel]; LANES];
         lit.specular[channel] = [specular[channel]; LANES];
@@ -255,14 +286,20 @@ fn evaluate_block<const TEXTURES: bool>(
         }
         let mut varied = None;
         let mut alpha = 1.0;
+        let mut opaque = None;
         if cached.is_pbr {
             counts.pbr += 1;
             let id = lit.surface.material[i];
             let pbr = match cache.pbr(id).filter(|_| !is_varied) {
-                Some(cached) => &cached.params,
+                Some(cached) => {
+                    opaque = cached.opaque;
+                    &cached.params
+                }
                 None => {
                     let material = &scene.materials[id.0 as usize];
-                    varied.insert(surface::pbr_params(scene, material, &context))
+                    let params = varied.insert(surface::pbr_params(scene, material, &context));
+                    opaque = if cache.has_opaque { OpaqueMaterial::new(params) } else { None };
+                    params
                 }
             };
             (params, alpha) = (pbr.shading_params(), pbr.alpha);
@@ -275,6 +312,16 @@ fn evaluate_block<const TEXTURES: bool>(
         }
         set_lane(&mut radiance.blocks[lit.block], i, params.emission);
         // A physically based surface.
+        if let Some(opaque) = opaque {
+            let index = *lit.opaque.get_or_insert_with(|| {
+                pbr_hits.opaque.push(OpaqueSurfaces16::new(&opaque, false));
+                pbr_hits.opaque.len() - 1
+            });
+            pbr_hits.opaque[index].set(i, &opaque);
+            set_lane(&mut lit.specular, i, Vec3::ZERO);
+            lit.scatters[i] = true;
+            continue;
+        }
         if cached.is_pbr {
             let surface = lit.surface.surface(i, hit.id);
             let at = SurfacePoint { ray, hit: &hit, surface: &surface, context: &context };

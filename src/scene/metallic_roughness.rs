@@ -1,6 +1,8 @@
 //! The metallic-roughness materials of glTF, and the Lambert and Phong materials that approximate them
 //! (see docs/formats.md).
 
+use std::ops::RangeInclusive;
+
 use glam::Vec3;
 
 use crate::scene::{Channel, ShadingParams, TextureId};
@@ -228,6 +230,22 @@ impl MetallicRoughnessMaps {
             |map: Option<Channel>, roughness| map.is_some() || ray_share(roughness) > 0.0;
         is_sharp(self.roughness, roughness)
             || (clearcoat > 0.0 && is_sharp(self.clearcoat_roughness, clearcoat_roughness))
+    }
+
+    /// The ranges of the roughnesses by which an environment is blurred in its reflections, and in what it
+    /// transmits.
+    pub(crate) fn blurred_roughnesses(&self) -> impl Iterator<Item = RangeInclusive<f32>> {
+        let factors = self.factors.in_range();
+        let range = |map: Option<Channel>, roughness: f32, is_traced: bool| {
+            // Where rays are traced, what they see is blurred less.
+            let is_fixed = map.is_none() && !is_traced && ray_share(roughness) == 0.0;
+            if is_fixed { roughness..=roughness } else { 0.0..=roughness }
+        };
+        let base = range(self.roughness, factors.roughness, self.may_transmit());
+        let clearcoat = factors.clearcoat > 0.0;
+        let clearcoat =
+            clearcoat.then(|| range(self.clearcoat_roughness, factors.clearcoat_roughness, false));
+        std::iter::once(base).chain(clearcoat)
     }
 
     /// True if it transmits light anywhere.

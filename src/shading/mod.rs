@@ -1,12 +1,12 @@
-//! Shading models: Lambert and Phong, mirrors, and the interfaces of dielectrics; physically based
-//! materials, which are not rendered yet. Traces nothing.
+//! Shading models: Lambert and Phong, mirrors, the interfaces of dielectrics, and glTF's physically based
+//! materials. Traces nothing.
 
 mod bsdf;
 mod dielectric;
 
 use glam::{DVec3, Vec3};
 
-pub use bsdf::{Bsdf, BsdfSample, LobeAlbedos};
+pub use bsdf::{Bsdf, BsdfSample, LobeAlbedos, OpaqueBsdf, OpaqueBsdf16};
 pub use dielectric::{DielectricInterface, transmittance};
 
 /// The greatest exponent for which a power is computed by products.

@@ -111,7 +111,8 @@ fn reflect_blocks<const PBR: bool, const HIGHLIGHTS: bool, const SOFT_TERMINATOR
         let directions = &wave.rays.blocks()[lit.block].direction;
         let pbr = if PBR { &surfaces.pbr.hits[lit.pbr.clone()] } else { &[] };
         let bsdf = |hit: &PbrHit| surfaces.pbr.bsdf(hit, materials);
-        let pbr = PbrLanes { hits: pbr, bsdf: &bsdf };
+        let opaque = lit.opaque.map(|index| &surfaces.pbr.opaque[index]);
+        let pbr = PbrLanes { hits: pbr, bsdf: &bsdf, opaque: if PBR { opaque } else { None } };
         reflected.set::<HIGHLIGHTS, SOFT_TERMINATOR>(lit, &pbr, &incident, directions, hits);
         if !any(&reflected.faces_light) {
             continue;

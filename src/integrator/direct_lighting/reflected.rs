@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::incident_light::IncidentLight16;
 use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId16};
+use crate::integrator::opaque_surfaces::OpaqueSurfaces16;
 use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::radiance::{any, set_lane};
 use crate::integrator::surface_evaluation::LitSurface16;
@@ -18,6 +19,8 @@ pub(super) struct PbrLanes<'a> {
     pub hits: &'a [PbrHit],
     /// Returns the BSDF of one of them.
     pub bsdf: &'a dyn Fn(&PbrHit) -> &'a Bsdf,
+    /// Those that are shaded side by side, which are not among the others.
+    pub opaque: Option<&'a OpaqueSurfaces16>,
 }
 
 /// The light that sixteen surfaces reflect to the viewer, in units of its intensity.
@@ -79,6 +82,9 @@ impl Reflected16 {
             self.add_highlights(lit, mirrored);
         }
         self.set_pbr(pbr, &unit);
+        if let Some(opaque) = pbr.opaque {
+            opaque.reflect(&unit, &diffuse, &mut self.share);
+        }
         // Toward the terminator of a smooth mesh, light fades out.
         if SOFT_TERMINATOR && surface.has_triangles {
             self.fade_to_terminator(surface, &diffuse);

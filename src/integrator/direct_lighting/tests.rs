@@ -4,7 +4,7 @@ use super::*;
 use crate::geometry::PrimitiveId16;
 use crate::shading;
 
-const NO_PBR: PbrLanes<'_> = PbrLanes { hits: &[], bsdf: &|_| unreachable!() };
+const NO_PBR: PbrLanes<'_> = PbrLanes { hits: &[], bsdf: &|_| unreachable!(), opaque: None };
 
 /// A white Lambert surface without a highlight.
 fn matte() -> LitSurface16 {

@@ -1,7 +1,7 @@
 //! Cube maps: values by direction, on the six faces of a cube, each with a border for interpolation up to its
 //! edges.
 
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec3A};
 use rayon::prelude::*;
 
 /// A map of directions: six squares of `size` × `size` texels, each surrounded by one more texel.
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 pub struct CubeMap {
     size: usize,
     /// The texels with the borders, face by face and row by row.
-    texels: Vec<Vec3>,
+    texels: Vec<Vec3A>,
 }
 
 /// Returns the face that a direction of any length but zero points to, 0 to 5 for +x, −x, +y, −y, +z and −z, and
@@ -53,17 +53,31 @@ pub fn center_of(index: usize, size: usize) -> Vec3 {
     direction_at(index / (size * size), place)
 }
 
+/// Returns the number of texels with the borders.
+fn texel_count(size: usize) -> usize {
+    6 * (size + 2) * (size + 2)
+}
+
+/// Returns the direction of a texel, with the borders.
+fn direction_of_texel(index: usize, size: usize) -> Vec3 {
+    let side = size + 2;
+    let at = |i: usize| (2.0 * i as f32 - 1.0) / size as f32 - 1.0;
+    let place = Vec2::new(at(index % side), at(index / side % side));
+    direction_at(index / (side * side), place)
+}
+
 impl CubeMap {
     /// A map of the values that a function has in the directions of the texels; it is called on all threads of the
     /// current pool.
     pub fn from_fn(size: usize, value: impl Fn(Vec3) -> Vec3 + Sync) -> Self {
-        let side = size + 2;
-        let texel = |index: usize| {
-            let at = |i: usize| (2.0 * i as f32 - 1.0) / size as f32 - 1.0;
-            let place = Vec2::new(at(index % side), at(index / side % side));
-            value(direction_at(index / (side * side), place))
-        };
-        Self { size, texels: (0..6 * side * side).into_par_iter().map(texel).collect() }
+        let texel = |index| Vec3A::from(value(direction_of_texel(index, size)));
+        Self { size, texels: (0..texel_count(size)).into_par_iter().map(texel).collect() }
+    }
+
+    /// The same on this thread alone.
+    pub fn from_fn_here(size: usize, value: impl Fn(Vec3) -> Vec3) -> Self {
+        let texel = |index| Vec3A::from(value(direction_of_texel(index, size)));
+        Self { size, texels: (0..texel_count(size)).map(texel).collect() }
     }
 
     /// Returns the value in a direction of any length but zero, interpolated between texels.
@@ -78,7 +92,7 @@ impl CubeMap {
         let first = (face * side + y.min(self.size)) * side + x.min(self.size);
         let above = self.texels[first].lerp(self.texels[first + 1], fx);
         let below = self.texels[first + side].lerp(self.texels[first + side + 1], fx);
-        above.lerp(below, fy)
+        above.lerp(below, fy).into()
     }
 }
 

@@ -2,6 +2,8 @@
 //! direction and roughness.
 
 use std::f32::consts::{PI, TAU};
+use std::ops::RangeInclusive;
+use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -34,22 +36,48 @@ const PARTS: usize = 8;
 pub struct FilteredEnvironment {
     /// The irradiance of a surface divided by π, by its normal: what a white diffuse surface reflects.
     irradiance: CubeMap,
-    /// The mean of the radiance that microfacets of each roughness reflect, by the mirrored direction.
-    levels: Vec<CubeMap>,
+    /// The mean of the radiance that microfacets of each roughness reflect, by the mirrored direction; each made
+    /// when it is first needed.
+    levels: [OnceLock<CubeMap>; LEVELS],
+    /// Ever coarser maps of the radiance, from which these are made.
+    pyramid: Vec<CubeMap>,
+    /// The number of texels along a face of the finest of them.
+    size: usize,
     mean: Vec3,
 }
 
 impl FilteredEnvironment {
-    /// Filters a map, on all threads of the current pool.
+    /// Filters a map for diffuse reflections, on all threads of the current pool.
     pub(super) fn new(map: &Image, transfer: Transfer) -> Self {
         let Light { cells, texels, size } = Light::collect(map, transfer);
         let sum: DVec3 = cells.iter().map(|cell| cell.sum.as_dvec3()).sum();
-        let pyramid = pyramid(texels, size);
         Self {
             irradiance: irradiance(&cells),
-            levels: (1..=LEVELS).map(|level| reflection(level, size, &pyramid)).collect(),
+            levels: Default::default(),
+            pyramid: pyramid(texels, size),
+            size,
             mean: (sum / (4.0 * std::f64::consts::PI)).as_vec3(),
         }
+    }
+
+    /// Filters the map for reflections by microfacets of a range of roughnesses, on all threads of the current pool.
+    /// Roughnesses that are not prepared are filtered where they are first asked for, on one thread.
+    pub fn prepare(&self, roughnesses: RangeInclusive<f32>) {
+        let (first, _) = place_of(*roughnesses.start());
+        let (last, fraction) = place_of(*roughnesses.end());
+        for level in first..=last + usize::from(fraction > 0.0) {
+            // Not within `get_or_init`: a thread that waits for others there may take up work that asks for the
+            // same level.
+            if self.levels[level].get().is_none() {
+                let map = Reflection::new(level, self.size, &self.pyramid).filter_on_all_threads();
+                self.levels[level].get_or_init(|| map);
+            }
+        }
+    }
+
+    fn level(&self, level: usize) -> &CubeMap {
+        let reflection = || Reflection::new(level, self.size, &self.pyramid);
+        self.levels[level].get_or_init(|| reflection().filter_here())
     }
 
     /// Returns the irradiance of a surface with this normal divided by π: what it reflects if it is white and
@@ -64,14 +92,12 @@ impl FilteredEnvironment {
     /// which the surface is seen head-on.
     #[inline]
     pub fn reflection(&self, direction: Vec3, roughness: f32) -> Vec3 {
-        let place = (roughness * LEVELS as f32 - 1.0).clamp(0.0, (LEVELS - 1) as f32);
-        let level = (place as usize).min(LEVELS - 2);
-        let fraction = place - level as f32;
-        if fraction == 1.0 {
-            return self.levels[level + 1].lookup(direction);
+        let (level, fraction) = place_of(roughness);
+        let near = self.level(level).lookup(direction);
+        if fraction == 0.0 {
+            return near;
         }
-        let near = self.levels[level].lookup(direction);
-        near.lerp(self.levels[level + 1].lookup(direction), fraction)
+        near.lerp(self.level(level + 1).lookup(direction), fraction)
     }
 
     /// Returns the mean radiance over all directions.
@@ -82,6 +108,13 @@ impl FilteredEnvironment {
 
 /// The roughness of the sharpest filtered reflection.
 pub const SHARPEST_REFLECTION: f32 = 1.0 / LEVELS as f32;
+
+/// Returns the level before a roughness, and the fraction of the way to the next, which is less than 1.
+#[inline]
+fn place_of(roughness: f32) -> (usize, f32) {
+    let place = (roughness * LEVELS as f32 - 1.0).clamp(0.0, (LEVELS - 1) as f32);
+    (place as usize, place.fract())
+}
 
 /// The light of a map, by directions.
 struct Light {
@@ -176,12 +209,31 @@ impl Light {
 
 /// Returns the irradiance by normal, divided by π.
 fn irradiance(cells: &[Cell]) -> CubeMap {
+    /// The number of cells that are added up side by side.
+    const SIDE: usize = 8;
+    // The x, y and z of cells side by side, for each channel.
+    type Vectors = [[f32; SIDE]; 3];
+    let (groups, rest) = cells.as_chunks::<SIDE>();
+    assert!(rest.is_empty(), "the number of cells is a multiple of 8");
+    let vectors = |channel: usize| -> Vec<Vectors> {
+        let of = |group: &[Cell; SIDE]| {
+            let axis = |axis: usize| group.map(|cell| cell.vectors[channel][axis]);
+            [axis(0), axis(1), axis(2)]
+        };
+        groups.iter().map(of).collect()
+    };
+    let channels = [vectors(0), vectors(1), vectors(2)];
     CubeMap::from_fn(IRRADIANCE_SIZE, |normal| {
-        let mut sum = Vec3::ZERO;
-        for Cell { vectors: [r, g, b], .. } in cells {
-            sum += Vec3::new(normal.dot(*r), normal.dot(*g), normal.dot(*b)).max(Vec3::ZERO);
-        }
-        sum / PI
+        let sum = |vectors: &Vec<Vectors>| {
+            let mut sums = [0.0; SIDE];
+            for [x, y, z] in vectors {
+                for i in 0..SIDE {
+                    sums[i] += (normal.x * x[i] + normal.y * y[i] + normal.z * z[i]).max(0.0);
+                }
+            }
+            sums.iter().sum::<f32>()
+        };
+        Vec3::from(channels.each_ref().map(sum)) / PI
     })
 }
 
@@ -218,26 +270,48 @@ struct ReflectedSample {
     level: f32,
 }
 
-/// Returns the reflections by microfacets of a roughness; `size` is that of the finest map of the pyramid.
+/// The reflections of an environment by microfacets of one roughness.
 ///
 /// The samples are those of the distribution of microfacets seen head-on. Each reads the level of the pyramid
 /// with texels of its size (Křivánek and Colbert, *Real-time Shading with Filtered Importance Sampling*, 2008).
-fn reflection(level: usize, size: usize, pyramid: &[CubeMap]) -> CubeMap {
-    let roughness = level as f32 / LEVELS as f32;
-    let samples = reflected_samples(roughness * roughness, size);
-    let total: f32 = samples.iter().map(|sample| sample.weight).sum();
-    // The rougher, the fewer texels show all there is.
-    let least = if roughness < 0.5 { IRRADIANCE_SIZE } else { IRRADIANCE_SIZE / 2 };
-    let own_size = (size >> (level - 1)).max(least.min(size));
-    CubeMap::from_fn(own_size, |mirrored| {
+struct Reflection<'a> {
+    samples: Vec<ReflectedSample>,
+    /// The sum of their weights.
+    total: f32,
+    pyramid: &'a [CubeMap],
+    /// The number of texels along a face.
+    size: usize,
+}
+
+impl<'a> Reflection<'a> {
+    /// The reflections by the roughness of a level; `finest` is the size of the finest map of the pyramid.
+    fn new(level: usize, finest: usize, pyramid: &'a [CubeMap]) -> Self {
+        let roughness = (level + 1) as f32 / LEVELS as f32;
+        let samples = reflected_samples(roughness * roughness, finest);
+        let total: f32 = samples.iter().map(|sample| sample.weight).sum();
+        // The rougher, the fewer texels show all there is.
+        let least = if roughness < 0.5 { IRRADIANCE_SIZE } else { IRRADIANCE_SIZE / 2 };
+        Self { samples, total, pyramid, size: (finest >> level).max(least.min(finest)) }
+    }
+
+    fn filter_on_all_threads(&self) -> CubeMap {
+        CubeMap::from_fn(self.size, |mirrored| self.mean(mirrored))
+    }
+
+    fn filter_here(&self) -> CubeMap {
+        CubeMap::from_fn_here(self.size, |mirrored| self.mean(mirrored))
+    }
+
+    /// Returns the mean of the radiance that is reflected about a mirrored direction.
+    fn mean(&self, mirrored: Vec3) -> Vec3 {
         let (x, y) = mirrored.any_orthonormal_pair();
         let mut sum = Vec3::ZERO;
-        for ReflectedSample { direction, weight, level } in &samples {
+        for ReflectedSample { direction, weight, level } in &self.samples {
             let toward = x * direction.x + y * direction.y + mirrored * direction.z;
-            sum += lookup_level(pyramid, toward, *level) * *weight;
+            sum += lookup_level(self.pyramid, toward, *level) * *weight;
         }
-        sum / total
-    })
+        sum / self.total
+    }
 }
 
 fn reflected_samples(alpha: f32, size: usize) -> Vec<ReflectedSample> {
@@ -295,6 +369,25 @@ mod tests {
         Vec3::new(-0.48, 0.64, 0.6),
         Vec3::new(0.36, -0.48, -0.8),
     ];
+
+    #[test]
+    fn a_reflection_is_the_same_whether_it_was_prepared_or_not() {
+        let map = |_| filtered([64, 32], |d| Vec3::new(1.0 + d.x, d.y.max(0.0), d.z * d.z));
+        let [prepared, other] = [0, 1].map(map);
+        prepared.prepare(0.25..=0.5);
+        let is_made = |environment: &FilteredEnvironment| {
+            environment.levels.iter().map(|level| level.get().is_some()).collect::<Vec<_>>()
+        };
+        // Those of the roughnesses 0.2, 0.3, 0.4 and 0.5.
+        assert_eq!(is_made(&prepared), [0, 1, 1, 1, 1, 0, 0, 0, 0, 0].map(|is| is == 1));
+        for direction in DIRECTIONS {
+            for roughness in [0.25, 0.3, 0.47, 0.5] {
+                let [a, b] = [&prepared, &other].map(|e| e.reflection(direction, roughness));
+                assert_eq!(a, b, "{direction} {roughness}");
+            }
+        }
+        assert_eq!(is_made(&prepared), is_made(&other));
+    }
 
     #[test]
     fn an_even_environment_is_even_however_it_is_filtered() {

@@ -28,18 +28,19 @@ struct Glass {
 /// than arrives at grazing angles; here the base gets what the reflection leaves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Base {
-    microfacets: Microfacets,
-    color: Vec3,
-    conductor: Reflection,
-    dielectric: Reflection,
+    pub(super) microfacets: Microfacets,
+    pub(super) color: Vec3,
+    pub(super) conductor: Reflection,
+    pub(super) dielectric: Reflection,
     /// The shares of the metal, the diffuse dielectric and the transmissive dielectric.
-    metal: f32,
-    diffuse: f32,
-    transmissive: f32,
+    pub(super) metal: f32,
+    pub(super) diffuse: f32,
+    pub(super) transmissive: f32,
     /// The share of the diffuse light that is transmitted, and its colour.
-    diffuse_transmission: f32,
+    pub(super) diffuse_transmission: f32,
     diffuse_transmission_color: Vec3,
-    /// Both sides of the boundary of a volume, the outside first; `None` for a thin surface.
+    /// Both sides of the boundary of a volume, the outside first; `None` for a thin surface, and where nothing is
+    /// transmitted.
     glass: Option<[Glass; 2]>,
 }
 
@@ -87,6 +88,8 @@ impl Base {
             Glass { refraction, multiple: multiple_factor(&microfacets.energy, mean) }
         };
         let refraction = Refraction::new(outside, inside, params.dispersion);
+        let transmissive = (1.0 - metallic) * transmission;
+        let has_volume = !params.is_thin && transmissive > 0.0;
         Self {
             microfacets,
             color: params.base_color,
@@ -94,10 +97,10 @@ impl Base {
             dielectric,
             metal: metallic,
             diffuse: (1.0 - metallic) * (1.0 - transmission),
-            transmissive: (1.0 - metallic) * transmission,
+            transmissive,
             diffuse_transmission: params.diffuse_transmission,
             diffuse_transmission_color: params.diffuse_transmission_color,
-            glass: (!params.is_thin).then(|| [glass(refraction), glass(refraction.reversed())]),
+            glass: has_volume.then(|| [glass(refraction), glass(refraction.reversed())]),
         }
     }
 

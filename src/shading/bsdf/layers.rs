@@ -26,6 +26,11 @@ impl Layers {
         }
     }
 
+    /// True if there is no layer.
+    pub fn is_empty(&self) -> bool {
+        self.clearcoat.is_none() && self.sheen.is_none()
+    }
+
     /// Returns f |cos θi| of the layers, for light that comes from above to above, without delta lobes.
     pub fn evaluate(&self, wo: DVec3, wi: DVec3) -> Vec3 {
         let mut sum = Vec3::ZERO;

@@ -16,6 +16,7 @@ mod hemisphere;
 mod iridescence;
 mod layers;
 mod lobes;
+mod opaque;
 mod reflection;
 mod refraction;
 mod sheen;
@@ -30,6 +31,7 @@ use self::base::Base;
 use self::hemisphere::{sample_cosine, sample_uniform};
 use self::layers::Layers;
 pub use self::lobes::LobeAlbedos;
+pub use self::opaque::{OpaqueBsdf, OpaqueBsdf16};
 use crate::scene::MetallicRoughness;
 
 /// The number of lobes that are sampled.

@@ -93,6 +93,11 @@ impl Reflection {
         }
     }
 
+    /// Returns the mean over all directions of [`strongest_albedo`](Self::strongest_albedo).
+    pub fn mean_strongest(&self) -> f32 {
+        self.mean_strongest
+    }
+
     /// Returns the share of the light from `wo` that is reflected, however often.
     pub fn albedo(&self, microfacets: &Microfacets, wo: DVec3) -> Vec3 {
         let moments = microfacets.energy.moments(wo);

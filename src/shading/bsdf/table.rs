@@ -17,7 +17,16 @@ impl Place {
         Self { node, fraction: (x - node as f64) as f32 }
     }
 
+    /// The same in single precision, of a number that is at least 0.
+    #[inline(always)]
+    pub fn of(x: f32, count: usize) -> Self {
+        let x = x.min(1.0) * (count - 1) as f32;
+        let node = (x as usize).min(count - 2);
+        Self { node, fraction: x - node as f32 }
+    }
+
     /// Returns the two nodes around the place, with their weights.
+    #[inline(always)]
     pub fn ends(self) -> [(usize, f32); 2] {
         [(self.node, 1.0 - self.fraction), (self.node + 1, self.fraction)]
     }

@@ -117,7 +117,7 @@ fn in_a_white_world_white_surfaces_of_any_roughness_are_white() {
         }
     }
     println!("largest difference from white: {worst:.1e}");
-    assert!(worst < 0.012, "{worst}");
+    assert!(worst < 0.005, "{worst}");
 }
 
 #[test]

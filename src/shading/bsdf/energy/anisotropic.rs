@@ -56,7 +56,7 @@ impl Block {
                 let z = cosine_at(node, DIRECTIONS);
                 let sine = (1.0 - z * z).max(0.0).sqrt();
                 let wo = DVec3::new(sine * cos, sine * sin, z);
-                let moments = Moments::integrate(&ggx, wo, SAMPLES, |_, _| ());
+                let moments = Moments::integrate(&ggx, wo, SAMPLES, false, |_, _| ());
                 block.moments[azimuth][node] = moments;
                 block.mean.add(moments, share * weights[node]);
             }

@@ -1,5 +1,6 @@
 //! The table of the directional albedo of isotropic surfaces.
 
+use std::fmt;
 use std::sync::OnceLock;
 
 use glam::DVec3;
@@ -49,7 +50,7 @@ impl Row {
             let cosine = cosine_at(node, DIRECTIONS);
             let wo = DVec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
             let weights = &mut row.weights[node];
-            row.moments[node] = Moments::integrate(&ggx, wo, SAMPLES, |weight, cosine| {
+            row.moments[node] = Moments::integrate(&ggx, wo, SAMPLES, true, |weight, cosine| {
                 for (k, part) in Place::new(cosine, COSINES).ends() {
                     weights[k] += weight as f32 * part;
                 }
@@ -64,21 +65,62 @@ impl Row {
 }
 
 /// The albedos of isotropic microfacets with one roughness.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Isotropic(Place);
+#[derive(Clone, Copy)]
+pub struct Isotropic {
+    place: Place,
+    /// The rows of the table around the place.
+    rows: [&'static Row; 2],
+}
+
+impl PartialEq for Isotropic {
+    fn eq(&self, other: &Self) -> bool {
+        self.place == other.place
+    }
+}
+
+impl fmt::Debug for Isotropic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Isotropic").field(&self.place).finish()
+    }
+}
 
 impl Isotropic {
     /// The albedos of a roughness.
     pub fn new(roughness: f64) -> Self {
-        Self(Place::new(roughness, ROUGHNESSES))
+        let place = Place::new(roughness, ROUGHNESSES);
+        // At a node the other row counts for nothing, and need not be computed.
+        let nodes = match place.fraction {
+            0.0 => [place.node; 2],
+            1.0 => [place.node + 1; 2],
+            _ => [place.node, place.node + 1],
+        };
+        Self { place, rows: nodes.map(row) }
+    }
+
+    /// Returns the rows with their weights.
+    #[inline]
+    fn rows(&self) -> [(&'static Row, f32); 2] {
+        let fraction = self.place.fraction;
+        [(self.rows[0], 1.0 - fraction), (self.rows[1], fraction)]
     }
 
     /// Returns the shares of the light from `wo` that come back from one reflection.
     pub fn moments(&self, wo: DVec3) -> Moments {
+        self.moments_at(place_of_direction(wo, DIRECTIONS))
+    }
+
+    /// Returns the same by the square root of the cosine of the direction.
+    #[inline(always)]
+    pub fn moments_by_root(&self, root: f32) -> Moments {
+        self.moments_at(Place::of(root, DIRECTIONS))
+    }
+
+    #[inline(always)]
+    fn moments_at(&self, direction: Place) -> Moments {
         let mut moments = Moments::default();
-        for (index, weight) in self.0.ends() {
-            for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
-                moments.add(row(index).moments[node], weight * share);
+        for (row, weight) in self.rows() {
+            for (node, share) in direction.ends() {
+                moments.add(row.moments[node], weight * share);
             }
         }
         moments
@@ -87,16 +129,16 @@ impl Isotropic {
     /// Returns the mean of the shares over all directions.
     pub fn mean(&self) -> Moments {
         let mut mean = Moments::default();
-        self.0.ends().iter().for_each(|(index, w)| mean.add(row(*index).mean_moments, *w));
+        self.rows().iter().for_each(|(row, weight)| mean.add(row.mean_moments, *weight));
         mean
     }
 
     /// Returns the factors of the reflectance at each cosine, for light from `wo`.
     pub fn weights(&self, wo: DVec3) -> CosineWeights {
         let mut sum = [0.0; COSINES];
-        for (index, weight) in self.0.ends() {
+        for (row, weight) in self.rows() {
             for (node, share) in place_of_direction(wo, DIRECTIONS).ends() {
-                add(&mut sum, &row(index).weights[node], weight * share);
+                add(&mut sum, &row.weights[node], weight * share);
             }
         }
         sum
@@ -105,7 +147,7 @@ impl Isotropic {
     /// Returns the means of these factors over all directions.
     pub fn mean_weights(&self) -> CosineWeights {
         let mut sum = [0.0; COSINES];
-        self.0.ends().iter().for_each(|(index, w)| add(&mut sum, &row(*index).mean_weights, *w));
+        self.rows().iter().for_each(|(row, weight)| add(&mut sum, &row.mean_weights, *weight));
         sum
     }
 }

@@ -14,7 +14,8 @@ use glam::{DVec3, Vec3};
 
 use self::anisotropic::Anisotropic;
 pub use self::anisotropic::alpha;
-use self::isotropic::{CosineWeights, Isotropic};
+use self::isotropic::CosineWeights;
+pub use self::isotropic::Isotropic;
 pub use self::moments::Moments;
 use super::fresnel::{COSINES, Fresnel, grazing};
 use super::ggx::Ggx;

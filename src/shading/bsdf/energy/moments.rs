@@ -18,19 +18,28 @@ pub struct Moments {
 
 impl Moments {
     /// Adds another value with a weight.
+    #[inline(always)]
     pub fn add(&mut self, other: Self, weight: f32) {
         self.all += other.all * weight;
         self.grazing += other.grazing * weight;
     }
 
     /// Integrates the light from `wo`, with `samples` along each of two axes, and shows each sample's
-    /// weight and cosine to the microfacet.
-    pub fn integrate(ggx: &Ggx, wo: DVec3, samples: usize, mut each: impl FnMut(f64, f64)) -> Self {
+    /// weight and cosine to the microfacet. Where microfacets are isotropic and `wo` is in the plane of
+    /// x and z, `is_symmetric` takes the half of the samples that the others mirror.
+    pub fn integrate(
+        ggx: &Ggx,
+        wo: DVec3,
+        samples: usize,
+        is_symmetric: bool,
+        mut each: impl FnMut(f64, f64),
+    ) -> Self {
         let mut sum = [0.0; 2];
-        let share = 1.0 / (samples * samples) as f64;
-        for u in midpoints(samples) {
+        let (count, range) = if is_symmetric { (samples / 2, 0.5) } else { (samples, 1.0) };
+        let share = 1.0 / (count * samples) as f64;
+        for u in midpoints(count) {
             for v in midpoints(samples) {
-                let h = ggx.sample(wo, [u, v]);
+                let h = ggx.sample(wo, [u * range, v]);
                 let (wi, cosine) = (reflect(wo, h), wo.dot(h).clamp(0.0, 1.0));
                 let density = ggx.reflected_density(wo, h);
                 if wi.z > 0.0 && density > 0.0 {

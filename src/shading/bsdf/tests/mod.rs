@@ -3,6 +3,7 @@
 mod extensions;
 mod furnace;
 mod limits;
+mod opaque;
 mod reciprocity;
 mod robustness;
 mod sampling;

@@ -20,7 +20,7 @@ fn color(random: &mut Random) -> Vec3 {
     }
 }
 
-fn material(random: &mut Random) -> MetallicRoughness {
+pub(super) fn material(random: &mut Random) -> MetallicRoughness {
     // Most factors are 0, so that each is often alone.
     let rare = |random: &mut Random| if random.next() < 0.6 { 0.0 } else { number(random) };
     let iors = [0.0, 1.0, 1.5, 1.000_001, 50.0, 1.0 + 2.0 * random.next() as f32];
