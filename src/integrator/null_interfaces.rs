@@ -38,10 +38,10 @@ pub(super) fn is_null_interface(
     params: &ShadingParams,
     media: &InterfaceMedia,
 ) -> bool {
-    let ior = |interior| integrator.media.dielectrics.medium(interior).ior;
-    let ior_behind = if material.thin { material.ior } else { ior(&media.transmitted) };
+    let iors = |interior| integrator.media.dielectrics.medium(interior).iors;
+    let behind = if material.thin { [material.ior; 3] } else { iors(&media.transmitted) };
     let is_clear = params.transmit == Vec3::ONE && params.emission == Vec3::ZERO;
-    media.is_hidden || (is_clear && ior(&media.incident) == ior_behind)
+    media.is_hidden || (is_clear && iors(&media.incident) == behind)
 }
 
 /// Gives each camera ray of a wave a path, and sets its sample to black.

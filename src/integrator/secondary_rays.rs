@@ -65,7 +65,15 @@ pub(super) fn spawn_at_hit(
     }
     // The directions, and the shares of the light.
     let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
-    let scattered = scatter(integrator, specular, &media, ray.direction.normalize());
+    let incoming = ray.direction.normalize();
+    let scattered = scatter(integrator, specular, &media, incoming, 1);
+    // Where media disperse light, each colour that is left goes its own way.
+    let is_dispersive = [&media.incident, &media.transmitted].into_iter().any(|interior| {
+        let [red, _, blue] = integrator.media.dielectrics.medium(interior).iors;
+        red != blue
+    });
+    let by_color = is_dispersive
+        .then(|| [0, 1, 2].map(|channel| scatter(integrator, specular, &media, incoming, channel)));
     // Rays that leave the surface, or go straight on through it.
     let departing = |direction: DVec3, side: Side| Ray {
         departure: Some(Departure { id: surface.id, side }),
@@ -73,7 +81,7 @@ pub(super) fn spawn_at_hit(
     };
     let opposite = surface.side.opposite();
     let reflected = departing(scattered.reflected, surface.side);
-    let refracted = match scattered.refracted {
+    let refracted = |scattered: &Scattered| match scattered.refracted {
         Some(direction) => departing(direction, opposite),
         None => ray.continue_past(hit, opposite),
     };
@@ -105,16 +113,34 @@ pub(super) fn spawn_at_hit(
     };
     // A clearcoat mirrors on its own.
     if let Some(lobes) = specular.pbr.filter(|lobes| lobes.clearcoat != Vec3::ZERO) {
-        let mirrored = mirrored(ray.direction.normalize(), lobes.clearcoat_normal, surface);
+        let mirrored = mirrored(incoming, lobes.clearcoat_normal, surface);
         let (share, interior) = (lobes.clearcoat.as_dvec3(), media.incident.clone());
         let roughness = lobes.clearcoat_roughness;
         emit(&departing(mirrored, surface.side), share, false, interior, roughness);
     }
     let roughness = specular.pbr.map_or(0.0, |lobes| lobes.roughness);
-    emit(&reflected, scattered.reflected_share, false, media.incident, roughness);
+    let reflected_share = match &by_color {
+        None => scattered.reflected_share,
+        Some(colors) => by_channel(|channel| colors[channel].reflected_share),
+    };
+    emit(&reflected, reflected_share, false, media.incident, roughness);
     let is_blurred = specular.pbr.is_some_and(|lobes| lobes.transmissive > 0.0);
     let roughness = if is_blurred { roughness } else { 0.0 };
-    emit(&refracted, scattered.refracted_share, true, media.transmitted, roughness);
+    let Some(colors) = by_color else {
+        let share = scattered.refracted_share;
+        emit(&refracted(&scattered), share, true, media.transmitted, roughness);
+        return;
+    };
+    for (channel, scattered) in colors.iter().enumerate() {
+        let mut share = DVec3::ZERO;
+        share[channel] = scattered.refracted_share[channel];
+        emit(&refracted(scattered), share, true, media.transmitted.clone(), roughness);
+    }
+}
+
+/// Returns a colour whose channels are each that of another one.
+fn by_channel(color: impl Fn(usize) -> DVec3) -> DVec3 {
+    DVec3::new(color(0).x, color(1).y, color(2).z)
 }
 
 /// Returns the direction into which a mirror with this normal, turned to the viewer, sends light that comes
@@ -166,15 +192,17 @@ struct Scattered {
     is_total: bool,
 }
 
-/// Scatters light that comes along `incoming`, of length 1.
+/// Scatters light of one colour that comes along `incoming`, of length 1; where media disperse nothing, all colours
+/// are alike.
 fn scatter(
     integrator: &Integrator<'_>,
     SpecularHit { surface, params, pbr, .. }: &SpecularHit,
     media: &InterfaceMedia,
     incoming: DVec3,
+    channel: usize,
 ) -> Scattered {
     let material = &integrator.scene.materials[surface.material.0 as usize];
-    let ior = |interior| integrator.media.dielectrics.medium(interior).ior;
+    let ior = |interior| integrator.media.dielectrics.medium(interior).iors[channel];
     let SpecularShares { reflect: mirrored_share, transmit, fresnel } =
         SpecularShares::new(params, pbr.as_ref());
     let facing = surface.facing_normal();

@@ -202,11 +202,11 @@ fn cross_surface(integrator: &Integrator<'_>, ray: &Ray, hit: &Hit, path: &mut S
     if !media.is_hidden {
         let cosine = surface.normal.dot(ray.direction).abs() / ray.direction.length();
         let interface = if material.thin {
-            let ior = dielectrics.medium(&path.interior).ior;
+            let ior = dielectrics.medium(&path.interior).ior();
             DielectricInterface::thin_sheet(cosine, ior.min(material.ior), ior.max(material.ior))
         } else {
             let sides = [&media.incident, &media.transmitted];
-            let [a, b] = sides.map(|interior| dielectrics.medium(interior).ior);
+            let [a, b] = sides.map(|interior| dielectrics.medium(interior).ior());
             DielectricInterface::new(cosine, a.min(b), a.max(b))
         };
         let params = shading_params_at(integrator, ray, hit, &surface, &RayCone::default());

@@ -315,6 +315,12 @@ impl Material {
         is_clear && self.ior == ior
     }
 
+    /// The dispersion of what is behind its surface: 20 divided by the Abbe number, or 0.
+    pub(crate) fn dispersion(&self) -> f32 {
+        let maps = self.metallic.as_ref().filter(|_| self.is_pbr() && !self.thin);
+        maps.map_or(0.0, |maps| maps.factors.in_range().dispersion)
+    }
+
     /// True if it blocks all light, from either side.
     pub fn blocks_light(&self) -> bool {
         !self.may_transmit() && !self.passes_light_from_behind()

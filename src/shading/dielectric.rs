@@ -76,6 +76,14 @@ impl DielectricInterface {
     }
 }
 
+/// Returns the indices of refraction of red, green and blue, of a medium with this index and dispersion, which is 20
+/// divided by the Abbe number: half of what blue and red differ by is (n − 1) dispersion/40
+/// (KHR_materials_dispersion). The index of red does not fall below that of a vacuum.
+pub fn indices_by_color(ior: f64, dispersion: f32) -> [f64; 3] {
+    let spread = (ior - 1.0).max(0.0) * 0.025 * f64::from(dispersion);
+    [(ior - spread).max(ior.min(1.0)), ior, ior + spread]
+}
+
 /// Returns the share of light that is left after `length` in a medium: e^(−absorption · length), by
 /// Beer and Lambert. Without absorption it is 1, even after an infinite length.
 pub fn transmittance(absorption: Vec3, length: f64) -> DVec3 {
@@ -92,6 +100,15 @@ mod tests {
 
     fn at(degrees: f64, from: f64, to: f64) -> DielectricInterface {
         DielectricInterface::new(degrees.to_radians().cos(), from, to)
+    }
+
+    #[test]
+    fn indices_by_color_differ_by_the_abbe_number() {
+        let [red, green, blue] = indices_by_color(1.5, 20.0 / 58.0);
+        // V = (n − 1) / (n of blue − n of red).
+        assert!(((green - 1.0) / (blue - red) - 58.0).abs() < 1e-4);
+        assert_eq!(indices_by_color(1.5, 0.0), [1.5; 3]);
+        assert_eq!(indices_by_color(1.5, 100.0)[0], 1.0);
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod dielectric;
 use glam::{DVec3, Vec3};
 
 pub use bsdf::{Bsdf, BsdfSample, LobeAlbedos, OpaqueBsdf, OpaqueBsdf16};
-pub use dielectric::{DielectricInterface, transmittance};
+pub use dielectric::{DielectricInterface, indices_by_color, transmittance};
 
 /// The greatest exponent for which a power is computed by products.
 const MAX_EXPONENT: f32 = 1024.0;

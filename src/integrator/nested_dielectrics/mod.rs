@@ -16,14 +16,21 @@ use crate::surface::Surface;
 /// A medium that light goes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
-    /// The index of refraction.
-    pub ior: f64,
+    /// The indices of refraction for red, green and blue.
+    pub iors: [f64; 3],
     /// The absorption for each unit of length.
     pub absorption: Vec3,
 }
 
+impl Medium {
+    /// The index of refraction for green.
+    pub fn ior(&self) -> f64 {
+        self.iors[1]
+    }
+}
+
 /// The medium outside all dielectrics.
-const EMPTY_SPACE: Medium = Medium { ior: 1.0, absorption: Vec3::ZERO };
+const EMPTY_SPACE: Medium = Medium { iors: [1.0; 3], absorption: Vec3::ZERO };
 
 /// The rank of a dielectric in the order of priority. Where dielectrics overlap, the one with the
 /// least rank fills the point.
@@ -121,7 +128,8 @@ impl NestedDielectrics {
         for (rank, i) in order.into_iter().enumerate() {
             ranks[i] = rank as PriorityRank;
             let material = material(objects[i].0);
-            media.push(Medium { ior: material.ior, absorption: material.absorption });
+            let iors = shading::indices_by_color(material.ior, material.dispersion());
+            media.push(Medium { iors, absorption: material.absorption });
         }
         // The ranks by kind of object.
         let instances = ranks.split_off(scene.spheres.len() + scene.planes.len());

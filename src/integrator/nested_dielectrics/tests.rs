@@ -27,7 +27,7 @@ fn pond(priority_of_water: i32) -> Scene {
 fn ior_at(scene: &Scene, point: DVec3) -> f64 {
     let dielectrics = NestedDielectrics::new(scene);
     let intersector = BruteForce::new(scene, Precision::Fast);
-    dielectrics.medium(&dielectrics.interior_at(point, scene, &intersector)).ior
+    dielectrics.medium(&dielectrics.interior_at(point, scene, &intersector)).ior()
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn a_surface_within_a_dielectric_of_higher_priority_is_hidden() {
     assert!(water.is_hidden);
     let out = dielectrics.interface(PrimitiveId::sphere(0), Side::Back, &water.transmitted);
     assert!(!out.is_hidden);
-    assert_eq!([&out.incident, &out.transmitted].map(|i| dielectrics.medium(i).ior), [1.5, 1.33]);
+    assert_eq!([&out.incident, &out.transmitted].map(|i| dielectrics.medium(i).ior()), [1.5, 1.33]);
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn a_ray_out_of_a_dielectric_that_it_never_entered_was_in_it() {
     let dielectrics = NestedDielectrics::new(&scene);
     let media = dielectrics.interface(PrimitiveId::sphere(0), Side::Back, &InteriorList::default());
     assert_eq!(
-        [&media.incident, &media.transmitted].map(|i| dielectrics.medium(i).ior),
+        [&media.incident, &media.transmitted].map(|i| dielectrics.medium(i).ior()),
         [1.5, 1.0]
     );
 }
@@ -111,7 +111,7 @@ fn ior_behind(scene: &Scene, origin: DVec3) -> f64 {
     let side = Surface::new(scene, &ray, &hit).side;
     dielectrics
         .medium(&dielectrics.interface(hit.id, side, &InteriorList::default()).transmitted)
-        .ior
+        .ior()
 }
 
 #[test]

@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use super::fresnel::{COSINES, Fresnel};
 use super::ggx::{Ggx, MIN_ALPHA};
 use super::table::at_node;
+use crate::shading::indices_by_color;
 
 /// The least α |η − 1| of a boundary that blurs what is seen through it.
 const MIN_BLUR: f64 = MIN_ALPHA / 4.0;
@@ -20,14 +21,10 @@ pub struct Refraction {
 }
 
 impl Refraction {
-    /// The refraction from the outside to the inside, with KHR_materials_dispersion: half of what blue
-    /// and red differ by is (n − 1) dispersion/40.
+    /// The refraction from the outside to the inside, with KHR_materials_dispersion.
     pub fn new(outside: f32, inside: f32, dispersion: f32) -> Self {
-        let (outside, inside) = (f64::from(outside), f64::from(inside));
-        let spread = (inside - 1.0).max(0.0) * 0.025 * f64::from(dispersion);
-        // The index of red does not fall below that of a vacuum.
-        let red = (inside - spread).max(inside.min(1.0));
-        Self { eta: [red, inside, inside + spread].map(|index| index / outside) }
+        let inside = indices_by_color(f64::from(inside), dispersion);
+        Self { eta: inside.map(|index| index / f64::from(outside)) }
     }
 
     /// The refraction the other way.

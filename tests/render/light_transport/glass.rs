@@ -1,5 +1,6 @@
 //! Glass: refraction, Fresnel's shares, absorption.
 
+use envers::scene::{MetallicRoughness, MetallicRoughnessMaps, ShadingModel};
 use envers::{Instance, Material, Mesh, Plane};
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -151,4 +152,57 @@ fn glass_on_a_smooth_mesh_bends_light_by_the_interpolated_normal() {
         radiance(&scene)[0]
     };
     assert!(seen([0.3, 0.0, 1.0]) > 0.9);
+}
+
+#[test]
+fn a_dispersive_medium_bends_each_colour_by_its_own_index() {
+    let factors = MetallicRoughness {
+        metallic: 0.0,
+        roughness: 0.0,
+        ior: GLASS as f32,
+        transmission: 1.0,
+        is_thin: false,
+        dispersion: 1.0,
+        ..MetallicRoughness::default()
+    };
+    // n ± (n − 1) dispersion/40, and as above.
+    let spread = (GLASS - 1.0) / 40.0;
+    let across = [GLASS - spread, GLASS, GLASS + spread].map(|index| {
+        let sine = 0.5f64.sqrt() / index;
+        4.0 * sine / (1.0 - sine * sine).sqrt()
+    });
+    for (color, x) in across.into_iter().enumerate() {
+        let mut scene = seen_from(DVec3::new(-1.0, 1.0, 0.0), DVec3::ZERO);
+        let mut prism = Material { shading: ShadingModel::Pbr, ..Material::default() };
+        prism.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
+        let prism = scene.add_material(prism);
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, prism));
+        sphere(&mut scene, DVec3::new(x, -4.0, 0.0), 1e-8, glow(1.0));
+        let seen = radiance(&scene);
+        for channel in 0..3 {
+            let is_seen = seen[channel] > 0.9;
+            assert!(is_seen == (channel == color) && (is_seen || seen[channel] == 0.0), "{seen:?}");
+        }
+    }
+}
+
+#[test]
+fn a_dispersive_ball_in_a_white_world_is_white() {
+    let factors = MetallicRoughness {
+        metallic: 0.0,
+        roughness: 0.0,
+        transmission: 1.0,
+        is_thin: false,
+        dispersion: 3.0,
+        ..MetallicRoughness::default()
+    };
+    for height in [0.0, 0.3, 0.7, 0.95] {
+        let mut scene = seen_from(DVec3::new(0.0, height, 5.0), DVec3::new(0.0, height, 0.0));
+        scene.film.background = Vec3::ONE;
+        scene.film.max_depth = 40;
+        let mut ball = Material { shading: ShadingModel::Pbr, ..Material::default() };
+        ball.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
+        sphere(&mut scene, DVec3::ZERO, 1.0, ball);
+        assert_near(radiance(&scene), 1.0);
+    }
 }
