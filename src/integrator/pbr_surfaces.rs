@@ -29,6 +29,8 @@ pub(super) struct PbrHit {
     pub frame: DMat3,
     /// The direction to the viewer, in the local frame.
     pub wo: DVec3,
+    /// The normal of the clearcoat, turned to the viewer, if it has one of its own.
+    pub clearcoat_normal: Option<DVec3>,
     /// The share of what lies behind it that the surface covers.
     pub alpha: f32,
     /// True if it transmits light diffusely.
@@ -57,6 +59,20 @@ pub(super) struct PbrHits {
     bsdfs: Vec<Bsdf>,
     /// The opaque ones, which are not among the others, block by block.
     pub opaque: Vec<OpaqueSurfaces16>,
+}
+
+impl PbrHit {
+    /// Returns f |cos θi| of its BSDF for light from a direction of world space, of length 1.
+    pub fn evaluate(&self, bsdf: &Bsdf, light: DVec3) -> Vec3 {
+        let wi = self.frame.transpose() * light;
+        let value = bsdf.evaluate(self.wo, wi);
+        let Some(normal) = self.clearcoat_normal else { return value };
+        // The clearcoat, by its own normal.
+        let (x, y) = normal.any_orthonormal_pair();
+        let to_own = DMat3::from_cols(x, y, normal).transpose();
+        let (wo, own_wi) = (to_own * (self.frame * self.wo), to_own * light);
+        value - bsdf.evaluate_clearcoat(self.wo, wi) + bsdf.evaluate_clearcoat(wo, own_wi)
+    }
 }
 
 impl PbrHits {
@@ -196,7 +212,18 @@ pub(super) fn evaluate(
     let is_translucent = albedos.diffuse_transmission != Vec3::ZERO;
     let reflection_share = 1.0;
     let bsdf = place;
-    let hit = PbrHit { lane, bsdf, frame, wo, alpha, is_translucent, reflection_share, blurred };
+    let clearcoat_normal = Some(clearcoat_normal).filter(|&own| own != surface.normal);
+    let hit = PbrHit {
+        lane,
+        bsdf,
+        frame,
+        wo,
+        clearcoat_normal,
+        alpha,
+        is_translucent,
+        reflection_share,
+        blurred,
+    };
     if !traced.is_empty() {
         let bsdf = pbr.bsdf(&hit, &integrator.materials);
         let (normal, rest) = microfacet(integrator, wave.sample, bsdf, &frame, wo, surface.normal);

@@ -1,7 +1,10 @@
 //! Textures on surfaces: normals, occlusion, alpha, and pictures seen from afar. The
 //! radiances are worked out by hand, and every backend must give them.
 
-use envers::scene::{Channel, Coverage, Filter, NormalMap, OcclusionMap, Transfer};
+use envers::scene::{
+    Channel, Coverage, Filter, MetallicRoughness, MetallicRoughnessMaps, NormalMap, OcclusionMap,
+    ShadingModel, Transfer,
+};
 use envers::{
     AlphaMode, Backend, BruteForce, Bvh, Camera, Coherence, Geometry, Hit, Image, Instance,
     Intersector, Light, LightKind, Material, MaterialId, Mesh, Plane, Precision, Projection, Ray,
@@ -389,4 +392,32 @@ fn with_many_samples_mipmaps_change_little() {
     let difference = rmse(&ground(true, 256), &reference);
     println!("RMSE at 256 samples: {difference:.4}");
     assert!(difference < 0.02, "{difference:.4}");
+}
+
+#[test]
+fn lights_shine_on_a_clearcoat_by_its_own_normal() {
+    // The base is black, so that the clearcoat alone is seen; the light stands where it mirrors.
+    let factors = MetallicRoughness {
+        base_color: Vec3::ZERO,
+        metallic: 0.0,
+        specular: 0.0,
+        clearcoat: 1.0,
+        clearcoat_roughness: 0.5,
+        ..MetallicRoughness::default()
+    };
+    let seen = |on_base: bool, on_clearcoat: bool| {
+        let mut scene = scene();
+        let map = |texture| NormalMap { texture, scale: 1.0 };
+        let texture = dot(&mut scene, RIGHT);
+        let mut material = Material { shading: ShadingModel::Pbr, ..Material::default() };
+        material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
+        material.normal_map = on_base.then(|| map(texture));
+        material.clearcoat_normal_map = on_clearcoat.then(|| map(texture));
+        scene.materials[0] = material;
+        scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Z, MaterialId(0)));
+        scene.lights.push(sun(DVec3::new(0.96, 0.0, 0.28)));
+        radiance(&scene)[0]
+    };
+    let [flat, own, both] = [seen(false, false), seen(false, true), seen(true, true)];
+    assert!((own / both - 1.0).abs() < 1e-5 && own > 3.0 * flat, "{flat} {own} {both}");
 }

@@ -97,7 +97,7 @@ impl Reflected16 {
         for hit in pbr.hits.iter().filter(|hit| self.faces_light[hit.lane]) {
             let i = hit.lane;
             let light = DVec3::new(toward[0][i], toward[1][i], toward[2][i]);
-            let value = (pbr.bsdf)(hit).evaluate(hit.wo, hit.frame.transpose() * light);
+            let value = hit.evaluate((pbr.bsdf)(hit), light);
             set_lane(&mut self.share, i, value * (PI * hit.alpha));
         }
     }

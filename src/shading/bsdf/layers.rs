@@ -38,7 +38,14 @@ impl Layers {
             let below = self.below_clearcoat(wo).min(self.below_clearcoat(wi));
             sum += *color * (below * sheen.evaluate(wo, wi) as f32);
         }
-        sum + self.clearcoat.as_ref().map_or(0.0, |clearcoat| clearcoat.evaluate(wo, wi))
+        sum + self.evaluate_clearcoat(wo, wi)
+    }
+
+    /// Returns f |cos θi| of the clearcoat alone, of light from above the surface to above it.
+    pub fn evaluate_clearcoat(&self, wo: DVec3, wi: DVec3) -> Vec3 {
+        let is_above = wo.z > 0.0 && wi.z > 0.0;
+        let clearcoat = self.clearcoat.as_ref().filter(|_| is_above);
+        Vec3::splat(clearcoat.map_or(0.0, |clearcoat| clearcoat.evaluate(wo, wi)))
     }
 
     /// Returns the densities of `wi` among the samples of the clearcoat and of the sheen.

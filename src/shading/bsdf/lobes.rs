@@ -56,6 +56,12 @@ impl Bsdf {
         Some(self.out_of_frame(wi, wo))
     }
 
+    /// Returns f |cos θi| of the clearcoat alone, without a delta lobe. It is the same about the normal, so that any
+    /// frame of its own will do.
+    pub fn evaluate_clearcoat(&self, wo: DVec3, wi: DVec3) -> Vec3 {
+        self.layers.evaluate_clearcoat(wo, wi)
+    }
+
     /// Returns the albedos of the lobes for light from `wo`.
     pub fn lobe_albedos(&self, wo: DVec3) -> LobeAlbedos {
         let Frame { wo, is_inside } = self.frame(wo);
