@@ -20,6 +20,7 @@ mod material_cache;
 mod nested_dielectrics;
 mod null_interfaces;
 mod opaque_surfaces;
+mod pbr_evaluation;
 mod pbr_surfaces;
 mod pixel_sums;
 mod radiance;

@@ -6,7 +6,7 @@ use crate::geometry::sampling::sobol_point;
 use crate::geometry::{Hit, LANES, Side};
 use crate::integrator::Integrator;
 use crate::integrator::material_cache::MaterialCache;
-use crate::integrator::opaque_surfaces::OpaqueSurfaces16;
+use crate::integrator::opaque_surfaces::{OpaqueMaterial, OpaqueSurfaces16};
 use crate::integrator::wave::Wave;
 use crate::scene::{Material, MaterialId, MetallicRoughness, ray_share};
 use crate::shading::{self, Bsdf, LobeAlbedos};
@@ -57,6 +57,9 @@ pub(super) struct PbrHits {
     pub hits: Vec<PbrHit>,
     /// The BSDFs of those whose material varies.
     bsdfs: Vec<Bsdf>,
+    /// The shares of light that are traced in place of what a surface's parameters reflect, of those surfaces that
+    /// have any, by ray.
+    pub traced: Vec<TracedLobes>,
     /// The opaque ones, which are not among the others, block by block.
     pub opaque: Vec<OpaqueSurfaces16>,
 }
@@ -81,6 +84,14 @@ impl PbrHits {
         self.hits.clear();
         self.bsdfs.clear();
         self.opaque.clear();
+        self.traced.clear();
+    }
+
+    /// Adds a block of opaque surfaces of one material, in all lanes or in none yet, and returns its number.
+    #[inline(never)]
+    pub fn add_opaque(&mut self, material: &OpaqueMaterial, in_all_lanes: bool) -> usize {
+        self.opaque.push(OpaqueSurfaces16::new(material, in_all_lanes));
+        self.opaque.len() - 1
     }
 
     /// Returns the BSDF of a surface.
@@ -110,6 +121,8 @@ pub(super) struct BlurredLobes {
 /// The shares of a physically based surface's light that secondary rays see.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TracedLobes {
+    /// The number of the ray in its wave.
+    pub ray: u32,
     /// The share of the reflection.
     pub reflection: Vec3,
     /// The normal of the microfacet that mirrors and refracts, turned to the viewer.
@@ -189,6 +202,7 @@ pub(super) fn evaluate(
     let clearcoat_normal = clearcoat_normal(integrator, material, hit, surface, context);
     let blurred_by = |normal: DVec3| shading::reflect(incoming, normal);
     let mut traced = TracedLobes {
+        ray: ray as u32,
         reflection: take(&mut albedos.reflection, ray_share(params.roughness)) * alpha,
         microfacet: surface.normal,
         roughness: params.roughness,

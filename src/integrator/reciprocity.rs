@@ -68,9 +68,9 @@ fn trace_path(
         };
         // The chosen one of at most two secondary rays.
         let params = shading_params_at(integrator, &ray, &hit, &surface, &path.cone);
-        let specular = SpecularHit { ray: 0, surface, params, pbr: None };
+        let specular = SpecularHit { ray: 0, surface, params };
         let mut spawned = Vec::new();
-        spawn_at_hit(integrator, &ray, &hit, &specular, &path, |ray, is_refracted, path| {
+        spawn_at_hit(integrator, &ray, &hit, &specular, None, &path, |ray, is_refracted, path| {
             spawned.push((is_refracted, *ray, path));
         });
         spawned.sort_by_key(|&(is_refracted, ..)| is_refracted != refract);

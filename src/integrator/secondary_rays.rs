@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use crate::geometry::{Departure, Hit, Ray, Side};
 use crate::integrator::nested_dielectrics::InterfaceMedia;
 use crate::integrator::pbr_surfaces::TracedLobes;
-use crate::integrator::surface_evaluation::SpecularHit;
+use crate::integrator::surface_evaluation::{SpecularHit, WaveSurfaces};
 use crate::integrator::wave::{PathState, Wave};
 use crate::integrator::{Counts, Integrator};
 use crate::scene::ShadingParams;
@@ -25,16 +25,33 @@ pub const MAX_LAYERS: u32 = 256;
 pub(super) fn spawn(
     integrator: &Integrator<'_>,
     wave: &Wave,
-    specular_hits: &[SpecularHit],
+    surfaces: &WaveSurfaces,
     next: &mut Wave,
     counts: &mut Counts,
 ) {
-    for specular in specular_hits {
+    // Compiled for scenes with physically based materials, and for those without.
+    if integrator.features.pbr {
+        spawn_all::<true>(integrator, wave, surfaces, next, counts);
+    } else {
+        spawn_all::<false>(integrator, wave, surfaces, next, counts);
+    }
+}
+
+fn spawn_all<const PBR: bool>(
+    integrator: &Integrator<'_>,
+    wave: &Wave,
+    surfaces: &WaveSurfaces,
+    next: &mut Wave,
+    counts: &mut Counts,
+) {
+    let mut traced = surfaces.pbr.traced.iter().peekable();
+    for specular in &surfaces.specular {
+        let pbr = if PBR { traced.next_if(|lobes| lobes.ray == specular.ray) } else { None };
         let i = specular.ray as usize;
         let Some(hit) = wave.hits.get(i) else { continue };
         let path = wave.path(i, integrator);
         let ray = wave.rays.ray(i);
-        spawn_at_hit(integrator, &ray, &hit, specular, &path, |ray, is_refracted, path| {
+        spawn_at_hit(integrator, &ray, &hit, specular, pbr, &path, |ray, is_refracted, path| {
             if path.layers > MAX_LAYERS {
                 counts.beyond_layers += 1;
                 return;
@@ -49,11 +66,13 @@ pub(super) fn spawn(
 
 /// Hands on the reflected and then the refracted ray that a surface, which `ray` hit, sends on: each
 /// with whether it is refracted, and the path that it continues.
+#[inline(always)]
 pub(super) fn spawn_at_hit(
     integrator: &Integrator<'_>,
     ray: &Ray,
     hit: &Hit,
     specular: &SpecularHit,
+    pbr: Option<&TracedLobes>,
     path: &PathState,
     mut emit: impl FnMut(&Ray, bool, PathState),
 ) {
@@ -66,14 +85,13 @@ pub(super) fn spawn_at_hit(
     // The directions, and the shares of the light.
     let media = integrator.media.dielectrics.interface(surface.id, surface.side, &path.interior);
     let incoming = ray.direction.normalize();
-    let scattered = scatter(integrator, specular, &media, incoming, 1);
+    let scattered = scatter(integrator, specular, pbr, &media, incoming, 1);
     // Where media disperse light, each colour that is left goes its own way.
-    let is_dispersive = [&media.incident, &media.transmitted].into_iter().any(|interior| {
-        let [red, _, blue] = integrator.media.dielectrics.medium(interior).iors;
-        red != blue
-    });
-    let by_color = is_dispersive
-        .then(|| [0, 1, 2].map(|channel| scatter(integrator, specular, &media, incoming, channel)));
+    let by_color = if integrator.media.dielectrics.may_disperse() {
+        scatter_by_color(integrator, specular, pbr, &media, incoming)
+    } else {
+        None
+    };
     // Rays that leave the surface, or go straight on through it.
     let departing = |direction: DVec3, side: Side| Ray {
         departure: Some(Departure { id: surface.id, side }),
@@ -112,19 +130,19 @@ pub(super) fn spawn_at_hit(
         emit(ray, is_refracted, state);
     };
     // A clearcoat mirrors on its own.
-    if let Some(lobes) = specular.pbr.filter(|lobes| lobes.clearcoat != Vec3::ZERO) {
+    if let Some(lobes) = pbr.filter(|lobes| lobes.clearcoat != Vec3::ZERO) {
         let mirrored = mirrored(incoming, lobes.clearcoat_normal, surface);
         let (share, interior) = (lobes.clearcoat.as_dvec3(), media.incident.clone());
         let roughness = lobes.clearcoat_roughness;
         emit(&departing(mirrored, surface.side), share, false, interior, roughness);
     }
-    let roughness = specular.pbr.map_or(0.0, |lobes| lobes.roughness);
+    let roughness = pbr.map_or(0.0, |lobes| lobes.roughness);
     let reflected_share = match &by_color {
         None => scattered.reflected_share,
         Some(colors) => by_channel(|channel| colors[channel].reflected_share),
     };
     emit(&reflected, reflected_share, false, media.incident, roughness);
-    let is_blurred = specular.pbr.is_some_and(|lobes| lobes.transmissive > 0.0);
+    let is_blurred = pbr.is_some_and(|lobes| lobes.transmissive > 0.0);
     let roughness = if is_blurred { roughness } else { 0.0 };
     let Some(colors) = by_color else {
         let share = scattered.refracted_share;
@@ -136,6 +154,26 @@ pub(super) fn spawn_at_hit(
         share[channel] = scattered.refracted_share[channel];
         emit(&refracted(scattered), share, true, media.transmitted.clone(), roughness);
     }
+}
+
+/// Scatters each colour for itself, where media disperse light.
+#[cold]
+#[inline(never)]
+fn scatter_by_color(
+    integrator: &Integrator<'_>,
+    specular: &SpecularHit,
+    pbr: Option<&TracedLobes>,
+    media: &InterfaceMedia,
+    incoming: DVec3,
+) -> Option<[Scattered; 3]> {
+    let dielectrics = &integrator.media.dielectrics;
+    let disperses = |interior| {
+        let [red, _, blue] = dielectrics.medium(interior).iors;
+        red != blue
+    };
+    let is_dispersive = disperses(&media.incident) || disperses(&media.transmitted);
+    let of = |channel| scatter(integrator, specular, pbr, media, incoming, channel);
+    is_dispersive.then(|| [0, 1, 2].map(of))
 }
 
 /// Returns a colour whose channels are each that of another one.
@@ -194,9 +232,11 @@ struct Scattered {
 
 /// Scatters light of one colour that comes along `incoming`, of length 1; where media disperse nothing, all colours
 /// are alike.
+#[inline(always)]
 fn scatter(
     integrator: &Integrator<'_>,
-    SpecularHit { surface, params, pbr, .. }: &SpecularHit,
+    SpecularHit { surface, params, .. }: &SpecularHit,
+    pbr: Option<&TracedLobes>,
     media: &InterfaceMedia,
     incoming: DVec3,
     channel: usize,
@@ -204,7 +244,7 @@ fn scatter(
     let material = &integrator.scene.materials[surface.material.0 as usize];
     let ior = |interior| integrator.media.dielectrics.medium(interior).iors[channel];
     let SpecularShares { reflect: mirrored_share, transmit, fresnel } =
-        SpecularShares::new(params, pbr.as_ref());
+        SpecularShares::new(params, pbr);
     let facing = surface.facing_normal();
     let is_rough = pbr.is_some_and(|lobes| lobes.transmissive > 0.0 && lobes.roughness > 0.0);
     let is_blurred_sheet = material.thin && is_rough;

@@ -8,8 +8,8 @@ use glam::Vec3;
 use crate::geometry::{Hit, Hit16, LANES, Lanes, PrimitiveId16, Ray};
 use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::material_cache::scattered_reflectance;
-use crate::integrator::opaque_surfaces::{OpaqueMaterial, OpaqueSurfaces16};
-use crate::integrator::pbr_surfaces::{self, PbrHits, SurfacePoint, TracedLobes};
+use crate::integrator::pbr_evaluation;
+use crate::integrator::pbr_surfaces::PbrHits;
 use crate::integrator::radiance::{Radiance16, WaveRadiance, set_lane};
 use crate::integrator::wave::Wave;
 use crate::integrator::{Integrator, ShadingFeatures, simd};
@@ -68,8 +68,6 @@ pub(super) struct SpecularHit {
     pub surface: Surface,
     /// The shading parameters there.
     pub params: ShadingParams,
-    /// The shares of a physically based surface that are traced, in place of what its parameters reflect.
-    pub pbr: Option<TracedLobes>,
 }
 
 impl WaveSurfaces {
@@ -103,6 +101,9 @@ pub(super) fn evaluate(
         (true, true) => dispatch_blocks::<true, true>,
     };
     evaluate(integrator, wave, surfaces, radiance, counts);
+    if integrator.features.pbr {
+        pbr_evaluation::set_opaque_viewers(integrator.arch, wave, surfaces);
+    }
 }
 
 fn dispatch_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
@@ -160,29 +161,19 @@ fn evaluate_blocks<const TEXTURES: bool, const SMOOTH_NORMALS: bool>(
         lit.block = block;
         lit.opaque = None;
         let is_uniform = !TEXTURES
-            && evaluate_uniform_block(integrator, hits, lit, pbr, &mut radiance.blocks[block]);
+            && evaluate_uniform_block(
+                integrator,
+                hits,
+                lit,
+                pbr,
+                &mut radiance.blocks[block],
+                counts,
+            );
         if !is_uniform {
             let secondary = (&mut *pbr, &mut *specular);
             evaluate_block::<TEXTURES>(integrator, wave, hits, lit, radiance, secondary, counts);
         }
-        if let Some(index) = lit.opaque {
-            set_opaque_viewer(wave, &mut pbr.opaque[index], lit);
-            counts.pbr += if is_uniform { LANES as u64 } else { 0 };
-        }
         *count += usize::from(lit.scatters.contains(&true));
-    }
-}
-
-/// Computes what the opaque physically based surfaces of a block reflect from all around.
-#[inline(always)]
-fn set_opaque_viewer(wave: &Wave, opaque: &mut OpaqueSurfaces16, lit: &mut LitSurface16) {
-    let incoming = &wave.rays.blocks()[lit.block].direction;
-    let ambient = opaque.set_viewer(&lit.surface, incoming);
-    for channel in 0..3 {
-        for i in 0..LANES {
-            let x = &mut lit.diffuse[channel][i];
-            *x = if opaque.is_opaque[i] { ambient[channel][i] } else { *x };
-        }
     }
 }
 
@@ -195,6 +186,7 @@ fn evaluate_uniform_block(
     lit: &mut LitSurface16,
     pbr_hits: &mut PbrHits,
     radiance: &mut Radiance16,
+    counts: &mut FeatureCounts,
 ) -> bool {
     let first = lit.surface.material[0];
     let mut is_uniform = true;
@@ -215,8 +207,8 @@ fn evaluate_uniform_block(
     if material.is_pbr {
         let cached = integrator.materials.pbr(first);
         let Some(opaque) = cached.and_then(|cached| cached.opaque.as_ref()) else { return false };
-        lit.opaque = Some(pbr_hits.opaque.len());
-        pbr_hits.opaque.push(OpaqueSurfaces16::new(opaque, true));
+        lit.opaque = Some(pbr_hits.add_opaque(opaque, true));
+        counts.pbr += LANES as u64;
         // Its share of ambient light is known when all is set.
         reflectance = Reflectance { diffuse: Vec3::ONE, specular: Vec3::ZERO, shininess: 1.0 };
     }
@@ -261,84 +253,37 @@ fn evaluate_block<const TEXTURES: bool>(
         let Some(hit) = hits.hit(i) else { continue };
         let ray = lit.block * LANES + i;
         let cached = cache.get(lit.surface.material[i]);
+        if cached.is_pbr {
+            let secondary = (&mut *pbr_hits, &mut *specular_hits);
+            pbr_evaluation::evaluate::<TEXTURES>(
+                integrator, wave, i, &hit, lit, radiance, secondary, counts,
+            );
+            continue;
+        }
         let (mut params, mut reflectance) = (cached.params, cached.reflectance);
         let (mut is_finite, mut spawns_rays) = (cached.is_finite, cached.spawns_rays);
-        let mut context = TextureContext::default();
-        let is_varied = TEXTURES && cache.varies_on(cached, &hit);
         // Textures, a checker and vertex colours are evaluated at the point, where they count.
-        if is_varied {
+        if TEXTURES && cache.varies_on(cached, &hit) {
             let material = &scene.materials[lit.surface.material[i].0 as usize];
             let surface = lit.surface.surface(i, hit.id);
-            context = context_on_wave(integrator, wave, ray, &hit, &surface, counts);
+            let context = context_on_wave(integrator, wave, ray, &hit, &surface, counts);
             cache.count_lookups(cached, &hit, counts);
-            if !cached.is_pbr {
-                params = surface::shading_params(scene, material, &context);
-                reflectance = scattered_reflectance(&params);
-                is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
-                spawns_rays &= params.spawns_rays() || !material.spawns_rays();
-                lit.ambient[i] = surface::ambient_occlusion(scene, material, &context);
-            }
+            params = surface::shading_params(scene, material, &context);
+            reflectance = scattered_reflectance(&params);
+            is_finite = params.emission.is_finite() && reflectance.diffuse.is_finite();
+            spawns_rays &= params.spawns_rays() || !material.spawns_rays();
+            lit.ambient[i] = surface::ambient_occlusion(scene, material, &context);
             if cached.has_normal_map {
                 let normal = surface::mapped_normal(scene, &surface, &hit, &context.point);
                 lit.has_mapped_normals |= normal != surface.normal;
                 lit.surface.set_normal(i, normal);
             }
         }
-        let mut varied = None;
-        let mut alpha = 1.0;
-        let mut opaque = None;
-        if cached.is_pbr {
-            counts.pbr += 1;
-            let id = lit.surface.material[i];
-            let pbr = match cache.pbr(id).filter(|_| !is_varied) {
-                Some(cached) => {
-                    opaque = cached.opaque;
-                    &cached.params
-                }
-                None => {
-                    let material = &scene.materials[id.0 as usize];
-                    let params = varied.insert(surface::pbr_params(scene, material, &context));
-                    opaque = if cache.has_opaque { OpaqueMaterial::new(params) } else { None };
-                    params
-                }
-            };
-            (params, alpha) = (pbr.shading_params(), pbr.alpha);
-            lit.ambient[i] = pbr.ambient;
-            is_finite = params.emission.is_finite() && pbr.factors.base_color.is_finite();
-        }
         if !(is_finite && lit.surface.position(i).is_finite()) {
             radiance.mark_not_finite(lit.block, i, NotFiniteCause::Surface);
             continue;
         }
         set_lane(&mut radiance.blocks[lit.block], i, params.emission);
-        // A physically based surface.
-        if let Some(opaque) = opaque {
-            let index = *lit.opaque.get_or_insert_with(|| {
-                pbr_hits.opaque.push(OpaqueSurfaces16::new(&opaque, false));
-                pbr_hits.opaque.len() - 1
-            });
-            pbr_hits.opaque[index].set(i, &opaque);
-            set_lane(&mut lit.specular, i, Vec3::ZERO);
-            lit.scatters[i] = true;
-            continue;
-        }
-        if cached.is_pbr {
-            let surface = lit.surface.surface(i, hit.id);
-            let at = SurfacePoint { ray, hit: &hit, surface: &surface, context: &context };
-            let traced = pbr_surfaces::evaluate(integrator, wave, &at, varied.as_ref(), pbr_hits);
-            // Ambient light comes from all around.
-            let Some(pbr) = pbr_hits.hits.last() else { continue };
-            let albedos = &pbr.blurred.albedos;
-            let ambient = albedos.diffuse + albedos.reflection + albedos.clearcoat;
-            set_lane(&mut lit.diffuse, i, (ambient + albedos.sheen) * alpha);
-            set_lane(&mut lit.specular, i, Vec3::ZERO);
-            lit.scatters[i] = true;
-            if spawns_rays && (!traced.is_empty() || alpha < 1.0) {
-                let pbr = Some(traced);
-                specular_hits.push(SpecularHit { ray: ray as u32, surface, params, pbr });
-            }
-            continue;
-        }
         // The surface scatters light, and may send light on.
         let Reflectance { diffuse, specular, shininess } = reflectance;
         lit.scatters[i] = diffuse != Vec3::ZERO || specular != Vec3::ZERO;
@@ -351,7 +296,7 @@ fn evaluate_block<const TEXTURES: bool>(
         }
         if spawns_rays {
             let surface = lit.surface.surface(i, hit.id);
-            specular_hits.push(SpecularHit { ray: ray as u32, surface, params, pbr: None });
+            specular_hits.push(SpecularHit { ray: ray as u32, surface, params });
         }
     }
     lit.pbr.end = pbr_hits.hits.len();
@@ -359,7 +304,7 @@ fn evaluate_block<const TEXTURES: bool>(
 }
 
 /// Returns the texture context of what ray `ray` of a wave hit.
-fn context_on_wave(
+pub(super) fn context_on_wave(
     integrator: &Integrator<'_>,
     wave: &Wave,
     ray: usize,

@@ -180,7 +180,7 @@ impl Integrator<'_> {
             if !self.features.secondary_rays {
                 break;
             }
-            secondary_rays::spawn(self, wave, &surfaces.specular, &mut waves.next, counts);
+            secondary_rays::spawn(self, wave, surfaces, &mut waves.next, counts);
             if !waves.advance() {
                 break;
             }

@@ -95,6 +95,8 @@ pub struct NestedDielectrics {
     /// True for each instance whose triangles have their fronts inside: it is mirrored, or its mesh
     /// winds inward.
     is_inverted: Vec<bool>,
+    /// True if a medium refracts each colour by its own index.
+    may_disperse: bool,
 }
 
 impl NestedDielectrics {
@@ -142,7 +144,8 @@ impl NestedDielectrics {
             winds_inward != (instance.transform.matrix3.determinant() < 0.0)
         };
         let is_inverted = instances.iter().zip(&scene.instances).map(is_inverted).collect();
-        Self { media, spheres: ranks, planes, instances, is_inverted }
+        let may_disperse = media.iter().any(|medium: &Medium| medium.iors[0] != medium.iors[2]);
+        Self { media, spheres: ranks, planes, instances, is_inverted, may_disperse }
     }
 
     /// True if the scene has no dielectrics.
@@ -155,6 +158,12 @@ impl NestedDielectrics {
     pub fn may_absorb_or_hide(&self) -> bool {
         let absorbs = self.media.iter().any(|medium| medium.absorption != Vec3::ZERO);
         absorbs || self.media.len() > 1 || self.instances.iter().any(|&rank| rank != NO_DIELECTRIC)
+    }
+
+    /// True if a medium refracts each colour by its own index.
+    #[inline]
+    pub fn may_disperse(&self) -> bool {
+        self.may_disperse
     }
 
     /// Returns the medium at a point with an interior list.

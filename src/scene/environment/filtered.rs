@@ -18,7 +18,10 @@ const IRRADIANCE_SIZE: usize = 16;
 /// The number of filtered reflections: those of the roughnesses 1/10, 2/10, …, 1.
 const LEVELS: usize = 10;
 
-/// The number of samples of a filtered reflection.
+/// The first level whose lobe is so wide that the cells of directions are summed for it.
+const FIRST_WIDE: usize = 4;
+
+/// The number of samples of a sharper filtered reflection.
 const SAMPLES: usize = 64;
 
 /// The greatest number of texels along a face of the finest map.
@@ -39,7 +42,9 @@ pub struct FilteredEnvironment {
     /// The mean of the radiance that microfacets of each roughness reflect, by the mirrored direction; each made
     /// when it is first needed.
     levels: [OnceLock<CubeMap>; LEVELS],
-    /// Ever coarser maps of the radiance, from which these are made.
+    /// What the rougher of these are made of: the light of cells of directions.
+    cells: Vec<CellLight>,
+    /// What the others are made of: ever coarser maps of the radiance.
     pyramid: Vec<CubeMap>,
     /// The number of texels along a face of the finest of them.
     size: usize,
@@ -53,6 +58,7 @@ impl FilteredEnvironment {
         let sum: DVec3 = cells.iter().map(|cell| cell.sum.as_dvec3()).sum();
         Self {
             irradiance: irradiance(&cells),
+            cells: cells.iter().enumerate().map(CellLight::new).collect(),
             levels: Default::default(),
             pyramid: pyramid(texels, size),
             size,
@@ -69,15 +75,33 @@ impl FilteredEnvironment {
             // Not within `get_or_init`: a thread that waits for others there may take up work that asks for the
             // same level.
             if self.levels[level].get().is_none() {
-                let map = Reflection::new(level, self.size, &self.pyramid).filter_on_all_threads();
+                let (size, reflected) = self.reflection_of(level);
+                let map = CubeMap::from_fn(size, reflected);
                 self.levels[level].get_or_init(|| map);
             }
         }
     }
 
     fn level(&self, level: usize) -> &CubeMap {
-        let reflection = || Reflection::new(level, self.size, &self.pyramid);
-        self.levels[level].get_or_init(|| reflection().filter_here())
+        self.levels[level].get_or_init(|| {
+            let (size, reflected) = self.reflection_of(level);
+            CubeMap::from_fn_here(size, reflected)
+        })
+    }
+
+    /// Returns the number of texels along a face of a level, and the mean of the radiance that is reflected about a
+    /// mirrored direction.
+    fn reflection_of(&self, level: usize) -> (usize, Box<dyn Fn(Vec3) -> Vec3 + Sync + '_>) {
+        let roughness = (level + 1) as f32 / LEVELS as f32;
+        let alpha = roughness * roughness;
+        if level >= FIRST_WIDE {
+            let reflected = move |mirrored| mean_of_cells(&self.cells, alpha, mirrored);
+            return (IRRADIANCE_SIZE / 2, Box::new(reflected));
+        }
+        let reflection = NarrowReflection::new(alpha, self.size, &self.pyramid);
+        // The rougher, the fewer texels show all there is.
+        let size = (self.size >> level).max(IRRADIANCE_SIZE.min(self.size));
+        (size, Box::new(move |mirrored| reflection.mean(mirrored)))
     }
 
     /// Returns the irradiance of a surface with this normal divided by π: what it reflects if it is white and
@@ -129,6 +153,8 @@ struct Light {
 /// The light from a cell of directions.
 #[derive(Clone, Copy, Default)]
 struct Cell {
+    /// Its solid angle.
+    solid_angle: f32,
     /// The integral of radiance over the cell.
     sum: Vec3,
     /// The same of radiance times direction, for red, green and blue: the irradiance of a surface that sees
@@ -169,6 +195,7 @@ impl Light {
                     let light = radiance * solid_angle;
                     let cell = &mut cells[cube_map::texel_of(direction, IRRADIANCE_SIZE)];
                     cell.sum += light;
+                    cell.solid_angle += solid_angle;
                     for channel in 0..3 {
                         cell.vectors[channel] += direction * light[channel];
                     }
@@ -187,6 +214,7 @@ impl Light {
         for (more_cells, more_texels) in parts {
             for (cell, more) in cells.iter_mut().zip(more_cells) {
                 cell.sum += more.sum;
+                cell.solid_angle += more.solid_angle;
                 (0..3).for_each(|channel| cell.vectors[channel] += more.vectors[channel]);
             }
             for (texel, more) in texels.iter_mut().zip(more_texels) {
@@ -270,36 +298,56 @@ struct ReflectedSample {
     level: f32,
 }
 
-/// The reflections of an environment by microfacets of one roughness.
+/// The light of a cell of directions as that of one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CellLight {
+    /// The direction: the mean of those of the cell by their light.
+    direction: Vec3,
+    /// The integral of radiance over the cell.
+    sum: Vec3,
+    /// The solid angle of the cell.
+    solid_angle: f32,
+}
+
+impl CellLight {
+    fn new((index, cell): (usize, &Cell)) -> Self {
+        let center = cube_map::center_of(index, IRRADIANCE_SIZE);
+        let direction = cell.vectors.iter().sum::<Vec3>().normalize_or(center);
+        Self { direction, sum: cell.sum, solid_angle: cell.solid_angle }
+    }
+}
+
+/// Returns the mean of the radiance that microfacets of a roughness α, seen head-on, reflect about a mirrored direction:
+/// each direction at an angle of cosine c to it with the weight D(h) c, where cos² of the angle to h is (1 + c)/2.
+fn mean_of_cells(cells: &[CellLight], alpha: f32, mirrored: Vec3) -> Vec3 {
+    let (mut sum, mut total) = (Vec3::ZERO, 0.0);
+    for cell in cells {
+        let cosine = cell.direction.dot(mirrored).max(0.0);
+        let d = 0.5 * (1.0 + cosine) * (alpha * alpha - 1.0) + 1.0;
+        let weight = cosine / (d * d);
+        sum += cell.sum * weight;
+        total += cell.solid_angle * weight;
+    }
+    sum / total
+}
+
+/// The reflections of an environment by microfacets of a low roughness.
 ///
 /// The samples are those of the distribution of microfacets seen head-on. Each reads the level of the pyramid
 /// with texels of its size (Křivánek and Colbert, *Real-time Shading with Filtered Importance Sampling*, 2008).
-struct Reflection<'a> {
+struct NarrowReflection<'a> {
     samples: Vec<ReflectedSample>,
     /// The sum of their weights.
     total: f32,
     pyramid: &'a [CubeMap],
-    /// The number of texels along a face.
-    size: usize,
 }
 
-impl<'a> Reflection<'a> {
-    /// The reflections by the roughness of a level; `finest` is the size of the finest map of the pyramid.
-    fn new(level: usize, finest: usize, pyramid: &'a [CubeMap]) -> Self {
-        let roughness = (level + 1) as f32 / LEVELS as f32;
-        let samples = reflected_samples(roughness * roughness, finest);
+impl<'a> NarrowReflection<'a> {
+    /// The reflections by a roughness α; `finest` is the size of the finest map of the pyramid.
+    fn new(alpha: f32, finest: usize, pyramid: &'a [CubeMap]) -> Self {
+        let samples = reflected_samples(alpha, finest);
         let total: f32 = samples.iter().map(|sample| sample.weight).sum();
-        // The rougher, the fewer texels show all there is.
-        let least = if roughness < 0.5 { IRRADIANCE_SIZE } else { IRRADIANCE_SIZE / 2 };
-        Self { samples, total, pyramid, size: (finest >> level).max(least.min(finest)) }
-    }
-
-    fn filter_on_all_threads(&self) -> CubeMap {
-        CubeMap::from_fn(self.size, |mirrored| self.mean(mirrored))
-    }
-
-    fn filter_here(&self) -> CubeMap {
-        CubeMap::from_fn_here(self.size, |mirrored| self.mean(mirrored))
+        Self { samples, total, pyramid }
     }
 
     /// Returns the mean of the radiance that is reflected about a mirrored direction.
