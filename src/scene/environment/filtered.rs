@@ -1,38 +1,25 @@
 //! An environment filtered for surfaces that blur it: its irradiance by normal, and its reflections by
 //! direction and roughness.
 
-use std::f32::consts::{PI, TAU};
+use std::f32::consts::PI;
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 
-use super::cube_map::{self, CubeMap};
-use super::lookup;
+use super::cube_map::CubeMap;
+use super::map_light::{CELLS, Cell, MapLight, pyramid};
+use super::reflections::{CellLight, NarrowReflection, mean_of_cells};
 use crate::scene::{Image, Transfer};
 
-/// The number of texels along a face of the map of irradiance, and of the cells whose light it sums.
-const IRRADIANCE_SIZE: usize = 16;
+/// The number of texels along a face of the map of irradiance.
+const IRRADIANCE_SIZE: usize = CELLS;
 
 /// The number of filtered reflections: those of the roughnesses 1/10, 2/10, …, 1.
 const LEVELS: usize = 10;
 
 /// The first level whose lobe is so wide that the cells of directions are summed for it.
 const FIRST_WIDE: usize = 4;
-
-/// The number of samples of a sharper filtered reflection.
-const SAMPLES: usize = 64;
-
-/// The greatest number of texels along a face of the finest map.
-const MAX_SIZE: usize = 128;
-
-/// The least numbers of rows and columns that are visited: pixels of smaller maps are visited several times.
-const MIN_ROWS: usize = 64;
-const MIN_COLUMNS: usize = 128;
-
-/// The number of parts into which a map is divided: not that of the threads, so that sums have one order.
-const PARTS: usize = 8;
 
 /// An environment filtered for diffuse and rough reflections, in the axes of its map.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +41,7 @@ pub struct FilteredEnvironment {
 impl FilteredEnvironment {
     /// Filters a map for diffuse reflections, on all threads of the current pool.
     pub(super) fn new(map: &Image, transfer: Transfer) -> Self {
-        let Light { cells, texels, size } = Light::collect(map, transfer);
+        let MapLight { cells, texels, size } = MapLight::collect(map, transfer);
         let sum: DVec3 = cells.iter().map(|cell| cell.sum.as_dvec3()).sum();
         Self {
             irradiance: irradiance(&cells),
@@ -140,101 +127,6 @@ fn place_of(roughness: f32) -> (usize, f32) {
     (place as usize, place.fract())
 }
 
-/// The light of a map, by directions.
-struct Light {
-    /// The cells of directions, `IRRADIANCE_SIZE` along a face.
-    cells: Vec<Cell>,
-    /// The mean radiance in each texel of a cube map, and its solid angle.
-    texels: Vec<(Vec3, f32)>,
-    /// The number of these texels along a face.
-    size: usize,
-}
-
-/// The light from a cell of directions.
-#[derive(Clone, Copy, Default)]
-struct Cell {
-    /// Its solid angle.
-    solid_angle: f32,
-    /// The integral of radiance over the cell.
-    sum: Vec3,
-    /// The same of radiance times direction, for red, green and blue: the irradiance of a surface that sees
-    /// the whole cell is the product with its normal.
-    vectors: [Vec3; 3],
-}
-
-impl Light {
-    /// Adds up the pixels of a map by where they are seen.
-    fn collect(map: &Image, transfer: Transfer) -> Self {
-        let (width, height) = (map.width as usize, map.height as usize);
-        // Small maps are visited at several places of each pixel.
-        let columns = width * MIN_COLUMNS.div_ceil(width);
-        let rows = height * MIN_ROWS.div_ceil(height);
-        // Each texel has the centre of some pixel, or nearly each.
-        let size = (1 << (rows / 4).ilog2()).min(MAX_SIZE);
-        let azimuths: Vec<(f32, f32)> = (0..columns)
-            .map(|x| (((x as f32 + 0.5) / columns as f32 - 0.5) * TAU).sin_cos())
-            .collect();
-        let part = |part: usize| {
-            let mut cells = vec![Cell::default(); 6 * IRRADIANCE_SIZE * IRRADIANCE_SIZE];
-            let mut texels = vec![(Vec3::ZERO, 0.0f32); 6 * size * size];
-            for y in part * rows / PARTS..(part + 1) * rows / PARTS {
-                let elevation = (0.5 - (y as f32 + 0.5) / rows as f32) * PI;
-                let (sin_elevation, cos_elevation) = elevation.sin_cos();
-                // The solid angle of a pixel: exact for the band that the row is.
-                let band = 2.0 * cos_elevation * (PI / (2.0 * rows as f32)).sin();
-                let solid_angle = band * TAU / columns as f32;
-                let row = y * height / rows * width;
-                for (x, (sin_azimuth, cos_azimuth)) in azimuths.iter().enumerate() {
-                    let radiance =
-                        map.texels.linear(row + x * width / columns, transfer).truncate();
-                    let direction = Vec3::new(
-                        cos_elevation * cos_azimuth,
-                        sin_elevation,
-                        cos_elevation * sin_azimuth,
-                    );
-                    let light = radiance * solid_angle;
-                    let cell = &mut cells[cube_map::texel_of(direction, IRRADIANCE_SIZE)];
-                    cell.sum += light;
-                    cell.solid_angle += solid_angle;
-                    for channel in 0..3 {
-                        cell.vectors[channel] += direction * light[channel];
-                    }
-                    let texel = &mut texels[cube_map::texel_of(direction, size)];
-                    texel.0 += light;
-                    texel.1 += solid_angle;
-                }
-            }
-            (cells, texels)
-        };
-        let parts: Vec<_> = (0..PARTS).into_par_iter().map(part).collect();
-
-        // The sums of the parts, in their order.
-        let mut parts = parts.into_iter();
-        let (mut cells, mut texels) = parts.next().expect("there are several parts");
-        for (more_cells, more_texels) in parts {
-            for (cell, more) in cells.iter_mut().zip(more_cells) {
-                cell.sum += more.sum;
-                cell.solid_angle += more.solid_angle;
-                (0..3).for_each(|channel| cell.vectors[channel] += more.vectors[channel]);
-            }
-            for (texel, more) in texels.iter_mut().zip(more_texels) {
-                texel.0 += more.0;
-                texel.1 += more.1;
-            }
-        }
-        // A texel that no pixel's centre is in has the radiance at its own.
-        let even = 4.0 * PI / (6 * size * size) as f32;
-        for (index, texel) in texels.iter_mut().enumerate() {
-            *texel = if texel.1 > 0.0 {
-                (texel.0 / texel.1, texel.1)
-            } else {
-                (lookup(map, transfer, cube_map::center_of(index, size)), even)
-            };
-        }
-        Self { cells, texels, size }
-    }
-}
-
 /// Returns the irradiance by normal, divided by π.
 fn irradiance(cells: &[Cell]) -> CubeMap {
     /// The number of cells that are added up side by side.
@@ -265,136 +157,10 @@ fn irradiance(cells: &[Cell]) -> CubeMap {
     })
 }
 
-/// Returns ever coarser maps of the radiance, the finest first.
-fn pyramid(mut texels: Vec<(Vec3, f32)>, mut size: usize) -> Vec<CubeMap> {
-    let mut levels = Vec::new();
-    loop {
-        levels.push(CubeMap::from_fn(size, |d| texels[cube_map::texel_of(d, size)].0));
-        if size == 1 {
-            return levels;
-        }
-        let half = size / 2;
-        let merged = |index: usize| {
-            let (face, y, x) = (index / (half * half), index / half % half, index % half);
-            let first = (face * size + 2 * y) * size + 2 * x;
-            let four = [first, first + 1, first + size, first + size + 1];
-            let sum: f32 = four.iter().map(|&i| texels[i].1).sum();
-            let light: Vec3 = four.iter().map(|&i| texels[i].0 * texels[i].1).sum();
-            (light / sum, sum)
-        };
-        texels = (0..6 * half * half).map(merged).collect();
-        size = half;
-    }
-}
-
-/// A direction in which light is reflected, about the mirrored direction.
-struct ReflectedSample {
-    /// The direction, with the mirrored one along z.
-    direction: Vec3,
-    /// The weight.
-    weight: f32,
-    /// The level of the pyramid whose texels have half of the solid angle that the sample stands for: they are
-    /// interpolated.
-    level: f32,
-}
-
-/// The light of a cell of directions as that of one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct CellLight {
-    /// The direction: the mean of those of the cell by their light.
-    direction: Vec3,
-    /// The integral of radiance over the cell.
-    sum: Vec3,
-    /// The solid angle of the cell.
-    solid_angle: f32,
-}
-
-impl CellLight {
-    fn new((index, cell): (usize, &Cell)) -> Self {
-        let center = cube_map::center_of(index, IRRADIANCE_SIZE);
-        let direction = cell.vectors.iter().sum::<Vec3>().normalize_or(center);
-        Self { direction, sum: cell.sum, solid_angle: cell.solid_angle }
-    }
-}
-
-/// Returns the mean of the radiance that microfacets of a roughness α, seen head-on, reflect about a mirrored direction:
-/// each direction at an angle of cosine c to it with the weight D(h) c, where cos² of the angle to h is (1 + c)/2.
-fn mean_of_cells(cells: &[CellLight], alpha: f32, mirrored: Vec3) -> Vec3 {
-    let (mut sum, mut total) = (Vec3::ZERO, 0.0);
-    for cell in cells {
-        let cosine = cell.direction.dot(mirrored).max(0.0);
-        let d = 0.5 * (1.0 + cosine) * (alpha * alpha - 1.0) + 1.0;
-        let weight = cosine / (d * d);
-        sum += cell.sum * weight;
-        total += cell.solid_angle * weight;
-    }
-    sum / total
-}
-
-/// The reflections of an environment by microfacets of a low roughness.
-///
-/// The samples are those of the distribution of microfacets seen head-on. Each reads the level of the pyramid
-/// with texels of its size (Křivánek and Colbert, *Real-time Shading with Filtered Importance Sampling*, 2008).
-struct NarrowReflection<'a> {
-    samples: Vec<ReflectedSample>,
-    /// The sum of their weights.
-    total: f32,
-    pyramid: &'a [CubeMap],
-}
-
-impl<'a> NarrowReflection<'a> {
-    /// The reflections by a roughness α; `finest` is the size of the finest map of the pyramid.
-    fn new(alpha: f32, finest: usize, pyramid: &'a [CubeMap]) -> Self {
-        let samples = reflected_samples(alpha, finest);
-        let total: f32 = samples.iter().map(|sample| sample.weight).sum();
-        Self { samples, total, pyramid }
-    }
-
-    /// Returns the mean of the radiance that is reflected about a mirrored direction.
-    fn mean(&self, mirrored: Vec3) -> Vec3 {
-        let (x, y) = mirrored.any_orthonormal_pair();
-        let mut sum = Vec3::ZERO;
-        for ReflectedSample { direction, weight, level } in &self.samples {
-            let toward = x * direction.x + y * direction.y + mirrored * direction.z;
-            sum += lookup_level(self.pyramid, toward, *level) * *weight;
-        }
-        sum / self.total
-    }
-}
-
-fn reflected_samples(alpha: f32, size: usize) -> Vec<ReflectedSample> {
-    let texel = 4.0 * PI / (6 * size * size) as f32;
-    let sample = |i: usize| {
-        // Points that are spread by the golden ratio.
-        let u = (i as f32 + 0.5) / SAMPLES as f32;
-        let phi = TAU * (i as f32 * 0.618_034).fract();
-        // The microfacet, and the direction into which it reflects what comes head-on.
-        let square = (1.0 - u) / (1.0 + (alpha * alpha - 1.0) * u);
-        let cosine = 2.0 * square - 1.0;
-        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        let density = {
-            let d = square * (alpha * alpha - 1.0) + 1.0;
-            alpha * alpha / (PI * d * d) / 4.0
-        };
-        let solid_angle = 1.0 / (SAMPLES as f32 * density);
-        ReflectedSample {
-            direction: Vec3::new(sine * phi.cos(), sine * phi.sin(), cosine),
-            weight: cosine.max(0.0),
-            level: (0.5 * (solid_angle / texel).log2() - 0.5).max(0.0),
-        }
-    };
-    (0..SAMPLES).map(sample).filter(|sample| sample.weight > 0.0).collect()
-}
-
-fn lookup_level(pyramid: &[CubeMap], direction: Vec3, level: f32) -> Vec3 {
-    let first = (level as usize).min(pyramid.len() - 1);
-    let second = (first + 1).min(pyramid.len() - 1);
-    let near = pyramid[first].lookup(direction);
-    near.lerp(pyramid[second].lookup(direction), (level - first as f32).min(1.0))
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f32::consts::TAU;
+
     use super::*;
     use crate::scene::Texels;
     use crate::scene::environment::direction_at;

@@ -2,6 +2,8 @@
 
 mod cube_map;
 mod filtered;
+mod map_light;
+mod reflections;
 mod sky;
 mod studio;
 
