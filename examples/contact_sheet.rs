@@ -96,6 +96,7 @@ fn light(kind: LightKind, intensity: f32) -> Light {
         intensity: Vec3::splat(intensity),
         shadow: Shadow::None,
         samples: 16,
+        shape: None,
     }
 }
 

@@ -47,6 +47,7 @@ fn main() -> Result<()> {
         intensity: Vec3::new(0.2, 0.22, 0.25),
         shadow: Shadow::None,
         samples: 16,
+        shape: None,
     });
     let (eye, target) = (DVec3::new(0.0, 2.5, 9.0), DVec3::new(0.0, 0.8, 0.0));
     scene.cameras.push(Camera::look_at(eye, target, DVec3::Y, Projection::FovY(0.6))?);

@@ -48,6 +48,7 @@ pub fn with_camera_and_light(mut scene: Scene, eye: DVec3) -> Scene {
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
         samples: 16,
+        shape: None,
     });
     scene.check().expect("the benches' scenes are valid");
     scene

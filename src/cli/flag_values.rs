@@ -11,7 +11,7 @@ use crate::intersect::{Backend, BuildQuality, Precision};
 use crate::load::{Limit, UpAxis};
 use crate::measure::stress::Goal;
 use crate::scene::check::{check_samples, check_size};
-use crate::scene::{ShadingModel, Tone};
+use crate::scene::{IntegratorKind, ShadingModel, Tone};
 
 /// A ray tracing backend; none leaves the choice to the renderer.
 pub type BackendChoice = Option<Backend>;
@@ -56,6 +56,8 @@ pub const VIEWS: &Choices<View> =
     &[("beauty", View::Beauty), ("normal", View::Normal), ("depth", View::Depth), ("id", View::Id)];
 pub const SHADING_MODELS: &Choices<ShadingModel> =
     &[("pbr", ShadingModel::Pbr), ("phong", ShadingModel::Phong)];
+pub const INTEGRATORS: &Choices<IntegratorKind> =
+    &[("whitted", IntegratorKind::Whitted), ("path", IntegratorKind::Path)];
 pub const UP_AXES: &Choices<UpAxis> = &[
     ("x", UpAxis::X),
     ("y", UpAxis::Y),

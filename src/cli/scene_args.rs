@@ -5,14 +5,16 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::flag_values::{
-    NamedLimit, PRECISIONS, SHADING_MODELS, Size, UP_AXES, choice, elevation, finite, seconds, size,
+    INTEGRATORS, NamedLimit, PRECISIONS, SHADING_MODELS, Size, UP_AXES, choice, elevation, finite,
+    seconds, size,
 };
 use crate::cli::{load_report, messages, paths};
 use crate::error::{Error, Result};
 use crate::intersect::Precision;
 use crate::load::{EnvironmentSource, Framing, Limits, LoadOptions, LoadReport, Loaded, UpAxis};
+
 use crate::scene::check::{MAX_DEPTH, MAX_OCCLUSION_RAYS, MAX_SPP};
-use crate::scene::{Camera, Scene, ShadingModel};
+use crate::scene::{Camera, IntegratorKind, Scene, ShadingModel};
 
 /// The flags for loading a scene's files; shared by the commands that load one.
 #[derive(Args, Clone)]
@@ -104,6 +106,14 @@ pub struct TraceArgs {
     /// the scene's, or 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_DEPTH)), allow_negative_numbers = true)]
     pub max_depth: Option<u32>,
+    /// Integrator: whitted has no noise, path traces all light by random paths, with noise that falls with the
+    /// number of samples (--spp) [default: the scene's, or whitted]
+    #[arg(long, value_name = "INTEGRATOR", value_parser = choice(INTEGRATORS))]
+    pub integrator: Option<IntegratorKind>,
+    /// Seed of the random numbers of the integrator path: another one gives other noise
+    /// [default: the scene's, or 0]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<u32>,
     /// Ambient occlusion: number of rays, from 0 to 1024, by which each surface finds how much of the
     /// environment's and of ambient light arrives there [default: the scene's, or 0]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=i64::from(MAX_OCCLUSION_RAYS)), allow_negative_numbers = true)]
@@ -191,6 +201,12 @@ impl TraceArgs {
         let (scene, path) = (&mut input.scene, &self.input.scene);
         if let Some(spp) = self.spp {
             (scene.film.spp, scene.film.adaptive) = (spp, None);
+        }
+        if let Some(integrator) = self.integrator {
+            scene.film.integrator = integrator;
+        }
+        if let Some(seed) = self.seed {
+            scene.film.seed = seed;
         }
         if let Some(rays) = self.ao {
             scene.film.ambient_occlusion = rays;

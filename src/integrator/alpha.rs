@@ -50,6 +50,11 @@ impl AlphaSums {
         }
     }
 
+    /// Takes away a share of a sample.
+    pub fn uncover_sample(&mut self, sample: u32, share: f64) {
+        self.sums[sample as usize] -= share;
+    }
+
     /// Returns the mean of the samples of pixel `i`, of which there are this many.
     pub fn mean(&self, i: usize, samples: usize) -> f32 {
         mean(self.sums[i], samples)

@@ -104,7 +104,7 @@ impl EmissiveLights {
 }
 
 /// An instance that illuminates, with its power summed from triangle to triangle.
-struct EmissiveMesh<'a> {
+pub(super) struct EmissiveMesh<'a> {
     scene: &'a Scene,
     instance: &'a Instance,
     /// The index of the instance.
@@ -119,7 +119,7 @@ struct EmissiveMesh<'a> {
 }
 
 impl<'a> EmissiveMesh<'a> {
-    fn new(scene: &'a Scene, index: usize, instance: &'a Instance) -> Self {
+    pub fn new(scene: &'a Scene, index: usize, instance: &'a Instance) -> Self {
         let material = &scene.materials[instance.material.0 as usize];
         let triangles = scene.meshes[instance.mesh.0 as usize].triangles.len();
         let varies =
@@ -153,7 +153,8 @@ impl<'a> EmissiveMesh<'a> {
         PrimitiveId::triangle(self.instance.mesh.0, triangle, self.index)
     }
 
-    fn vertices(&self, triangle: u32) -> [DVec3; 3] {
+    /// Returns the vertices of a triangle.
+    pub fn vertices(&self, triangle: u32) -> [DVec3; 3] {
         self.scene.triangle_vertices(self.id(triangle))
     }
 
@@ -171,17 +172,55 @@ impl<'a> EmissiveMesh<'a> {
         sum / self.lookups as f32
     }
 
+    /// Returns its power, as the sum of area times luminance; `None` if it emits nothing, or beyond all bounds.
+    pub fn power(&self) -> Option<f64> {
+        self.sums.last().copied().filter(|&total| total > 0.0 && total.is_finite())
+    }
+
+    /// Returns the triangle in which the sum of power reaches a target, and the place in its own power, from 0 to 1.
+    fn triangle_at(&self, target: f64) -> (usize, f64) {
+        let triangle = self.sums.partition_point(|&sum| sum <= target).min(self.sums.len() - 1);
+        let own = self.own_power(triangle);
+        let before = self.sums[triangle] - own;
+        let rest = if own > 0.0 { ((target - before) / own).clamp(0.0, 1.0) } else { 0.5 };
+        (triangle, rest)
+    }
+
+    fn own_power(&self, triangle: usize) -> f64 {
+        self.sums[triangle] - if triangle == 0 { 0.0 } else { self.sums[triangle - 1] }
+    }
+
+    /// Samples a point in proportion to the power of the triangles, and returns it as a hit, with its position and its
+    /// density per unit of area.
+    pub fn sample(&self, part: f64, u: [f64; 2]) -> Option<(Hit, DVec3, f64)> {
+        let (triangle, _) = self.triangle_at(part * self.power()?);
+        let triangle = triangle as u32;
+        let [u, v] = triangle_weights(u);
+        let position = triangle::point(self.vertices(triangle), u, v);
+        Some((Hit { t: 1.0, u, v, id: self.id(triangle) }, position, self.per_area(triangle)))
+    }
+
+    /// Returns the density per unit of area of the sampled points of a triangle.
+    pub fn per_area(&self, triangle: u32) -> f64 {
+        let area = 0.5 * triangle::area_normal(self.vertices(triangle)).length();
+        let share = self.own_power(triangle as usize) / self.power().unwrap_or(f64::INFINITY);
+        if area > 0.0 { share / area } else { 0.0 }
+    }
+
+    /// Returns the radiance that a point emits against a direction; `None` on a side that emits none.
+    pub fn radiance(&self, hit: &Hit, direction: DVec3) -> Option<Vec3> {
+        let slope = triangle::area_normal(self.vertices(hit.id.primitive)).dot(direction);
+        let is_front = (slope < 0.0) != self.is_mirrored;
+        let emits = is_front || !self.material.cull_back_faces;
+        emits.then(|| emission_at(self.scene, self.material, hit, DVec3::ZERO))
+    }
+
     /// Returns point `index` of all points of some sets of `count`, spread by power; none if the mesh has
     /// none.
     fn point(&self, index: u32, count: u32, sets: u32) -> Option<EmissivePoint> {
         let [x, y] = sobol_point(index, count * sets);
-        let total = self.sums.last().copied().filter(|&total| total > 0.0 && total.is_finite())?;
-        // The triangle in which the sum reaches a share x, and the share of that triangle itself.
-        let target = x * total;
-        let triangle = self.sums.partition_point(|&sum| sum <= target).min(self.sums.len() - 1);
-        let before = if triangle == 0 { 0.0 } else { self.sums[triangle - 1] };
-        let own = self.sums[triangle] - before;
-        let rest = if own > 0.0 { ((target - before) / own).clamp(0.0, 1.0) } else { 0.5 };
+        let total = self.power()?;
+        let (triangle, rest) = self.triangle_at(x * total);
         // The point in the triangle, which stands for its part of the power.
         let vertices = self.vertices(triangle as u32);
         let [u, v] = triangle_weights([rest, y]);
@@ -198,7 +237,7 @@ impl<'a> EmissiveMesh<'a> {
 }
 
 /// Returns the mean radiance of a sphere.
-fn mean_of_sphere(scene: &Scene, index: u32, material: &Material) -> Vec3 {
+pub(super) fn mean_of_sphere(scene: &Scene, index: u32, material: &Material) -> Vec3 {
     if material.emission_map.is_none() && material.coverage.is_none() {
         return material.emission;
     }
@@ -217,7 +256,7 @@ fn mean_of_sphere(scene: &Scene, index: u32, material: &Material) -> Vec3 {
 }
 
 /// Returns the radiance that a material emits at a hit, where the surface has this normal.
-fn emission_at(scene: &Scene, material: &Material, hit: &Hit, normal: DVec3) -> Vec3 {
+pub(super) fn emission_at(scene: &Scene, material: &Material, hit: &Hit, normal: DVec3) -> Vec3 {
     let surface = Surface {
         position: DVec3::ZERO,
         geometric_normal: normal,
@@ -231,7 +270,7 @@ fn emission_at(scene: &Scene, material: &Material, hit: &Hit, normal: DVec3) -> 
 }
 
 /// Returns the luminance of a colour, linear Rec. 709.
-fn luminance(color: Vec3) -> f64 {
+pub(super) fn luminance(color: Vec3) -> f64 {
     let [r, g, b] = color.to_array().map(f64::from);
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }

@@ -88,6 +88,11 @@ pub(super) struct LightSources<'a> {
 }
 
 impl<'a> LightSources<'a> {
+    /// No sources.
+    pub fn none() -> Self {
+        Self { lights: &[], emissive: EmissiveLights::default(), pixel_samples: 1 }
+    }
+
     /// The sources of a scene, for pictures of this many samples per pixel.
     pub fn new(scene: &'a Scene, pixel_samples: usize) -> Self {
         let pixel_samples = pixel_samples as u32;

@@ -20,6 +20,7 @@ mod material_cache;
 mod nested_dielectrics;
 mod null_interfaces;
 mod opaque_surfaces;
+mod path;
 mod pbr_evaluation;
 mod pbr_surfaces;
 mod pixel_sums;
@@ -43,7 +44,9 @@ use rayon::prelude::*;
 
 use crate::film::{Pixel, View};
 use crate::intersect::Intersector;
-use crate::scene::{Camera, Feature, FilmSettings, Material, RayGenerator, Scene, SceneFeatures};
+use crate::scene::{
+    Camera, Feature, FilmSettings, IntegratorKind, Material, RayGenerator, Scene, SceneFeatures,
+};
 use adaptive_sampling::ContrastRow;
 pub use adaptive_sampling::PixelRecord;
 use back_faces::BackFaces;
@@ -51,6 +54,7 @@ pub use counts::{Counts, FeatureCounts, NotFinite, RayCounts};
 use light_sources::LightSources;
 use material_cache::MaterialCache;
 use nested_dielectrics::{InteriorList, NestedDielectrics};
+use path::PathTracer;
 pub use refinement::RefineStrip;
 use sample_pattern::SamplePattern;
 #[cfg(all(feature = "measure", any(feature = "embree", test)))]
@@ -82,6 +86,8 @@ pub struct Integrator<'a> {
     media: TransparentMedia,
     back_faces: BackFaces,
     light_sources: LightSources<'a>,
+    /// The path tracer, if the picture is made by it.
+    path_tracer: Option<PathTracer<'a>>,
     /// The instruction sets of the processor, for which inner loops are compiled.
     arch: pulp::Arch,
 }
@@ -171,8 +177,12 @@ impl<'a> Integrator<'a> {
             _ => FilmSettings { spp: 1, adaptive: None, ..scene.film.clone() },
         };
         let camera = camera.ray_generator(scene.film.size);
-        // Filtered now, on all threads: a thread that waits for another's result could not be shared.
-        environment_lighting::prepare(scene);
+        // Made now, on all threads: a thread that waits for another's result could not be shared.
+        let is_path = film.integrator == IntegratorKind::Path && view == View::Beauty;
+        let path_tracer = is_path.then(|| PathTracer::new(scene, film.seed));
+        if !is_path {
+            environment_lighting::prepare(scene);
+        }
         let features = SceneFeatures::from_scene(scene);
         let has = |feature| features.uses(feature);
         let textures = [Feature::Uv, Feature::Checkers, Feature::VertexColors, Feature::NormalMaps];
@@ -183,7 +193,12 @@ impl<'a> Integrator<'a> {
             view,
             has_alpha: scene.film.transparent && view == View::Beauty,
             tiling,
-            light_sources: LightSources::new(scene, samples.offsets.len()),
+            light_sources: if is_path {
+                LightSources::none()
+            } else {
+                LightSources::new(scene, samples.offsets.len())
+            },
+            path_tracer,
             samples,
             contrast_threshold: film.adaptive.map(|adaptive| adaptive.threshold),
             features: ShadingFeatures {

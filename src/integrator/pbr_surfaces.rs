@@ -290,7 +290,7 @@ fn take(color: &mut Vec3, share: f32) -> Vec3 {
 }
 
 /// Returns a direction to the viewer that is on its side of the surface by at least the least cosine.
-fn facing(wo: DVec3, is_inside: bool) -> DVec3 {
+pub(super) fn facing(wo: DVec3, is_inside: bool) -> DVec3 {
     let height = if is_inside { -wo.z } else { wo.z };
     if height >= MIN_COSINE {
         return wo;
@@ -302,7 +302,7 @@ fn facing(wo: DVec3, is_inside: bool) -> DVec3 {
 }
 
 /// Returns tangent, bitangent and normal of the local frame.
-fn local_frame(
+pub(super) fn local_frame(
     integrator: &Integrator<'_>,
     hit: &Hit,
     surface: &Surface,

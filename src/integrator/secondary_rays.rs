@@ -217,17 +217,27 @@ impl SpecularShares {
 }
 
 /// The directions into which a surface sends light, and the shares that go there.
-struct Scattered {
-    reflected: DVec3,
+pub(super) struct Scattered {
+    pub reflected: DVec3,
     /// `None` for light that goes straight on, and under total reflection.
-    refracted: Option<DVec3>,
-    reflected_share: DVec3,
-    refracted_share: DVec3,
+    pub refracted: Option<DVec3>,
+    pub reflected_share: DVec3,
+    pub refracted_share: DVec3,
     /// True if light only goes on as if there were no surface: none is reflected or refracted. Where a
     /// surface does both, paths fork, and their number must stay bounded.
     is_uncovered: bool,
     /// True under total reflection.
     is_total: bool,
+}
+
+/// Scatters light that comes along `incoming`, of length 1, at a surface of Lambert's and Phong's model.
+pub(super) fn scatter_light(
+    integrator: &Integrator<'_>,
+    specular: &SpecularHit,
+    media: &InterfaceMedia,
+    incoming: DVec3,
+) -> Scattered {
+    scatter(integrator, specular, None, media, incoming, 1)
 }
 
 /// Scatters light of one colour that comes along `incoming`, of length 1; where media disperse nothing, all colours

@@ -6,6 +6,7 @@ use crate::integrator::adaptive_sampling::{PixelRecord, PixelRecords};
 use crate::integrator::alpha::AlphaSums;
 use crate::integrator::ambient_occlusion::AmbientOcclusion;
 use crate::integrator::light_sources::LightSource;
+use crate::integrator::path::{PathSamples, PathScratch, PathTracer};
 use crate::integrator::pixel_sums::PixelSums;
 use crate::integrator::radiance::{GROUP, Radiance16, WaveRadiance};
 use crate::integrator::shadow_rays::ShadowQueue;
@@ -29,6 +30,7 @@ pub struct Scratch {
     occlusion: AmbientOcclusion,
     radiance: WaveRadiance,
     shadows: ShadowMemory,
+    paths: PathScratch,
     /// One sample of each pixel of the tile.
     samples: Vec<Radiance16>,
     /// The sums of their samples.
@@ -112,6 +114,10 @@ impl Integrator<'_> {
 
     /// Traces one sample of each pixel of a tile, of this index, and adds it to the sums of its group.
     fn trace_sample(&self, sample: usize, scratch: &mut Scratch, counts: &mut Counts) {
+        if let Some(tracer) = &self.path_tracer {
+            self.trace_path_sample(tracer, sample, scratch, counts);
+            return;
+        }
         let position = self.samples.offsets[sample];
         let Scratch {
             tile,
@@ -197,6 +203,26 @@ impl Integrator<'_> {
             std::mem::swap(&mut sums.group, samples);
             return;
         }
+        sums.add(self.arch, samples, &mut counts.not_finite.sum);
+    }
+
+    /// Traces one path through each pixel of a tile, and adds what it finds to the sums of its group.
+    fn trace_path_sample(
+        &self,
+        tracer: &PathTracer<'_>,
+        sample: usize,
+        scratch: &mut Scratch,
+        counts: &mut Counts,
+    ) {
+        let Scratch { tile, waves, samples, sums, alpha, paths, .. } = scratch;
+        if self.has_alpha {
+            alpha.begin_sample(tile.count);
+        }
+        let wave = &mut waves.current;
+        wave.sample = sample;
+        let alpha = self.has_alpha.then_some(alpha);
+        let of_paths = PathSamples { radiance: &mut *samples, alpha };
+        self.trace_paths(tracer, tile, wave, of_paths, paths, counts);
         sums.add(self.arch, samples, &mut counts.not_finite.sum);
     }
 

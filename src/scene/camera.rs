@@ -150,6 +150,11 @@ impl RayGenerator {
         Ray::new(self.origin + shift, turn + self.forward)
     }
 
+    /// The ray through (x, y) and a point of the lens, given by a point of the unit square.
+    pub fn ray_through_lens(&self, x: f64, y: f64, _lens: [f64; 2]) -> Ray {
+        self.ray(x, y)
+    }
+
     /// Generates the rays through sixteen points of the picture, as [`RayGenerator::ray`].
     #[inline(always)]
     pub fn ray16(&self, x: &Lanes<f64>, y: &Lanes<f64>, rays: &mut Ray16) {

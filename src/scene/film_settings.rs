@@ -78,11 +78,27 @@ impl AdaptiveSampling {
     pub const THRESHOLD: f32 = 0.1;
 }
 
+/// The integrator that computes a picture's radiance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+#[non_exhaustive]
+pub enum IntegratorKind {
+    /// Whitted's: direct light, mirrors and glass, and the light of the environment, without noise.
+    #[default]
+    Whitted,
+    /// A path tracer: all light, by random paths, with noise that falls with the number of samples.
+    Path,
+}
+
 /// The settings of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmSettings {
     /// The width and height in pixels, each at least 1.
     pub size: [u32; 2],
+    /// The integrator.
+    pub integrator: IntegratorKind,
+    /// The number by which the random numbers of [`IntegratorKind::Path`] are chosen.
+    pub seed: u32,
     /// The number of samples per pixel, at least 1.
     pub spp: u32,
     /// Adaptive sampling, if pixels may get more samples than these.
@@ -118,6 +134,8 @@ impl Default for FilmSettings {
     fn default() -> Self {
         Self {
             size: [1280, 720],
+            integrator: IntegratorKind::Whitted,
+            seed: 0,
             spp: 1,
             adaptive: None,
             transfer: Transfer::Srgb,

@@ -48,10 +48,10 @@ pub use coverage::{AlphaMode, Coverage};
 pub(crate) use environment::SHARPEST_REFLECTION;
 pub use environment::{Environment, FilteredEnvironment, Sky};
 pub use features::{Feature, SceneFeatures};
-pub use film_settings::{AdaptiveSampling, FilmSettings, SamplePosition, Transfer};
+pub use film_settings::{AdaptiveSampling, FilmSettings, IntegratorKind, SamplePosition, Transfer};
 pub use image::Image;
 pub(crate) use light::{DEFAULT_LIGHT_SAMPLES, MIN_SUN_ANGLE};
-pub use light::{Falloff, Light, LightKind, MAX_LIGHT_SAMPLES, Shadow};
+pub use light::{Falloff, Light, LightKind, LightShape, MAX_LIGHT_SAMPLES, Shadow};
 #[doc(hidden)]
 pub use light::{IncidentLight, LightSample};
 pub use material::{Material, MaterialId, NormalMap, OcclusionMap, ShadingModel, ShininessMap};

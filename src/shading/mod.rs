@@ -3,11 +3,13 @@
 
 mod bsdf;
 mod dielectric;
+mod phong_bsdf;
 
 use glam::{DVec3, Vec3};
 
 pub use bsdf::{Bsdf, BsdfSample, LobeAlbedos, OpaqueBsdf, OpaqueBsdf16};
 pub use dielectric::{DielectricInterface, indices_by_color, transmittance};
+pub use phong_bsdf::PhongBsdf;
 
 /// The greatest exponent for which a power is computed by products.
 const MAX_EXPONENT: f32 = 1024.0;

@@ -258,6 +258,7 @@ fn picture(seed: u64) -> Scene {
             intensity,
             shadow: Shadow::default(),
             samples: 16,
+            shape: None,
         });
     }
     scene

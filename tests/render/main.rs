@@ -7,6 +7,7 @@ mod gallery;
 mod golden;
 mod light_transport;
 mod not_finite;
+mod path;
 mod radiance;
 mod textures;
 mod transparent;

@@ -33,6 +33,7 @@ fn model() -> Scene {
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
         samples: 16,
+        shape: None,
     });
     let camera = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, Projection::OrthoHeight(2.0));
     model.cameras.push(camera.unwrap());

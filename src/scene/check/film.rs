@@ -2,7 +2,7 @@
 
 use super::require::{require, require_color};
 use crate::error::Result;
-use crate::scene::{AdaptiveSampling, FilmSettings};
+use crate::scene::{AdaptiveSampling, FilmSettings, IntegratorKind};
 
 /// The greatest number of pixels of a picture: 2²⁸, whose film takes 3 GiB.
 pub const MAX_PIXELS: u64 = 1 << 28;
@@ -23,6 +23,11 @@ pub(super) fn check(film: &FilmSettings) -> Result<()> {
     require((0.0..=1.0).contains(&threshold), || {
         format!("the threshold must be from 0 to 1, found {threshold}")
     })?;
+    require(film.adaptive.is_none() || film.integrator == IntegratorKind::Whitted, || {
+        "adaptive samples are for the integrator whitted; path has the same number for all pixels"
+            .to_owned()
+    })
+    .map_err(|e| e.help("give a number of samples (spp), or leave out `path`"))?;
     require_color(|| "the background".to_owned(), film.background)?;
     require(film.ambient_occlusion <= MAX_OCCLUSION_RAYS, || {
         let found = film.ambient_occlusion;

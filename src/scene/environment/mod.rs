@@ -1,6 +1,7 @@
 //! The environment: light from infinitely far away, by direction.
 
 mod cube_map;
+mod distribution;
 mod filtered;
 mod map_light;
 mod reflections;
@@ -13,6 +14,7 @@ use std::sync::{Arc, OnceLock};
 use glam::{DMat3, DVec3, Vec3};
 
 use crate::scene::{Image, Light, Texels, Transfer};
+pub use distribution::EnvironmentDistribution;
 pub use filtered::{FilteredEnvironment, SHARPEST_REFLECTION};
 pub use sky::Sky;
 
@@ -36,6 +38,8 @@ pub struct Environment {
     /// The map filtered for diffuse and rough reflections: made when it is first asked for, and shared by the
     /// scenes at different times of an animation.
     filtered: Arc<OnceLock<FilteredEnvironment>>,
+    /// The distribution of the map's light, made and shared likewise.
+    distribution: Arc<OnceLock<EnvironmentDistribution>>,
 }
 
 impl Environment {
@@ -49,6 +53,7 @@ impl Environment {
             intensity: Vec3::ONE,
             visible: true,
             filtered: Arc::default(),
+            distribution: Arc::default(),
         }
     }
 
@@ -109,6 +114,25 @@ impl Environment {
     /// the current pool.
     pub fn filtered(&self) -> &FilteredEnvironment {
         self.filtered.get_or_init(|| FilteredEnvironment::new(&self.map, self.transfer))
+    }
+
+    /// Samples a direction to where light comes from, in proportion to the map's luminance, by a point of the unit
+    /// square, and returns it with its density per steradian. The first call makes the distribution, on all threads
+    /// of the current pool.
+    pub fn sample(&self, u: [f64; 2]) -> (DVec3, f64) {
+        let (direction, pdf) = self.distribution().sample(u);
+        (self.to_map.transpose() * direction, pdf)
+    }
+
+    /// Returns the density per steradian with which [`sample`](Self::sample) returns a direction of length 1.
+    pub fn pdf(&self, direction: DVec3) -> f64 {
+        self.distribution().pdf(self.to_map * direction)
+    }
+
+    /// Returns the distribution of the map's light.
+    pub fn distribution(&self) -> &EnvironmentDistribution {
+        let new = || EnvironmentDistribution::new(&self.map, self.transfer);
+        self.distribution.get_or_init(new)
     }
 
     /// Returns the irradiance of a surface with this normal, of length 1, divided by π: what it reflects if it is

@@ -120,6 +120,17 @@ pub struct Light {
     /// The number of samples that stand for the light if it has an extent, from 1 to
     /// [`MAX_LIGHT_SAMPLES`]; other lights have no use for it.
     pub samples: u32,
+    /// The surface by which it is seen, if it is: one that emits the light's radiance and casts no shadow.
+    pub shape: Option<LightShape>,
+}
+
+/// The surface by which a light with an extent is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightShape {
+    /// The sphere with this index in the scene.
+    Sphere(u32),
+    /// The instance with this index in the scene.
+    Instance(u32),
 }
 
 /// White lights of intensity 1 with tinted shadows.
@@ -185,7 +196,8 @@ impl Light {
     /// A white light of intensity 1 with tinted shadows, and with 16 samples if it has an extent.
     pub fn new(kind: LightKind) -> Self {
         let (name, shadow) = (String::new(), Shadow::default());
-        Self { name, kind, intensity: Vec3::ONE, shadow, samples: DEFAULT_LIGHT_SAMPLES }
+        let samples = DEFAULT_LIGHT_SAMPLES;
+        Self { name, kind, intensity: Vec3::ONE, shadow, samples, shape: None }
     }
 
     /// Sets the intensity, linear Rec. 709.
@@ -228,6 +240,12 @@ impl Light {
     #[must_use]
     pub fn with_samples(self, samples: u32) -> Self {
         Self { samples, ..self }
+    }
+
+    /// Sets the surface by which it is seen.
+    #[must_use]
+    pub fn with_shape(self, shape: LightShape) -> Self {
+        Self { shape: Some(shape), ..self }
     }
 
     /// True if it casts shadows; ambient light has no direction in which anything could block it.
@@ -305,6 +323,7 @@ mod tests {
             intensity: Vec3::splat(8.0),
             shadow: Shadow::default(),
             samples: 16,
+            shape: None,
         }
     }
 
@@ -316,6 +335,7 @@ mod tests {
             intensity: Vec3::ONE,
             shadow: Shadow::Tinted,
             samples: 16,
+            shape: None,
         };
         let (position, direction) = (DVec3::new(1.0, 2.0, 3.0), DVec3::NEG_Y);
         let (falloff, range) = (Falloff::None, f64::INFINITY);

@@ -1,6 +1,6 @@
 //! The meaning of scene files.
 
-use envers::scene::{Filter, SamplePosition, Transfer};
+use envers::scene::{Filter, IntegratorKind, LightShape, SamplePosition, Transfer};
 use envers::{
     AdaptiveSampling, AlphaMode, Camera, Falloff, FilmSettings, Light, LightKind, Material,
     Projection, Shadow, Sphere, Tone,
@@ -25,12 +25,14 @@ fn every_key_of_the_film_is_read() {
     let film = seen(
         "[film]\nsize = [1000, 500]\nspp = 4\ntransfer = \"none\"\nbackground = \"#323232\"\n\
          sample_position = \"corner\"\nexposure = -1.5\ntone = \"aces\"\nmax_depth = 16\ncutoff = 0.25\n\
-         ambient_occlusion = 8\n\
+         ambient_occlusion = 8\nintegrator = \"path\"\nseed = 7\n\
          soft_terminator = false\ntransparent = true\n",
     )
     .film;
     let expected = FilmSettings {
         size: [1000, 500],
+        integrator: IntegratorKind::Path,
+        seed: 7,
         spp: 4,
         adaptive: None,
         transfer: Transfer::None,
@@ -307,6 +309,7 @@ fn a_point_light_is_read() {
         intensity: Vec3::new(4.0, 2.0, 0.0),
         shadow: Shadow::None,
         samples: 16,
+        shape: None,
     };
     assert_eq!(seen(text).lights, [expected]);
 }
@@ -357,6 +360,7 @@ fn a_rectangle_light_is_read_and_seen_from_its_front() {
     // The height runs along z where the light shines straight down.
     let panel = Light::rectangle(DVec3::new(1.0, 5.0, 0.0), DVec3::X * 2.0, DVec3::Z * 0.5);
     let panel = panel.with_intensity(Vec3::splat(3.0)).with_samples(4).with_name("panel");
+    let panel = panel.with_shape(LightShape::Instance(0));
     assert_eq!(scene.lights, [panel]);
     let [instance] = &scene.instances[..] else { panic!("one shape") };
     let material = &scene.materials[instance.material.0 as usize];
@@ -386,7 +390,10 @@ fn a_disk_light_and_a_sphere_light_are_read_and_seen() {
     let center = DVec3::new(9.0, 5.0, 0.0);
     assert_eq!(
         scene.lights,
-        [Light::disk(DVec3::Y * 5.0, -DVec3::Y, 2.0), Light::sphere(center, 0.5)]
+        [
+            Light::disk(DVec3::Y * 5.0, -DVec3::Y, 2.0).with_shape(LightShape::Instance(0)),
+            Light::sphere(center, 0.5).with_shape(LightShape::Sphere(0)),
+        ]
     );
     assert_eq!((scene.instances.len(), scene.spheres.len()), (1, 1));
     assert!(!scene.spheres[0].casts_shadow && scene.spheres[0].center == center);

@@ -40,6 +40,7 @@ fn scene() -> Scene {
             intensity: Vec3::splat(0.4),
             shadow,
             samples: 16,
+            shape: None,
         });
     }
     scene

@@ -158,6 +158,7 @@ fn below(transform: DAffine3, material: Material) -> [f32; 3] {
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
         samples: 16,
+        shape: None,
     });
     square(&mut scene, transform, material);
     radiance(&scene)

@@ -21,6 +21,7 @@ fn ground(shadow: Shadow) -> Scene {
         intensity: Vec3::ONE,
         shadow,
         samples: 16,
+        shape: None,
     });
     scene
 }
@@ -123,6 +124,7 @@ fn the_bed_of_a_pond_is_lit_through_the_water() {
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
         samples: 16,
+        shape: None,
     });
     // 4 down and 2 up to the eye.
     assert_near(radiance(&scene), (1.0 - head_on(1.33)) * (-0.6f64).exp());
@@ -138,6 +140,7 @@ fn a_light_in_the_water_is_absorbed_though_nothing_stands_in_its_way() {
         intensity: Vec3::ONE,
         shadow: Shadow::Tinted,
         samples: 16,
+        shape: None,
     });
     assert_near(radiance(&scene), (-0.5f64).exp());
 }

@@ -21,6 +21,8 @@ pub fn film_settings(source: &Source<'_>, table: &FilmTable) -> Result<FilmSetti
     let (spp, adaptive) = samples_per_pixel(source, table)?;
     Ok(FilmSettings {
         size: table.size.as_ref().map_or(default.size, |size| size.value.0),
+        integrator: table.integrator.unwrap_or(default.integrator),
+        seed: table.seed.unwrap_or(default.seed),
         spp,
         adaptive,
         transfer,

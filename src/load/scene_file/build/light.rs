@@ -23,8 +23,8 @@ impl SceneBuilder<'_> {
     /// # Errors
     /// When its keys do not fit its kind or each other, or its intensity is beyond f32 at some time.
     pub fn add_light(&mut self, index: usize, table: &LightTable) -> Result<()> {
-        let light = light(self.source, table, self.scene.film.transfer)?;
-        self.add_light_shape(index, table, &light)?;
+        let mut light = light(self.source, table, self.scene.film.transfer)?;
+        light.shape = self.add_light_shape(index, table, &light)?;
         let animated = self.animated_light(table, &light)?;
         self.add_animated(animated);
         self.scene.lights.push(light);
@@ -119,7 +119,7 @@ fn light(source: &Source<'_>, table: &LightTable, transfer: Transfer) -> Result<
     };
     let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
     let samples = table.samples.as_ref().map_or(DEFAULT_LIGHT_SAMPLES, |s| s.value.0);
-    let light = Light { name, kind, intensity, shadow, samples };
+    let light = Light { name, kind, intensity, shadow, samples, shape: None };
     if let Some(Spanned { span, .. }) = &table.samples
         && !light.has_extent()
     {

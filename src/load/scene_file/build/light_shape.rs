@@ -8,13 +8,15 @@ use crate::geometry::sampling::tangents;
 use crate::load::scene_file::schema::light_tables::LightTable;
 use crate::load::scene_file::schema::spanned::Spanned;
 use crate::scene::animation::Animated;
-use crate::scene::{Instance, Light, LightKind, Material, Mesh, MeshProvenance, Sphere, TableKind};
+use crate::scene::{
+    Instance, Light, LightKind, LightShape, Material, Mesh, MeshProvenance, Sphere, TableKind,
+};
 
 /// The number of corners of the mesh by which a disk is seen: its rim is within 0.0003 of the radius.
 const DISK_CORNERS: u32 = 128;
 
 impl SceneBuilder<'_> {
-    /// Adds the shape of the light of a table with this index, if the light has one and is visible.
+    /// Adds the shape of the light of a table with this index, if the light has one and is visible, and returns it.
     ///
     /// # Errors
     /// When the light changes its intensity, which its shape cannot follow.
@@ -23,10 +25,10 @@ impl SceneBuilder<'_> {
         index: usize,
         table: &LightTable,
         light: &Light,
-    ) -> Result<()> {
+    ) -> Result<Option<LightShape>> {
         let is_visible = table.visible.as_ref().is_none_or(|visible| visible.value);
         let shape = Shape::from_kind(&light.kind).filter(|_| is_visible);
-        let Some(shape) = shape else { return Ok(()) };
+        let Some(shape) = shape else { return Ok(None) };
         self.check_steady(table)?;
         // One-sided, as the light is.
         let material = self.scene.add_material(Material {
@@ -41,7 +43,7 @@ impl SceneBuilder<'_> {
         let is_keyed = motion.is_some_and(|motion| motion.is_keyed);
         let rest = |center: DVec3| if is_keyed { DVec3::ZERO } else { center };
         let scene = &mut self.scene;
-        let animated = match shape {
+        let (shape, animated) = match shape {
             Shape::Sphere { center, radius } => {
                 let sphere = scene.spheres.len();
                 let shape = Sphere::new(center, radius, material);
@@ -50,7 +52,8 @@ impl SceneBuilder<'_> {
                     all.spheres.push(provenance);
                 }
                 let (center, radius) = (rest(center), None);
-                node.map(|_| Animated::Sphere { sphere, node, center, radius })
+                let animated = node.map(|_| Animated::Sphere { sphere, node, center, radius });
+                (LightShape::Sphere(sphere as u32), animated)
             }
             Shape::Flat { mesh, axes, center } => {
                 let (instance, mesh) = (scene.instances.len(), scene.add_mesh(mesh()));
@@ -62,11 +65,12 @@ impl SceneBuilder<'_> {
                     all.instances.push(provenance);
                 }
                 let transform = DAffine3 { matrix3: axes, translation: rest(center) };
-                node.map(|node| Animated::Instance { instance, node, transform })
+                let animated = node.map(|node| Animated::Instance { instance, node, transform });
+                (LightShape::Instance(instance as u32), animated)
             }
         };
         self.add_animated(animated);
-        Ok(())
+        Ok(Some(shape))
     }
 
     /// Checks that no track changes the intensity of a light that is visible.

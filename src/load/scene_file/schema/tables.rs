@@ -16,7 +16,7 @@ use super::values::{
     Depth, Direction, FieldOfView, Length, Number, OcclusionRays, Point, PointOrName, Rotation,
     SampleRange, Samples, Scale, Share, Size,
 };
-use crate::scene::{SamplePosition, ShadingModel, Tone, Transfer};
+use crate::scene::{IntegratorKind, SamplePosition, ShadingModel, Tone, Transfer};
 
 /// The contents of a scene file: objects, lights, cameras, and the picture to make of them.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -96,6 +96,12 @@ pub struct FilmTable {
     /// The most reflections and refractions in a row, from 0 to 65536.
     #[schemars(extend("default" = 8))]
     pub max_depth: Option<Depth>,
+    /// The integrator: `whitted` has no noise, `path` traces all light by random paths.
+    #[schemars(extend("default" = "whitted"))]
+    pub integrator: Option<IntegratorKind>,
+    /// The number by which the random numbers of the integrator `path` are chosen, from 0 to 4294967295.
+    #[schemars(extend("default" = 0))]
+    pub seed: Option<u32>,
     /// The number of rays, from 0 to 1024, by which each surface finds how much of the environment's and of
     /// ambient light arrives there. With 0 all of it does.
     #[schemars(extend("default" = 0))]
