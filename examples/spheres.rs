@@ -40,6 +40,7 @@ fn main() -> Result<()> {
         intensity: Vec3::ONE,
         shadow: Shadow::default(),
         samples: 16,
+        shape: None,
     });
     scene.lights.push(Light {
         name: "sky".to_owned(),

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use crate::error::{Error, Result};
+use crate::geometry::sampling::concentric_disk;
 use crate::geometry::{LANES, Lanes, Ray, Ray16};
 
 /// The projection of a camera, with its field of view.
@@ -52,6 +53,17 @@ pub struct Camera {
     pub up: DVec3,
     /// The projection.
     pub projection: Projection,
+    /// The lens, with which the integrator `path` shows what is out of focus blurred; `None` for a pinhole.
+    pub lens: Option<ThinLens>,
+}
+
+/// A thin lens (Cook, Porter and Carpenter, *Distributed Ray Tracing*, SIGGRAPH 1984).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThinLens {
+    /// The diameter of the opening, above 0, in world units.
+    pub aperture: f64,
+    /// The distance, along the viewing direction, of the plane that is sharp, above 0, in world units.
+    pub focus_distance: f64,
 }
 
 impl Camera {
@@ -76,7 +88,7 @@ impl Camera {
         }
         let right = right.normalize();
         let up = right.cross(forward);
-        Ok(Self { name: String::new(), position, forward, right, up, projection })
+        Ok(Self { name: String::new(), position, forward, right, up, projection, lens: None })
     }
 
     /// The camera transformed, so that it sees the transformed scene as it saw the scene before; its
@@ -91,7 +103,12 @@ impl Camera {
         };
         let turned = Self::look_at(DVec3::ZERO, forward, up, projection).ok()?;
         let position = transform.transform_point3(self.position);
-        Some(Self { name: self.name.clone(), position, ..turned })
+        let scale = transform.transform_vector3(self.forward).length();
+        let lens = self.lens.map(|lens| ThinLens {
+            aperture: lens.aperture * scale,
+            focus_distance: lens.focus_distance * scale,
+        });
+        Some(Self { name: self.name.clone(), position, lens, ..turned })
     }
 
     /// The generator of the primary rays of a picture of `size` pixels.
@@ -110,8 +127,21 @@ impl Camera {
             forward: self.forward * focal,
             middle: [width * 0.5, height * 0.5],
             is_parallel: matches!(self.projection, Projection::OrthoHeight(_)),
+            lens: self.lens.map(|lens| LensAxes {
+                radii: [self.right, self.up].map(|axis| axis * (0.5 * lens.aperture)),
+                focus: lens.focus_distance / focal,
+            }),
         }
     }
+}
+
+/// A lens as rays are generated through it.
+#[derive(Clone, Copy, Debug)]
+struct LensAxes {
+    /// The vectors from the middle of the lens to its rim, to the right and upward.
+    radii: [DVec3; 2],
+    /// The t at which rays through the middle of the lens are in focus.
+    focus: f64,
 }
 
 /// A generator of primary rays: through each point of a picture, from the camera.
@@ -125,6 +155,7 @@ pub struct RayGenerator {
     forward: DVec3,
     middle: [f64; 2],
     is_parallel: bool,
+    lens: Option<LensAxes>,
 }
 
 impl RayGenerator {
@@ -150,9 +181,14 @@ impl RayGenerator {
         Ray::new(self.origin + shift, turn + self.forward)
     }
 
-    /// The ray through (x, y) and a point of the lens, given by a point of the unit square.
-    pub fn ray_through_lens(&self, x: f64, y: f64, _lens: [f64; 2]) -> Ray {
-        self.ray(x, y)
+    /// The ray through (x, y) and a point of the lens, given by a point of the unit square; all of those through
+    /// (x, y) meet where they are in focus.
+    pub fn ray_through_lens(&self, x: f64, y: f64, u: [f64; 2]) -> Ray {
+        let ray = self.ray(x, y);
+        let Some(LensAxes { radii, focus }) = self.lens else { return ray };
+        let point = concentric_disk(u);
+        let shift = radii[0] * point[0] + radii[1] * point[1];
+        Ray::new(ray.origin + shift, ray.direction - shift / focus)
     }
 
     /// Generates the rays through sixteen points of the picture, as [`RayGenerator::ray`].

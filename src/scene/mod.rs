@@ -42,7 +42,7 @@ mod triangles;
 pub(crate) mod watertight;
 
 pub(crate) use camera::RayGenerator;
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Projection, ThinLens};
 pub use coincidence::coincident_meshes;
 pub use coverage::{AlphaMode, Coverage};
 pub(crate) use environment::SHARPEST_REFLECTION;

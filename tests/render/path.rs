@@ -2,7 +2,8 @@
 
 use envers::internals::Tiling;
 use envers::scene::{
-    Environment, IntegratorKind, LightShape, MetallicRoughness, MetallicRoughnessMaps, ShadingModel,
+    Environment, IntegratorKind, LightShape, MetallicRoughness, MetallicRoughnessMaps,
+    ShadingModel, ThinLens,
 };
 use envers::{
     Backend, Camera, Instance, Light, Material, Mesh, Plane, Precision, Projection, RenderOptions,
@@ -167,6 +168,18 @@ fn the_closed_forms_of_area_lights_hold_whether_they_are_seen_or_not() {
 }
 
 #[test]
+fn the_back_of_a_panel_is_dark() {
+    // Z × X is upward, and the ground is below.
+    for (v, is_lit) in [(DVec3::X, false), (DVec3::NEG_X, true)] {
+        let mut scene = ground(Material::matte(Vec3::ONE));
+        scene.lights.push(Light::rectangle(DVec3::Y, DVec3::Z, v));
+        show(&mut scene, 0);
+        assert_eq!(traced(&scene, 1024) > 0.1, is_lit);
+        assert!(is_lit || traced(&scene, 1024) == 0.0);
+    }
+}
+
+#[test]
 fn surfaces_that_emit_light_shine_like_lights() {
     let mut scene = ground(Material::matte(Vec3::ONE));
     ball(&mut scene, DVec3::Y * 2.0, 1.0, Material::emissive(Vec3::ONE));
@@ -218,6 +231,36 @@ fn ambient_light_is_that_of_an_even_environment_and_is_occluded() {
     ball(&mut below, DVec3::Y * 2.0, 1.0, Material::matte(Vec3::ZERO));
     // The ball covers a quarter of the irradiance.
     assert_near(traced(&below, 16_384), 0.3 * 0.75, 1e-2);
+}
+
+#[test]
+fn a_lens_shows_points_out_of_focus_as_disks_of_their_circle_of_confusion() {
+    // A lamp of radius 0.5 at distance 10 is seen from the middle of a lens of diameter 1, which is focused at 5: a ray
+    // through the rim of the lens meets the plane of the lamp as far from its middle as it left from that of the lens.
+    let seen = |radius: f64, focus_distance: f64| {
+        let mut scene = seen_from(DVec3::ZERO, DVec3::NEG_Z);
+        scene.cameras[0].lens = Some(ThinLens { aperture: 1.0, focus_distance });
+        let lamp = scene.add_material(Material::emissive(Vec3::ONE));
+        let square = Mesh {
+            positions: vec![[-1., -1., 0.], [1., -1., 0.], [1., 1., 0.], [-1., 1., 0.]].into(),
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            ..Mesh::default()
+        };
+        let mesh = scene.add_mesh(square);
+        let transform = DAffine3 {
+            matrix3: DMat3::from_diagonal(DVec3::new(radius, radius, 1.0)),
+            translation: DVec3::NEG_Z * 10.0,
+        };
+        scene.instances.push(Instance::new(mesh, transform, lamp));
+        traced(&scene, 4096)
+    };
+    // A square of half a side 0.25 covers 4 · 0.25² of a disk of radius 0.5, the blur at twice the focus.
+    let pi = std::f64::consts::PI;
+    assert_near(seen(0.25, 5.0), 4.0 * 0.25 * 0.25 / (pi * 0.25), 5e-3);
+    // In focus it is sharp.
+    assert_near(seen(0.25, 10.0), 1.0, 1e-6);
+    // From a focus twice as far the blur is half as wide.
+    assert_near(seen(0.1, 20.0), 4.0 * 0.1 * 0.1 / (pi * 0.25 * 0.25), 5e-3);
 }
 
 /// A scene of everything, 24×16 pixels.

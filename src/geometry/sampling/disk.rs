@@ -9,7 +9,7 @@ use super::tangents;
 /// A point of the unit disk, uniform in area for `u` uniform in the unit square: squares about the
 /// centre become circles (Shirley and Chiu, *A Low Distortion Map Between Disk and Square*, Journal of
 /// Graphics Tools 2(3), 1997).
-fn concentric_disk(u: [f64; 2]) -> [f64; 2] {
+pub fn concentric_disk(u: [f64; 2]) -> [f64; 2] {
     let [x, y] = u.map(|u| 2.0 * u - 1.0);
     if x == 0.0 && y == 0.0 {
         return [0.0; 2];

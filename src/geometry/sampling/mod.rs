@@ -10,7 +10,7 @@ mod low_discrepancy;
 mod rectangle;
 
 pub use cone::Cone;
-pub use disk::disk_point;
+pub use disk::{concentric_disk, disk_point};
 pub use low_discrepancy::{sobol_point, triangle_weights};
 pub use rectangle::SphericalRectangle;
 

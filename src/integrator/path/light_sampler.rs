@@ -6,11 +6,13 @@ use glam::{DVec3, Vec3};
 
 use crate::geometry::{Geometry, Hit, triangle};
 use crate::integrator::emissive_lights::{EmissiveMesh, emission_at, luminance, mean_of_sphere};
-use crate::scene::{Environment, Light, LightKind, LightShape, Material, Scene};
+use crate::scene::{Environment, Falloff, Light, LightKind, LightShape, Material, Scene};
 use crate::surface::Surface;
 
-/// The share of samples that go to all sources alike, whatever their power.
+/// The share of samples that go to all sources alike, whatever their strength.
 const EVEN_SHARE: f64 = 0.1;
+/// The most sources of which one is chosen by the point that they shine on.
+const MAX_LOCAL: usize = 64;
 
 /// A source of light.
 enum Source<'a> {
@@ -20,13 +22,39 @@ enum Source<'a> {
     Environment(&'a Environment),
 }
 
+/// About how much light a source gives, by which it is chosen.
+#[derive(Clone, Copy)]
+enum Strength {
+    /// The irradiance that it gives everywhere.
+    Even(f64),
+    /// The irradiance that it gives at a distance of 1 from its middle, within some radius of which it is.
+    Near { power: f64, center: DVec3, radius: f64, front: Option<DVec3> },
+}
+
+impl Strength {
+    /// Returns about the irradiance at a point.
+    fn at(&self, point: DVec3) -> f64 {
+        match *self {
+            Self::Even(irradiance) => irradiance,
+            Self::Near { power, center, radius, front } => {
+                let away = point - center;
+                let square = away.length_squared();
+                // Nothing of it shines backward.
+                let shines = front.is_none_or(|normal| normal.dot(away) > 0.0);
+                let found = power / (square + radius * radius).max(f64::MIN_POSITIVE);
+                if shines && found.is_finite() { found } else { 0.0 }
+            }
+        }
+    }
+}
+
 /// The sources of light of a scene, each with the probability with which it is chosen.
 pub struct LightSampler<'a> {
     scene: &'a Scene,
     sources: Vec<Source<'a>>,
-    /// The probabilities.
+    strengths: Vec<Strength>,
+    /// Where there are many: the probabilities, the same everywhere, and their sums up to each.
     shares: Vec<f64>,
-    /// Their sums up to each.
     sums: Vec<f64>,
     /// The source that each sphere, and each instance, is.
     of_sphere: Vec<Option<u32>>,
@@ -57,14 +85,13 @@ impl<'a> LightSampler<'a> {
         let mut found = Self {
             scene,
             sources: Vec::new(),
+            strengths: Vec::new(),
             shares: Vec::new(),
             sums: Vec::new(),
             of_sphere: vec![None; scene.spheres.len()],
             of_instance: vec![None; scene.instances.len()],
             of_environment: None,
         };
-        // Each source with the irradiance that it gives, about.
-        let mut powers = Vec::new();
         for light in scene.lights.iter().filter(|light| light.kind != LightKind::Ambient) {
             let source = found.sources.len() as u32;
             match light.shape {
@@ -72,31 +99,36 @@ impl<'a> LightSampler<'a> {
                 Some(LightShape::Instance(i)) => found.of_instance[i as usize] = Some(source),
                 None => {}
             }
-            powers.push(light_power(light, center, radius));
+            found.strengths.push(strength_of_light(light));
             found.sources.push(Source::Light(light));
         }
-        found.add_surfaces(radius, &mut powers);
+        found.add_surfaces();
         if let Some(environment) = &scene.environment {
             found.of_environment = Some(found.sources.len());
             found.sources.push(Source::Environment(environment));
-            powers.push(PI * environment.distribution().mean() * luminance(environment.intensity));
+            let mean = environment.distribution().mean() * luminance(environment.intensity);
+            found.strengths.push(Strength::Even(PI * mean));
         }
-        found.set_shares(&powers);
+        if found.sources.len() > MAX_LOCAL {
+            // As it is to the side of the middle, at the distance of the scene's radius.
+            let side = center + DVec3::new(radius, 0.0, 0.0);
+            found.shares = found.shares_at(side).collect();
+            found.sums = sums(&found.shares);
+        }
         found
     }
 
     /// Adds the spheres and meshes that emit light.
-    fn add_surfaces(&mut self, radius: f64, powers: &mut Vec<f64>) {
+    fn add_surfaces(&mut self) {
         let scene = self.scene;
         let emits = |material: &Material| material.emission != Vec3::ZERO && !material.unlit;
-        let at_distance = |area: f64| area / (radius * radius);
         for (i, sphere) in scene.spheres.iter().enumerate() {
             let material = &scene.materials[sphere.material.0 as usize];
             if emits(material) && self.of_sphere[i].is_none() {
                 let emission = mean_of_sphere(scene, i as u32, material);
                 let light = Light::sphere(sphere.center, sphere.radius).with_intensity(emission);
                 self.of_sphere[i] = Some(self.sources.len() as u32);
-                powers.push(luminance(emission) * at_distance(PI * sphere.radius * sphere.radius));
+                self.strengths.push(strength_of_light(&light));
                 self.sources.push(Source::Sphere { light, index: i as u32 });
             }
         }
@@ -105,36 +137,60 @@ impl<'a> LightSampler<'a> {
             if emits(material) && self.of_instance[i].is_none() {
                 let mesh = EmissiveMesh::new(scene, i, instance);
                 if let Some(power) = mesh.power() {
+                    let bounds = scene.meshes[instance.mesh.0 as usize].bounds();
+                    let bounds = bounds.transformed(&instance.transform);
+                    let radius = 0.5 * (bounds.upper - bounds.lower).length();
+                    let center = bounds.center();
                     self.of_instance[i] = Some(self.sources.len() as u32);
-                    powers.push(at_distance(power));
+                    // A half of a closed surface faces any point.
+                    let power = 0.5 * power;
+                    self.strengths.push(Strength::Near { power, center, radius, front: None });
                     self.sources.push(Source::Mesh(mesh));
                 }
             }
         }
     }
 
-    fn set_shares(&mut self, powers: &[f64]) {
-        let usable = |power: &f64| if power.is_finite() { power.max(0.0) } else { 0.0 };
-        let sum: f64 = powers.iter().map(usable).sum();
-        let count = powers.len() as f64;
-        let share = |power: &f64| {
-            let by_power = if sum > 0.0 { usable(power) / sum } else { 1.0 / count };
-            (1.0 - EVEN_SHARE) * by_power + EVEN_SHARE / count
-        };
-        self.shares = powers.iter().map(share).collect();
-        let mut sum = 0.0;
-        for share in &self.shares {
-            sum += share;
-            self.sums.push(sum);
+    /// Returns the probabilities with which the sources are chosen for a point.
+    fn shares_at(&self, point: DVec3) -> impl Iterator<Item = f64> {
+        let sum: f64 = self.strengths.iter().map(|strength| strength.at(point)).sum();
+        let even = 1.0 / self.strengths.len() as f64;
+        self.strengths.iter().map(move |strength| {
+            let own = if sum > 0.0 { strength.at(point) / sum } else { even };
+            (1.0 - EVEN_SHARE) * own + EVEN_SHARE * even
+        })
+    }
+
+    /// Returns the probability with which a source is chosen for a point.
+    fn share_at(&self, index: usize, point: DVec3) -> f64 {
+        match self.shares.get(index) {
+            Some(share) => *share,
+            None => self.shares_at(point).nth(index).unwrap_or(0.0),
         }
+    }
+
+    /// Chooses a source for a point, and returns it with its probability.
+    fn choose(&self, point: DVec3, choice: f64) -> Option<(usize, f64)> {
+        let last = self.sources.len().checked_sub(1)?;
+        if !self.sums.is_empty() {
+            let index = self.sums.partition_point(|&sum| sum <= choice).min(last);
+            return Some((index, self.shares[index]));
+        }
+        let mut sum = 0.0;
+        let mut chosen = None;
+        for (index, share) in self.shares_at(point).enumerate() {
+            if share > 0.0 && (chosen.is_none() || choice >= sum) {
+                chosen = Some((index, share));
+            }
+            sum += share;
+        }
+        chosen
     }
 
     /// Samples a direction to a light from a point: `choice` chooses the light, `part` a part of it, and `u` the
     /// direction. `None` where no light arrives.
     pub fn sample(&self, point: DVec3, choice: f64, part: f64, u: [f64; 2]) -> Option<LightSample> {
-        let last = self.sources.len().checked_sub(1)?;
-        let index = self.sums.partition_point(|&sum| sum <= choice).min(last);
-        let share = self.shares[index];
+        let (index, share) = self.choose(point, choice)?;
         match &self.sources[index] {
             Source::Light(light) => {
                 let (incident, pdf) = if light.has_extent() {
@@ -196,7 +252,7 @@ impl<'a> LightSampler<'a> {
             Geometry::Mesh(_) => self.of_instance[hit.id.instance as usize],
         };
         let Some(source) = source else { return 0.0 };
-        let share = self.shares[source as usize];
+        let share = self.share_at(source as usize, point);
         let pdf = match &self.sources[source as usize] {
             Source::Light(light) => light.pdf(point, direction),
             Source::Sphere { light, .. } => light.pdf(point, direction),
@@ -210,13 +266,24 @@ impl<'a> LightSampler<'a> {
         pdf * share
     }
 
-    /// Returns the density per steradian of a direction of length 1 to the environment.
-    pub fn pdf_of_environment(&self, direction: DVec3) -> f64 {
-        match self.of_environment.map(|i| (&self.sources[i], self.shares[i])) {
-            Some((Source::Environment(environment), share)) => environment.pdf(direction) * share,
+    /// Returns the density per steradian, at a point, of a direction of length 1 to the environment.
+    pub fn pdf_of_environment(&self, point: DVec3, direction: DVec3) -> f64 {
+        match self.of_environment.map(|index| (index, &self.sources[index])) {
+            Some((index, Source::Environment(environment))) => {
+                environment.pdf(direction) * self.share_at(index, point)
+            }
             _ => 0.0,
         }
     }
+}
+
+/// Returns the sums up to each of some numbers.
+fn sums(numbers: &[f64]) -> Vec<f64> {
+    let add = |sum: &mut f64, number: &f64| {
+        *sum += number;
+        Some(*sum)
+    };
+    numbers.iter().scan(0.0, add).collect()
 }
 
 /// Returns what a density per area is multiplied by to be one per steradian, at the end of a vector to a triangle:
@@ -228,20 +295,37 @@ fn per_steradian(vertices: &[DVec3; 3], toward: DVec3) -> Option<f64> {
     (cosine > 1e-9).then(|| square / cosine)
 }
 
-/// Returns the irradiance, about, that a light gives at the distance of a scene's radius.
-fn light_power(light: &Light, center: DVec3, radius: f64) -> f64 {
+/// Returns how much light a light gives.
+fn strength_of_light(light: &Light) -> Strength {
     let radiance = luminance(light.intensity);
-    let area = match light.kind {
-        LightKind::Ambient | LightKind::Directional { .. } => return PI * radiance,
-        LightKind::Point { .. } | LightKind::Spot { .. } => {
-            // As it is at a point to the side of the middle, which it may stand in.
-            let toward = (center - light.position().unwrap_or(center)).normalize_or(DVec3::Y);
-            let at = light.position().unwrap_or(center) + toward * radius;
-            let incident = light.incident(at);
-            return PI * incident.map_or(radiance, |incident| luminance(incident.intensity));
+    match light.kind {
+        LightKind::Ambient | LightKind::Directional { .. } => Strength::Even(PI * radiance),
+        LightKind::Point { position, falloff, .. } | LightKind::Spot { position, falloff, .. } => {
+            match falloff {
+                Falloff::None => Strength::Even(PI * radiance),
+                Falloff::InverseSquare => Strength::Near {
+                    power: PI * radiance,
+                    center: position,
+                    radius: 0.0,
+                    front: None,
+                },
+            }
         }
-        LightKind::Rectangle { u, v, .. } => 4.0 * u.length() * v.length(),
-        LightKind::Disk { radius, .. } | LightKind::Sphere { radius, .. } => PI * radius * radius,
-    };
-    radiance * area / (radius * radius)
+        LightKind::Rectangle { center, u, v } => Strength::Near {
+            power: radiance * 4.0 * u.length() * v.length(),
+            center,
+            radius: u.length().max(v.length()),
+            front: Some(u.cross(v)),
+        },
+        LightKind::Disk { center, normal, radius } => Strength::Near {
+            power: radiance * PI * radius * radius,
+            center,
+            radius,
+            front: Some(normal),
+        },
+        LightKind::Sphere { center, radius } => {
+            let power = radiance * PI * radius * radius;
+            Strength::Near { power, center, radius, front: None }
+        }
+    }
 }

@@ -215,7 +215,7 @@ impl Integrator<'_> {
                 alpha.uncover_sample(path.sample, path.throughput.element_sum() / 3.0);
                 return;
             }
-            let (light, weight) = self.seen_beyond(tracer, ray.direction, &tail);
+            let (light, weight) = self.seen_beyond(tracer, &ray, &tail);
             add(light, weight, &mut scratch.not_finite);
             return;
         };
@@ -234,8 +234,10 @@ impl Integrator<'_> {
             }
         }
         let vertex = Vertex::new(self, &ray, &hit, surface, &context, is_varied, path);
-        // What it emits.
-        if vertex.emission != Vec3::ZERO && !(vertex.is_unlit && tail.has_scattered) {
+        // What it emits: nothing from the side from which it is not seen.
+        let is_culled = self.back_faces.culled_side(hit.id) == Some(vertex.surface.side);
+        let is_picture = vertex.is_unlit && tail.has_scattered;
+        if vertex.emission != Vec3::ZERO && !is_culled && !is_picture {
             let weight = if tail.pdf > 0.0 && !vertex.is_unlit {
                 let by_light =
                     tracer.lights.pdf_of_hit(ray.origin, ray.direction, &hit, &vertex.surface);
@@ -256,25 +258,21 @@ impl Integrator<'_> {
     }
 
     /// Returns what a ray sees that hits nothing, and its weight.
-    fn seen_beyond(
-        &self,
-        tracer: &PathTracer<'_>,
-        direction: DVec3,
-        tail: &PathTail,
-    ) -> (Vec3, f64) {
+    fn seen_beyond(&self, tracer: &PathTracer<'_>, ray: &Ray, tail: &PathTail) -> (Vec3, f64) {
         let film = &self.scene.film;
         let is_camera = tail.surfaces == 0;
         match &self.scene.environment {
             Some(environment) if environment.visible || !is_camera => {
                 let by_light = if tail.pdf > 0.0 {
-                    tracer.lights.pdf_of_environment(direction.normalize())
+                    tracer.lights.pdf_of_environment(ray.origin, ray.direction.normalize())
                 } else {
                     0.0
                 };
                 let weight = if by_light > 0.0 { tail.pdf / (tail.pdf + by_light) } else { 1.0 };
                 let ambient = if tail.has_scattered { tracer.ambient } else { Vec3::ZERO };
                 // Ambient light is found in this way only.
-                let light = environment.radiance(direction) + ambient / weight.max(1e-12) as f32;
+                let light =
+                    environment.radiance(ray.direction) + ambient / weight.max(1e-12) as f32;
                 (light, weight)
             }
             // The background is a picture behind all, and lights nothing.

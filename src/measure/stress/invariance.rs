@@ -161,7 +161,7 @@ fn scene(side: u32) -> Scene {
     let up = right.cross(forward);
     for projection in [Projection::FovY(0.8), Projection::OrthoHeight(6.0)] {
         let name = String::new();
-        scene.cameras.push(Camera { name, position, forward, right, up, projection });
+        scene.cameras.push(Camera { name, position, forward, right, up, projection, lens: None });
     }
     scene
 }

@@ -206,5 +206,5 @@ fn pose_camera(
     };
     // From the origin, so that a position far out does not round the direction.
     let posed = Camera::look_at(DVec3::ZERO, forward, *up, rest.projection)?;
-    Ok(Camera { name: rest.name.clone(), position, ..posed })
+    Ok(Camera { name: rest.name.clone(), position, lens: rest.lens, ..posed })
 }

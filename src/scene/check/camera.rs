@@ -2,7 +2,7 @@
 
 use super::require::{require, require_position, require_unit_length};
 use crate::error::Result;
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Projection, ThinLens};
 
 /// Checks camera `i`.
 pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
@@ -22,5 +22,15 @@ pub(super) fn check(i: usize, camera: &Camera) -> Result<()> {
     };
     require(in_range, || {
         format!("{label}: its field of view, focal length or height is out of range: {value}")
+    })?;
+    let Some(ThinLens { aperture, focus_distance }) = camera.lens else { return Ok(()) };
+    let is_length = |x: f64| x > 0.0 && x.is_finite();
+    require(is_length(aperture) && is_length(focus_distance), || {
+        format!(
+            "{label}: its aperture {aperture} and focus distance {focus_distance} must be above 0"
+        )
+    })?;
+    require(!matches!(camera.projection, Projection::OrthoHeight(_)), || {
+        format!("{label}: an orthographic camera has no lens")
     })
 }

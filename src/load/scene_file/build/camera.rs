@@ -10,7 +10,7 @@ use crate::load::scene_file::schema::tables::CameraTable;
 use crate::load::scene_file::schema::values::normalize;
 use crate::load::scene_file::source::{Source, Span};
 use crate::scene::animation::{Aim, AimTarget, Anchor, Animated};
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Projection, ThinLens};
 
 /// The default vertical field of view, in degrees.
 const DEFAULT_FOV_Y: f64 = 45.0;
@@ -62,7 +62,14 @@ impl SceneBuilder<'_> {
         let camera = Camera::look_at(DVec3::ZERO, forward, up, projection)
             .map_err(|e| source.locate(up_span, e))?;
         let name = table.name.as_ref().map(|name| name.value.clone()).unwrap_or_default();
-        Ok(Camera { name, position, ..camera })
+        let distance = match &table.look_at {
+            Some(target) => {
+                Some((self.objects.resolve(source, target)?.position - position).length())
+            }
+            None => None,
+        };
+        let lens = thin_lens(source, table, &camera, distance)?;
+        Ok(Camera { name, position, lens, ..camera })
     }
 
     /// Returns the animation of the next camera of the scene: none if neither the camera nor the
@@ -100,6 +107,35 @@ impl SceneBuilder<'_> {
         let camera = self.scene.cameras.len();
         Ok(Some(Animated::Camera { camera, node: motion.node, rest, aim, lens }))
     }
+}
+
+/// Returns the lens of a camera, if it has one. It looks at a point at this distance, if at any.
+fn thin_lens(
+    source: &Source<'_>,
+    table: &CameraTable,
+    camera: &Camera,
+    distance: Option<f64>,
+) -> Result<Option<ThinLens>> {
+    let (aperture, focus) = match (&table.aperture, &table.focus_distance) {
+        (None, None) => return Ok(None),
+        (None, Some(focus)) => {
+            let key = source.key_span("focus_distance", &focus.span);
+            let message = "`focus_distance` is about a lens, and the camera has none";
+            return Err(source.error(&key, message).help("add `aperture`, the lens's diameter"));
+        }
+        (Some(aperture), focus) => (aperture, focus),
+    };
+    let key = source.key_span("aperture", &aperture.span);
+    if matches!(camera.projection, Projection::OrthoHeight(_)) {
+        let message = "an orthographic camera has no lens";
+        return Err(source.error(&key, message).help("leave out `aperture`, or `ortho_height`"));
+    }
+    let given = focus.as_ref().map(|focus| focus.value.0);
+    let Some(focus_distance) = given.or(distance) else {
+        let message = "a lens needs the key `focus_distance`, or `look_at`";
+        return Err(source.error(&key, message).help("add `focus_distance`"));
+    };
+    Ok(Some(ThinLens { aperture: aperture.value.0, focus_distance }))
 }
 
 /// Returns the projection of a camera for a film of a width in pixels.

@@ -141,6 +141,10 @@ pub struct CameraTable {
     pub focal_px: Option<Spanned<Length>>,
     /// The height of the view in world units, for an orthographic camera.
     pub ortho_height: Option<Spanned<Length>>,
+    /// The diameter of the lens's opening, in world units. The integrator `path` blurs what is out of focus by it.
+    pub aperture: Option<Spanned<Length>>,
+    /// The distance along the view that is sharp, in world units. The default is that of the point `look_at`.
+    pub focus_distance: Option<Spanned<Length>>,
 }
 
 /// A sphere.
