@@ -13,8 +13,8 @@ use crate::geometry::sampling::{sobol_point, tangents};
 use crate::geometry::{LANES, Lanes};
 use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::shadow_rays::ShadowQueue;
-use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
+use crate::integrator::wave_surfaces::{LitSurface16, WaveSurfaces};
 use crate::integrator::{Counts, Integrator};
 use crate::scene::Environment;
 

@@ -13,8 +13,8 @@ use crate::integrator::counts::FeatureCounts;
 use crate::integrator::opaque_surfaces::OpaqueLobes;
 use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::radiance::{DARK, WaveRadiance, set_lane};
-use crate::integrator::surface_evaluation::{LitSurface16, WaveSurfaces};
 use crate::integrator::wave::Wave;
+use crate::integrator::wave_surfaces::{LitSurface16, WaveSurfaces};
 use crate::scene::{Environment, SHARPEST_REFLECTION, Scene};
 
 /// Filters the environment of a scene, if there is one, for what its materials reflect.

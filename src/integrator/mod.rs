@@ -39,6 +39,7 @@ mod tiling;
 mod transmissive_bounds;
 mod transmissive_shadows;
 mod wave;
+mod wave_surfaces;
 
 use rayon::prelude::*;
 

@@ -7,10 +7,8 @@ use crate::integrator::counts::{FeatureCounts, NotFiniteCause};
 use crate::integrator::opaque_surfaces::OpaqueMaterial;
 use crate::integrator::pbr_surfaces::{self, PbrHits, SurfacePoint};
 use crate::integrator::radiance::{WaveRadiance, set_lane};
-use crate::integrator::surface_evaluation::{
-    LitSurface16, SpecularHit, WaveSurfaces, context_on_wave,
-};
 use crate::integrator::wave::Wave;
+use crate::integrator::wave_surfaces::{LitSurface16, SpecularHit, WaveSurfaces, context_on_wave};
 use crate::integrator::{Integrator, simd};
 use crate::surface::{self, TextureContext};
 

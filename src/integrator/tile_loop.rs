@@ -10,10 +10,10 @@ use crate::integrator::path::{PathSamples, PathScratch, PathTracer};
 use crate::integrator::pixel_sums::PixelSums;
 use crate::integrator::radiance::{GROUP, Radiance16, WaveRadiance};
 use crate::integrator::shadow_rays::ShadowQueue;
-use crate::integrator::surface_evaluation::WaveSurfaces;
 use crate::integrator::tiling::Tile;
 use crate::integrator::transmissive_shadows::TransmissiveShadows;
 use crate::integrator::wave::{Wave, WaveQueue};
+use crate::integrator::wave_surfaces::WaveSurfaces;
 use crate::integrator::{
     Counts, Integrator, back_faces, camera_rays, debug_view, direct_lighting, environment_lighting,
     null_interfaces, secondary_rays, surface_evaluation, transmissive_shadows,

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::geometry::{LANES, Lanes};
 use crate::integrator::light_sources::LightSource;
 use crate::integrator::radiance::set_lane;
-use crate::integrator::surface_evaluation::LitSurface16;
+use crate::integrator::wave_surfaces::LitSurface16;
 use crate::scene::LightKind;
 
 /// The light of one source that arrives at sixteen points, if nothing is in between.

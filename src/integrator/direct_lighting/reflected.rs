@@ -9,7 +9,7 @@ use crate::geometry::{Hit16, LANES, Lanes, PrimitiveId16};
 use crate::integrator::opaque_surfaces::OpaqueSurfaces16;
 use crate::integrator::pbr_surfaces::PbrHit;
 use crate::integrator::radiance::{any, set_lane};
-use crate::integrator::surface_evaluation::LitSurface16;
+use crate::integrator::wave_surfaces::LitSurface16;
 use crate::shading::{self, Bsdf};
 use crate::surface::Surface16;
 

@@ -19,7 +19,7 @@ use crate::integrator::radiance::{DARK, Radiance16, lane, set_lane};
 use crate::integrator::secondary_rays::MAX_LAYERS;
 use crate::integrator::tiling::Tile;
 use crate::integrator::wave::{PathState, Wave};
-use crate::integrator::{Counts, Integrator, null_interfaces, surface_evaluation};
+use crate::integrator::{Counts, Integrator, null_interfaces, wave_surfaces};
 use crate::intersect::Coherence;
 use crate::scene::{IncidentLight, LightKind, Scene};
 use crate::surface::{self, RayCone, Surface, TextureContext};
@@ -226,7 +226,7 @@ impl Integrator<'_> {
         let mut context = TextureContext::default();
         if is_varied {
             let counts = &mut counts.work;
-            context = surface_evaluation::context_on_wave(self, wave, i, &hit, &surface, counts);
+            context = wave_surfaces::context_on_wave(self, wave, i, &hit, &surface, counts);
             self.materials.count_lookups(cached, &hit, counts);
             if cached.has_normal_map {
                 let point = &context.point;

@@ -8,8 +8,8 @@ use crate::integrator::material_cache::scattered_reflectance;
 use crate::integrator::nested_dielectrics::InteriorList;
 use crate::integrator::pbr_surfaces::{facing, local_frame};
 use crate::integrator::secondary_rays::{Scattered, scatter_light};
-use crate::integrator::surface_evaluation::SpecularHit;
 use crate::integrator::wave::PathState;
+use crate::integrator::wave_surfaces::SpecularHit;
 use crate::shading::{Bsdf, PhongBsdf};
 use crate::surface::{self, PbrParams, Surface, TextureContext};
 
