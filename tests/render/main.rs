@@ -7,7 +7,6 @@ mod gallery;
 mod golden;
 mod light_transport;
 mod not_finite;
-mod path;
 mod radiance;
 mod textures;
 mod transparent;

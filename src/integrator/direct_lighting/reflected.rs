@@ -19,7 +19,7 @@ pub(super) struct PbrLanes<'a> {
     pub hits: &'a [PbrHit],
     /// Returns the BSDF of one of them.
     pub bsdf: &'a dyn Fn(&PbrHit) -> &'a Bsdf,
-    /// Those that are shaded side by side, which are not among the others.
+    /// The surfaces that are shaded side by side, which are not among the others.
     pub opaque: Option<&'a OpaqueSurfaces16>,
 }
 

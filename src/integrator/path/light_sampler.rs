@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 
-use crate::geometry::{Geometry, Hit, triangle};
+use crate::geometry::{Geometry, Hit, PrimitiveId, triangle};
 use crate::integrator::emissive_lights::{EmissiveMesh, emission_at, luminance, mean_of_sphere};
 use crate::scene::{Environment, Falloff, Light, LightKind, LightShape, Material, Scene};
 use crate::surface::Surface;
 
-/// The share of samples that go to all sources alike, whatever their strength.
+/// The share of samples that go to all sources alike, whatever their importance.
 const EVEN_SHARE: f64 = 0.1;
 /// The most sources of which one is chosen by the point that they shine on.
 const MAX_LOCAL: usize = 64;
@@ -22,16 +22,16 @@ enum Source<'a> {
     Environment(&'a Environment),
 }
 
-/// About how much light a source gives, by which it is chosen.
+/// The importance of a source, by which it is chosen: about the irradiance that it gives.
 #[derive(Clone, Copy)]
-enum Strength {
+enum Importance {
     /// The irradiance that it gives everywhere.
     Even(f64),
     /// The irradiance that it gives at a distance of 1 from its middle, within some radius of which it is.
     Near { power: f64, center: DVec3, radius: f64, front: Option<DVec3> },
 }
 
-impl Strength {
+impl Importance {
     /// Returns about the irradiance at a point.
     fn at(&self, point: DVec3) -> f64 {
         match *self {
@@ -52,8 +52,8 @@ impl Strength {
 pub struct LightSampler<'a> {
     scene: &'a Scene,
     sources: Vec<Source<'a>>,
-    strengths: Vec<Strength>,
-    /// Where there are many: the probabilities, the same everywhere, and their sums up to each.
+    importances: Vec<Importance>,
+    /// The probabilities, the same everywhere, and their sums up to each, of a scene with many sources; else empty.
     shares: Vec<f64>,
     sums: Vec<f64>,
     /// The source that each sphere, and each instance, is.
@@ -85,7 +85,7 @@ impl<'a> LightSampler<'a> {
         let mut found = Self {
             scene,
             sources: Vec::new(),
-            strengths: Vec::new(),
+            importances: Vec::new(),
             shares: Vec::new(),
             sums: Vec::new(),
             of_sphere: vec![None; scene.spheres.len()],
@@ -99,7 +99,7 @@ impl<'a> LightSampler<'a> {
                 Some(LightShape::Instance(i)) => found.of_instance[i as usize] = Some(source),
                 None => {}
             }
-            found.strengths.push(strength_of_light(light));
+            found.importances.push(importance_of_light(light));
             found.sources.push(Source::Light(light));
         }
         found.add_surfaces();
@@ -107,7 +107,7 @@ impl<'a> LightSampler<'a> {
             found.of_environment = Some(found.sources.len());
             found.sources.push(Source::Environment(environment));
             let mean = environment.distribution().mean() * luminance(environment.intensity);
-            found.strengths.push(Strength::Even(PI * mean));
+            found.importances.push(Importance::Even(PI * mean));
         }
         if found.sources.len() > MAX_LOCAL {
             // As it is to the side of the middle, at the distance of the scene's radius.
@@ -128,7 +128,7 @@ impl<'a> LightSampler<'a> {
                 let emission = mean_of_sphere(scene, i as u32, material);
                 let light = Light::sphere(sphere.center, sphere.radius).with_intensity(emission);
                 self.of_sphere[i] = Some(self.sources.len() as u32);
-                self.strengths.push(strength_of_light(&light));
+                self.importances.push(importance_of_light(&light));
                 self.sources.push(Source::Sphere { light, index: i as u32 });
             }
         }
@@ -144,7 +144,7 @@ impl<'a> LightSampler<'a> {
                     self.of_instance[i] = Some(self.sources.len() as u32);
                     // A half of a closed surface faces any point.
                     let power = 0.5 * power;
-                    self.strengths.push(Strength::Near { power, center, radius, front: None });
+                    self.importances.push(Importance::Near { power, center, radius, front: None });
                     self.sources.push(Source::Mesh(mesh));
                 }
             }
@@ -153,10 +153,10 @@ impl<'a> LightSampler<'a> {
 
     /// Returns the probabilities with which the sources are chosen for a point.
     fn shares_at(&self, point: DVec3) -> impl Iterator<Item = f64> {
-        let sum: f64 = self.strengths.iter().map(|strength| strength.at(point)).sum();
-        let even = 1.0 / self.strengths.len() as f64;
-        self.strengths.iter().map(move |strength| {
-            let own = if sum > 0.0 { strength.at(point) / sum } else { even };
+        let sum: f64 = self.importances.iter().map(|importance| importance.at(point)).sum();
+        let even = 1.0 / self.importances.len() as f64;
+        self.importances.iter().map(move |importance| {
+            let own = if sum > 0.0 { importance.at(point) / sum } else { even };
             (1.0 - EVEN_SHARE) * own + EVEN_SHARE * even
         })
     }
@@ -214,12 +214,7 @@ impl<'a> LightSampler<'a> {
                 let sphere = &self.scene.spheres[*index as usize];
                 let normal = (point + toward - sphere.center).normalize_or(DVec3::Y);
                 let material = &self.scene.materials[sphere.material.0 as usize];
-                let hit = Hit {
-                    t: 1.0,
-                    u: 0.0,
-                    v: 0.0,
-                    id: crate::geometry::PrimitiveId::sphere(*index),
-                };
+                let hit = Hit { t: 1.0, u: 0.0, v: 0.0, id: PrimitiveId::sphere(*index) };
                 let radiance = emission_at(self.scene, material, &hit, normal);
                 let pdf = sample.pdf * share;
                 let weighted = radiance * (1.0 / pdf) as f32;
@@ -295,15 +290,15 @@ fn per_steradian(vertices: &[DVec3; 3], toward: DVec3) -> Option<f64> {
     (cosine > 1e-9).then(|| square / cosine)
 }
 
-/// Returns how much light a light gives.
-fn strength_of_light(light: &Light) -> Strength {
+/// Returns the importance of a light.
+fn importance_of_light(light: &Light) -> Importance {
     let radiance = luminance(light.intensity);
     match light.kind {
-        LightKind::Ambient | LightKind::Directional { .. } => Strength::Even(PI * radiance),
+        LightKind::Ambient | LightKind::Directional { .. } => Importance::Even(PI * radiance),
         LightKind::Point { position, falloff, .. } | LightKind::Spot { position, falloff, .. } => {
             match falloff {
-                Falloff::None => Strength::Even(PI * radiance),
-                Falloff::InverseSquare => Strength::Near {
+                Falloff::None => Importance::Even(PI * radiance),
+                Falloff::InverseSquare => Importance::Near {
                     power: PI * radiance,
                     center: position,
                     radius: 0.0,
@@ -311,13 +306,13 @@ fn strength_of_light(light: &Light) -> Strength {
                 },
             }
         }
-        LightKind::Rectangle { center, u, v } => Strength::Near {
+        LightKind::Rectangle { center, u, v } => Importance::Near {
             power: radiance * 4.0 * u.length() * v.length(),
             center,
             radius: u.length().max(v.length()),
             front: Some(u.cross(v)),
         },
-        LightKind::Disk { center, normal, radius } => Strength::Near {
+        LightKind::Disk { center, normal, radius } => Importance::Near {
             power: radiance * PI * radius * radius,
             center,
             radius,
@@ -325,7 +320,7 @@ fn strength_of_light(light: &Light) -> Strength {
         },
         LightKind::Sphere { center, radius } => {
             let power = radiance * PI * radius * radius;
-            Strength::Near { power, center, radius, front: None }
+            Importance::Near { power, center, radius, front: None }
         }
     }
 }

@@ -26,7 +26,7 @@ use crate::surface::{self, RayCone, Surface, TextureContext};
 use light_sampler::LightSampler;
 use sampler::{Sampler, SurfaceNumbers};
 use shadows::LightQueue;
-use vertex::Vertex;
+use vertex::PathVertex;
 
 /// The number of surfaces that a path has before it may end by chance.
 const FIRST_ROULETTE: u32 = 3;
@@ -35,7 +35,7 @@ const MOST_LIKELY: f64 = 0.95;
 /// The widening of the cone of a ray that a surface scattered, for the level of detail of textures.
 const SCATTERED_SPREAD: f32 = 0.1;
 
-/// What the path tracer prepares for a scene.
+/// The lights of a scene as paths find them, and the seed of their random numbers.
 pub(super) struct PathTracer<'a> {
     lights: LightSampler<'a>,
     /// The light from all sides that nothing but surfaces blocks.
@@ -43,9 +43,9 @@ pub(super) struct PathTracer<'a> {
     seed: u32,
 }
 
-/// What a path keeps beside its state in a wave.
+/// The history of a path at one of its rays, beside its state in a wave.
 #[derive(Clone, Copy, Debug)]
-struct PathTail {
+struct PathHistory {
     /// The density of its direction, per steradian; 0 if it is that of the camera, or of a sharp lobe.
     pdf: f64,
     /// True once a surface scattered it otherwise than as a sharp mirror or as clear glass does.
@@ -67,15 +67,15 @@ struct Arrival<'w> {
     ray: Ray,
     hit: Hit,
     path: &'w PathState,
-    tail: PathTail,
+    history: PathHistory,
     numbers: SurfaceNumbers,
 }
 
 /// Memory that a thread uses again and again.
 #[derive(Default)]
 pub(super) struct PathScratch {
-    tails: Vec<PathTail>,
-    next_tails: Vec<PathTail>,
+    histories: Vec<PathHistory>,
+    next_histories: Vec<PathHistory>,
     next: Wave,
     samplers: Vec<Sampler>,
     lights: LightQueue,
@@ -112,7 +112,7 @@ impl Integrator<'_> {
             }
             scratch.next.rays.clear();
             scratch.next.paths.clear();
-            scratch.next_tails.clear();
+            scratch.next_histories.clear();
             scratch.lights.clear();
             for i in 0..wave.rays.len() {
                 self.extend(tracer, i, wave, &mut samples, scratch, counts);
@@ -120,11 +120,11 @@ impl Integrator<'_> {
             scratch.lights.add_light(self, samples.radiance, &mut scratch.not_finite, counts);
             // The rays that go on form the next wave.
             std::mem::swap(wave, &mut scratch.next);
-            std::mem::swap(&mut scratch.tails, &mut scratch.next_tails);
+            std::mem::swap(&mut scratch.histories, &mut scratch.next_histories);
             if wave.rays.is_empty() {
                 break;
             }
-            self.find_hits(wave, &scratch.tails, counts);
+            self.find_hits(wave, &scratch.histories, counts);
         }
         // Each sample counts once.
         for (sample, cause) in scratch.not_finite.drain(..) {
@@ -149,7 +149,7 @@ impl Integrator<'_> {
         wave.paths.clear();
         wave.rays.clear();
         scratch.samplers.clear();
-        scratch.tails.clear();
+        scratch.histories.clear();
         for i in 0..tile.count {
             let pixels = &tile.pixels[i / LANES];
             let column = tile.origin[0] + pixels.columns[i % LANES] as usize;
@@ -159,7 +159,7 @@ impl Integrator<'_> {
             let ray = self.camera.ray_through_lens(column as f64 + x, row as f64 + y, lens);
             wave.rays.push(&ray);
             scratch.samplers.push(sampler);
-            scratch.tails.push(PathTail { pdf: 0.0, has_scattered: false, surfaces: 0 });
+            scratch.histories.push(PathHistory { pdf: 0.0, has_scattered: false, surfaces: 0 });
         }
         wave.paths = (0..wave.rays.len()).map(|i| wave.path(i, self)).collect();
         self.visible_hits(&wave.rays, Coherence::Coherent, &mut wave.hits, counts);
@@ -169,13 +169,13 @@ impl Integrator<'_> {
 
     /// Finds the closest hits of a wave. Back faces of one-sided surfaces are there for rays that a surface has
     /// scattered, as they are for shadow rays.
-    fn find_hits(&self, wave: &mut Wave, tails: &[PathTail], counts: &mut Counts) {
+    fn find_hits(&self, wave: &mut Wave, histories: &[PathHistory], counts: &mut Counts) {
         self.closest_hits(&wave.rays, Coherence::Incoherent, &mut wave.hits, counts);
         if self.back_faces.is_empty() {
             return;
         }
         let (mut rays, mut hits, mut indices) = (RayBatch::default(), HitBatch::default(), vec![]);
-        for i in (0..tails.len()).filter(|&i| !tails[i].has_scattered) {
+        for i in (0..histories.len()).filter(|&i| !histories[i].has_scattered) {
             rays.push(&wave.rays.ray(i));
             indices.push(i);
         }
@@ -198,7 +198,7 @@ impl Integrator<'_> {
         scratch: &mut PathScratch,
         counts: &mut Counts,
     ) {
-        let (ray, path, tail) = (wave.rays.ray(i), &wave.paths[i], scratch.tails[i]);
+        let (ray, path, history) = (wave.rays.ray(i), &wave.paths[i], scratch.histories[i]);
         let mut add = |light: Vec3, weight: f64, not_finite: &mut Vec<_>| {
             let light = (path.throughput * light.as_dvec3() * weight).as_vec3();
             let (block, i) = path.sample_lane();
@@ -215,7 +215,7 @@ impl Integrator<'_> {
                 alpha.uncover_sample(path.sample, path.throughput.element_sum() / 3.0);
                 return;
             }
-            let (light, weight) = self.seen_beyond(tracer, &ray, &tail);
+            let (light, weight) = self.seen_beyond(tracer, &ray, path, &history);
             add(light, weight, &mut scratch.not_finite);
             return;
         };
@@ -233,15 +233,15 @@ impl Integrator<'_> {
                 surface.normal = surface::mapped_normal(self.scene, &surface, &hit, point);
             }
         }
-        let vertex = Vertex::new(self, &ray, &hit, surface, &context, is_varied, path);
-        // What it emits: nothing from the side from which it is not seen.
+        let vertex = PathVertex::new(self, &ray, &hit, surface, &context, is_varied, path);
+        // The light that it emits: none from the side from which it is not seen.
         let is_culled = self.back_faces.culled_side(hit.id) == Some(vertex.surface.side);
-        let is_picture = vertex.is_unlit && tail.has_scattered;
+        let is_picture = vertex.is_unlit && history.has_scattered;
         if vertex.emission != Vec3::ZERO && !is_culled && !is_picture {
-            let weight = if tail.pdf > 0.0 && !vertex.is_unlit {
+            let weight = if history.pdf > 0.0 && !vertex.is_unlit {
                 let by_light =
                     tracer.lights.pdf_of_hit(ray.origin, ray.direction, &hit, &vertex.surface);
-                tail.pdf / (tail.pdf + by_light)
+                history.pdf / (history.pdf + by_light)
             } else {
                 1.0
             };
@@ -251,32 +251,40 @@ impl Integrator<'_> {
         if vertex.is_unlit || depth > self.scene.film.max_depth {
             return;
         }
-        let numbers = scratch.samplers[path.sample as usize].surface(tail.surfaces);
-        let arrival = Arrival { ray, hit, path, tail, numbers };
+        let numbers = scratch.samplers[path.sample as usize].surface(history.surfaces);
+        let arrival = Arrival { ray, hit, path, history, numbers };
         self.queue_light(tracer, &vertex, &arrival, scratch);
         self.go_on(&vertex, &arrival, scratch, counts);
     }
 
     /// Returns what a ray sees that hits nothing, and its weight.
-    fn seen_beyond(&self, tracer: &PathTracer<'_>, ray: &Ray, tail: &PathTail) -> (Vec3, f64) {
+    fn seen_beyond(
+        &self,
+        tracer: &PathTracer<'_>,
+        ray: &Ray,
+        path: &PathState,
+        history: &PathHistory,
+    ) -> (Vec3, f64) {
         let film = &self.scene.film;
-        let is_camera = tail.surfaces == 0;
+        // Layers that it went straight through do not count.
+        let is_camera = path.depth == 0;
         match &self.scene.environment {
             Some(environment) if environment.visible || !is_camera => {
-                let by_light = if tail.pdf > 0.0 {
+                let by_light = if history.pdf > 0.0 {
                     tracer.lights.pdf_of_environment(ray.origin, ray.direction.normalize())
                 } else {
                     0.0
                 };
-                let weight = if by_light > 0.0 { tail.pdf / (tail.pdf + by_light) } else { 1.0 };
-                let ambient = if tail.has_scattered { tracer.ambient } else { Vec3::ZERO };
+                let weight =
+                    if by_light > 0.0 { history.pdf / (history.pdf + by_light) } else { 1.0 };
+                let ambient = if history.has_scattered { tracer.ambient } else { Vec3::ZERO };
                 // Ambient light is found in this way only.
                 let light =
                     environment.radiance(ray.direction) + ambient / weight.max(1e-12) as f32;
                 (light, weight)
             }
             // The background is a picture behind all, and lights nothing.
-            _ if tail.has_scattered => (tracer.ambient, 1.0),
+            _ if history.has_scattered => (tracer.ambient, 1.0),
             _ => (film.background, 1.0),
         }
     }
@@ -285,7 +293,7 @@ impl Integrator<'_> {
     fn queue_light(
         &self,
         tracer: &PathTracer<'_>,
-        vertex: &Vertex<'_>,
+        vertex: &PathVertex<'_>,
         arrival: &Arrival<'_>,
         scratch: &mut PathScratch,
     ) {
@@ -319,12 +327,12 @@ impl Integrator<'_> {
     /// Lets a path go on from a vertex, if it does.
     fn go_on(
         &self,
-        vertex: &Vertex<'_>,
+        vertex: &PathVertex<'_>,
         arrival: &Arrival<'_>,
         scratch: &mut PathScratch,
         counts: &mut Counts,
     ) {
-        let Arrival { ray, hit, path, tail, numbers } = arrival;
+        let Arrival { ray, hit, path, history, numbers } = arrival;
         let Some(next) = vertex.sample(ray, hit, numbers.lobe, numbers.direction) else { return };
         let mut throughput = path.throughput * next.weight.as_dvec3();
         if !(throughput.is_finite() && next.pdf.is_finite()) {
@@ -346,7 +354,7 @@ impl Integrator<'_> {
             return;
         }
         // Paths of little weight end by chance.
-        if tail.surfaces >= FIRST_ROULETTE && !is_layer {
+        if history.surfaces >= FIRST_ROULETTE && !is_layer {
             let survives = throughput.max_element().min(MOST_LIKELY);
             if numbers.roulette >= survives {
                 return;
@@ -379,10 +387,10 @@ impl Integrator<'_> {
             cone,
             roughness: 0.0,
         });
-        scratch.next_tails.push(PathTail {
-            pdf: if is_layer { tail.pdf } else { next.pdf },
-            has_scattered: tail.has_scattered || !is_sharp,
-            surfaces: tail.surfaces + 1,
+        scratch.next_histories.push(PathHistory {
+            pdf: if is_layer { history.pdf } else { next.pdf },
+            has_scattered: history.has_scattered || !is_sharp,
+            surfaces: history.surfaces + 1,
         });
     }
 }

@@ -24,7 +24,7 @@ pub struct SurfaceNumbers {
     /// The choice of a lobe, and the direction within it.
     pub lobe: f64,
     pub direction: [f64; 2],
-    /// Whether the path goes on.
+    /// The chance by which the path goes on or ends.
     pub roulette: f64,
     /// The choice of a light, and the direction to it.
     pub light: f64,

@@ -14,9 +14,9 @@ use crate::shading::{Bsdf, PhongBsdf};
 use crate::surface::{self, PbrParams, Surface, TextureContext};
 
 /// A surface that a ray of a path hit.
-pub(super) struct Vertex<'a> {
+pub(super) struct PathVertex<'a> {
     pub surface: Surface,
-    /// What it emits to the viewer.
+    /// The radiance that it emits to the viewer.
     pub emission: Vec3,
     /// True if what it emits is a picture, which lights nothing.
     pub is_unlit: bool,
@@ -52,8 +52,8 @@ impl std::ops::Deref for BsdfOf<'_> {
     }
 }
 
-/// A sampled continuation of a path.
-pub(super) struct Continuation {
+/// The ray by which a path goes on from a vertex.
+pub(super) struct SampledRay {
     pub ray: Ray,
     /// f |cos θ| divided by the density.
     pub weight: Vec3,
@@ -65,7 +65,7 @@ pub(super) struct Continuation {
     pub interior: InteriorList,
 }
 
-impl<'a> Vertex<'a> {
+impl<'a> PathVertex<'a> {
     /// Evaluates the surface that a ray hit. `surface` has the normal of its normal map.
     pub fn new(
         integrator: &'a Integrator<'_>,
@@ -158,11 +158,11 @@ impl<'a> Vertex<'a> {
     }
 
     /// Samples a direction: `choice` chooses the lobe, and `u` the direction in it. `None` where the path ends.
-    pub fn sample(&self, ray: &Ray, hit: &Hit, choice: f64, u: [f64; 2]) -> Option<Continuation> {
+    pub fn sample(&self, ray: &Ray, hit: &Hit, choice: f64, u: [f64; 2]) -> Option<SampledRay> {
         let opposite = self.surface.side.opposite();
         // Straight on, through what is left uncovered.
         if choice < self.uncovered {
-            return Some(Continuation {
+            return Some(SampledRay {
                 ray: ray.continue_past(hit, opposite),
                 weight: Vec3::ONE,
                 pdf: 0.0,
@@ -210,7 +210,7 @@ impl<'a> Vertex<'a> {
                 }
                 Some(match sharp.refracted {
                     Some(direction) => self.departing(direction, weight, 0.0),
-                    None => Continuation {
+                    None => SampledRay {
                         ray: ray.continue_past(hit, opposite),
                         weight,
                         pdf: 0.0,
@@ -227,11 +227,11 @@ impl<'a> Vertex<'a> {
         self.surface.facing_normal().dot(direction) > 0.0
     }
 
-    fn departing(&self, direction: DVec3, weight: Vec3, pdf: f64) -> Continuation {
+    fn departing(&self, direction: DVec3, weight: Vec3, pdf: f64) -> SampledRay {
         let is_transmission = !self.is_above(direction);
         let side = if is_transmission { self.surface.side.opposite() } else { self.surface.side };
         let departure = Some(Departure { id: self.surface.id, side });
-        Continuation {
+        SampledRay {
             ray: Ray { departure, ..Ray::new(self.surface.position, direction) },
             weight,
             pdf,

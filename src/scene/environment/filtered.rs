@@ -29,9 +29,9 @@ pub struct FilteredEnvironment {
     /// The mean of the radiance that microfacets of each roughness reflect, by the mirrored direction; each made
     /// when it is first needed.
     levels: [OnceLock<CubeMap>; LEVELS],
-    /// What the rougher of these are made of: the light of cells of directions.
+    /// The light of cells of directions, of which the rougher levels are made.
     cells: Vec<CellLight>,
-    /// What the others are made of: ever coarser maps of the radiance.
+    /// Ever coarser maps of the radiance, of which the sharper levels are made.
     pyramid: Vec<CubeMap>,
     /// The number of texels along a face of the finest of them.
     size: usize,

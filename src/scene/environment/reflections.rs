@@ -1,5 +1,5 @@
-//! What microfacets of a roughness reflect of an environment, as if their surface were seen head-on: wide lobes as sums
-//! over cells of directions, narrow ones by samples.
+//! Reflections of an environment by microfacets of one roughness, as if their surface were seen head-on: wide lobes as
+//! sums over cells of directions, narrow ones by samples.
 
 use std::f32::consts::{PI, TAU};
 

@@ -92,14 +92,14 @@ pub struct OpaqueBsdf16 {
     diffuse: [Lanes<f32>; 3],
     /// The cosine of the angle between the normal and the viewer.
     cosine: Lanes<f32>,
-    /// What a direction leaves, for the viewer.
-    viewer: Left16,
+    /// The shares that the direction to the viewer leaves for other lobes.
+    viewer: Remainder16,
 }
 
 /// The shares of the light along directions that are left for other lobes.
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(64))]
-struct Left16 {
+struct Remainder16 {
     /// 1 − E: the share that one reflection off mirrors loses.
     lost: Lanes<f32>,
     /// The share that the dielectric leaves for its base.
@@ -122,7 +122,7 @@ impl OpaqueBsdf16 {
             inverse_uncovered: [bsdf.inverse_uncovered; LANES],
             diffuse: lanes(bsdf.diffuse.to_array()),
             cosine: [1.0; LANES],
-            viewer: Left16::default(),
+            viewer: Remainder16::default(),
         }
     }
 
@@ -149,7 +149,7 @@ impl OpaqueBsdf16 {
             self.cosine[i] = cosine[i].clamp(MIN_COSINE, 1.0);
         }
         let [all, grazing] = self.moments(&self.cosine);
-        self.viewer = self.left(&all, &grazing);
+        self.viewer = self.remainder(&all, &grazing);
         let (mut reflected, mut diffuse) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
         for channel in 0..3 {
             for i in 0..LANES {
@@ -167,7 +167,7 @@ impl OpaqueBsdf16 {
     #[inline(always)]
     pub fn evaluate(&self, cosine: &Lanes<f32>, to_viewer: &Lanes<f32>) -> [Lanes<f32>; 3] {
         let [all, grazing] = self.moments(cosine);
-        let left = self.left(&all, &grazing);
+        let left = self.remainder(&all, &grazing);
         let (mut once, mut schlick) = ([0.0; LANES], [0.0; LANES]);
         let (mut multiple, mut diffuse) = ([0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
@@ -212,8 +212,8 @@ impl OpaqueBsdf16 {
 
     /// Returns the shares that directions with these moments leave.
     #[inline(always)]
-    fn left(&self, all: &Lanes<f32>, grazing: &Lanes<f32>) -> Left16 {
-        let mut left = Left16::default();
+    fn remainder(&self, all: &Lanes<f32>, grazing: &Lanes<f32>) -> Remainder16 {
+        let mut left = Remainder16::default();
         let [f0, rise, multiple] = &self.covering;
         for i in 0..LANES {
             let lost = (1.0 - all[i]).max(0.0);

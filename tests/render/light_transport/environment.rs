@@ -2,28 +2,11 @@
 
 use std::sync::Arc;
 
-use envers::scene::{
-    Environment, Image, MetallicRoughness, MetallicRoughnessMaps, ShadingModel, Texels, Transfer,
-};
+use envers::scene::{Environment, Image, MetallicRoughness, Texels, Transfer};
 use envers::{Light, Material, Plane, Scene};
 use glam::{DVec3, Vec3};
 
 use super::one_pixel::*;
-
-/// A physically based material.
-fn pbr(factors: MetallicRoughness) -> Material {
-    let mut material = Material { shading: ShadingModel::Pbr, ..Material::default() };
-    material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
-    material
-}
-
-fn metal(roughness: f32) -> MetallicRoughness {
-    MetallicRoughness { roughness, ..MetallicRoughness::default() }
-}
-
-fn plastic(roughness: f32) -> MetallicRoughness {
-    MetallicRoughness { metallic: 0.0, ..metal(roughness) }
-}
 
 /// A ball in an environment, seen from +z at a point with this height.
 fn ball(material: Material, environment: Environment, height: f64) -> Scene {

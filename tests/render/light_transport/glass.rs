@@ -1,6 +1,6 @@
 //! Glass: refraction, Fresnel's shares, absorption.
 
-use envers::scene::{MetallicRoughness, MetallicRoughnessMaps, ShadingModel};
+use envers::scene::MetallicRoughness;
 use envers::{Instance, Material, Mesh, Plane};
 use glam::{DAffine3, DVec3, Vec3};
 
@@ -173,9 +173,7 @@ fn a_dispersive_medium_bends_each_colour_by_its_own_index() {
     });
     for (color, x) in across.into_iter().enumerate() {
         let mut scene = seen_from(DVec3::new(-1.0, 1.0, 0.0), DVec3::ZERO);
-        let mut prism = Material { shading: ShadingModel::Pbr, ..Material::default() };
-        prism.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
-        let prism = scene.add_material(prism);
+        let prism = scene.add_material(pbr(factors));
         scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Y, prism));
         sphere(&mut scene, DVec3::new(x, -4.0, 0.0), 1e-8, glow(1.0));
         let seen = radiance(&scene);
@@ -200,9 +198,7 @@ fn a_dispersive_ball_in_a_white_world_is_white() {
         let mut scene = seen_from(DVec3::new(0.0, height, 5.0), DVec3::new(0.0, height, 0.0));
         scene.film.background = Vec3::ONE;
         scene.film.max_depth = 40;
-        let mut ball = Material { shading: ShadingModel::Pbr, ..Material::default() };
-        ball.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
-        sphere(&mut scene, DVec3::ZERO, 1.0, ball);
+        sphere(&mut scene, DVec3::ZERO, 1.0, pbr(factors));
         assert_near(radiance(&scene), 1.0);
     }
 }

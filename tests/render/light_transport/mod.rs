@@ -9,5 +9,6 @@ mod mirrors;
 mod nested_dielectrics;
 mod one_pixel;
 mod one_sided;
+mod path;
 mod shadows;
 mod smooth_meshes;

@@ -1,6 +1,7 @@
 //! Scenes of one pixel, and what every backend makes of them.
 
 use envers::internals::Counts;
+use envers::scene::{MetallicRoughness, MetallicRoughnessMaps, ShadingModel};
 use envers::{
     Backend, Camera, Material, MaterialId, Precision, Projection, RenderOptions, Renderer, Scene,
     Sphere,
@@ -36,6 +37,21 @@ pub fn sphere(scene: &mut Scene, center: DVec3, radius: f64, material: Material)
     let id = scene.add_material(material);
     scene.spheres.push(Sphere::new(center, radius, id));
     id
+}
+
+/// A physically based material.
+pub fn pbr(factors: MetallicRoughness) -> Material {
+    let mut material = Material { shading: ShadingModel::Pbr, ..Material::default() };
+    material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
+    material
+}
+
+pub fn metal(roughness: f32) -> MetallicRoughness {
+    MetallicRoughness { roughness, ..MetallicRoughness::default() }
+}
+
+pub fn plastic(roughness: f32) -> MetallicRoughness {
+    MetallicRoughness { metallic: 0.0, ..metal(roughness) }
 }
 
 /// The pixel and the counts; the same from each backend in each precision.

@@ -1,15 +1,14 @@
 //! The path tracer, held to closed forms, to numeric integration by fixed samples, and to itself.
 
 use envers::internals::Tiling;
-use envers::scene::{
-    Environment, IntegratorKind, LightShape, MetallicRoughness, MetallicRoughnessMaps,
-    ShadingModel, ThinLens,
-};
+use envers::scene::{Environment, IntegratorKind, LightShape, MetallicRoughness, ThinLens};
 use envers::{
     Backend, Camera, Instance, Light, Material, Mesh, Plane, Precision, Projection, RenderOptions,
     Renderer, Scene, Sphere,
 };
 use glam::{DAffine3, DMat3, DVec3, Vec3};
+
+use super::one_pixel::{metal, pbr, plastic};
 
 /// A scene for one pixel, whose rays all go from `eye` to about `target`.
 fn seen_from(eye: DVec3, target: DVec3) -> Scene {
@@ -36,20 +35,6 @@ fn assert_near(found: f64, expected: f64, bound: f64) {
     let error = found / expected - 1.0;
     println!("{found} for {expected}: {error:.1e}, bound {bound:.0e}");
     assert!(error.abs() < bound, "{found} instead of {expected}: {error:.1e}");
-}
-
-fn pbr(factors: MetallicRoughness) -> Material {
-    let mut material = Material { shading: ShadingModel::Pbr, ..Material::default() };
-    material.set_metallic_roughness(MetallicRoughnessMaps::new(factors));
-    material
-}
-
-fn metal(roughness: f32) -> MetallicRoughness {
-    MetallicRoughness { roughness, ..MetallicRoughness::default() }
-}
-
-fn plastic(roughness: f32) -> MetallicRoughness {
-    MetallicRoughness { metallic: 0.0, ..metal(roughness) }
 }
 
 fn ball(scene: &mut Scene, center: DVec3, radius: f64, material: Material) {
@@ -219,6 +204,23 @@ fn glossy_surfaces_reflect_the_same_of_a_light_as_by_fixed_samples() {
             }
         }
     }
+}
+
+#[test]
+fn a_layer_before_an_environment_that_is_not_visible_shows_the_background() {
+    let mut scene = seen_from(DVec3::Z * 5.0, DVec3::ZERO);
+    scene.film.background = Vec3::splat(0.25);
+    scene.environment = Some(Environment::even(Vec3::ONE).with_visible(false));
+    // A grey veil that reflects nothing.
+    let veil = Material {
+        transmit: Vec3::splat(0.5),
+        thin: true,
+        ior: 1.0,
+        ..Material::matte(Vec3::ZERO)
+    };
+    let veil = scene.add_material(veil);
+    scene.planes.push(Plane::new(DVec3::ZERO, DVec3::Z, veil));
+    assert_near(traced(&scene, 16), 0.125, 1e-6);
 }
 
 #[test]
